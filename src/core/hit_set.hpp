@@ -1,0 +1,70 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace clearway {
+
+/// The colliding points of a PackedCloud by slot: one bit each, and the first pose where asked for.
+/// Marking is thread safe; reading is for after the threads have joined.
+class HitSet {
+ public:
+  static constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
+
+  HitSet(std::uint64_t slots, bool first_pose)
+      : words_((slots + 63) / 64), first_pose_(first_pose ? slots : 0, kNever),
+        has_first_pose_(first_pose) {}
+
+  void mark(std::uint64_t slot) { mark_word(slot / 64, std::uint64_t{1} << (slot % 64)); }
+
+  /// Marks the slots 64 * word + i of all set bits i.
+  void mark_word(std::uint64_t word, std::uint64_t bits) {
+    std::atomic_ref target(words_[word]);
+    if ((target.load(std::memory_order_relaxed) & bits) != bits) {
+      target.fetch_or(bits, std::memory_order_relaxed);
+    }
+  }
+
+  /// Marks the slot and lowers its first pose to `pose`. Only with first poses.
+  void mark(std::uint64_t slot, std::uint32_t pose) {
+    mark(slot);
+    std::atomic_ref target(first_pose_[slot]);
+    std::uint32_t seen = target.load(std::memory_order_relaxed);
+    while (pose < seen && !target.compare_exchange_weak(seen, pose, std::memory_order_relaxed)) {
+    }
+  }
+
+  bool contains(std::uint64_t slot) const {
+    return (words_[slot / 64] >> (slot % 64) & 1) != 0;
+  }
+  std::uint64_t word(std::uint64_t index) const { return words_[index]; }
+  std::uint64_t word_now(std::uint64_t index) {
+    return std::atomic_ref(words_[index]).load(std::memory_order_relaxed);
+  }
+
+  bool has_first_pose() const { return has_first_pose_; }
+  std::uint32_t first_pose(std::uint64_t slot) const { return first_pose_[slot]; }
+  std::uint32_t first_pose_now(std::uint64_t slot) {
+    return std::atomic_ref(first_pose_[slot]).load(std::memory_order_relaxed);
+  }
+
+  std::uint64_t count() const {
+    std::uint64_t total = 0;
+    for (const std::uint64_t word : words_) total += static_cast<std::uint64_t>(__builtin_popcountll(word));
+    return total;
+  }
+
+  std::uint64_t allocated_bytes() const {
+    return words_.capacity() * sizeof(std::uint64_t) +
+           first_pose_.capacity() * sizeof(std::uint32_t);
+  }
+
+ private:
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> first_pose_;
+  bool has_first_pose_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/cell_tree.hpp"
+#include "core/kd_order.hpp"
+#include "core/packed_chunk.hpp"
+#include "core/quantisation.hpp"
+#include "core/quantum_box.hpp"
+
+namespace clearway {
+
+/// The environment as the engines see it: packed cells in k-d order. A *slot* numbers the points in
+/// that order: slot = cell * cell_slots() + index in the cell, so that block b of a cell is 64
+/// slots, one word of a HitSet. Slots past a cell's count are unused.
+class PackedCloud {
+ public:
+  virtual ~PackedCloud() = default;
+
+  virtual std::uint64_t point_count() const = 0;
+  virtual std::uint32_t cell_points() const = 0;
+  virtual const Quantisation& quantisation() const = 0;
+  virtual std::span<const Cell> cells() const = 0;
+  /// Preorder, see cell_tree.hpp. Empty for an empty cloud.
+  virtual std::span<const TreeNode> tree() const = 0;
+  /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries a cell; entries of
+  /// blocks past a cell's count are unused.
+  virtual std::span<const BlockBox> blocks() const = 0;
+
+  /// The packed x, y and z of a cell. Checked against the cell's hash at the first touch; thread
+  /// safe. Throws InputError naming file and cell when the bytes are not those that were written.
+  virtual std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const = 0;
+
+  std::uint32_t blocks_per_cell() const {
+    return static_cast<std::uint32_t>(divide_up(cell_points(), kBlockPoints));
+  }
+  std::uint32_t cell_slots() const { return blocks_per_cell() * kBlockPoints; }
+  std::uint64_t slot_count() const { return std::uint64_t{cells().size()} * cell_slots(); }
+};
+
+}  // namespace clearway

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+
+#include "core/pose.hpp"
+#include "core/vec3.hpp"
+
+namespace clearway {
+
+/// What is asked of an environment: which of its points does the model come closer to than `radius`
+/// at any pose. Does not own model and poses.
+struct Question {
+  std::span<const Vec3> model;  ///< in the model's own frame, metres
+  std::span<const Pose> poses;
+  double radius = 0;        ///< metres, > 0
+  bool first_pose = false;  ///< also the smallest pose index that touches each colliding point
+};
+
+}  // namespace clearway

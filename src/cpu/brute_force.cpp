@@ -1,0 +1,29 @@
+#include "cpu/brute_force.hpp"
+
+#include "core/hit_set.hpp"
+#include "core/predicate.hpp"
+
+namespace clearway {
+
+std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
+                                                   const Question& question) {
+  std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
+  for (std::uint32_t i = 0; i < question.poses.size(); ++i) {
+    std::vector<Vec3> moved;
+    moved.reserve(question.model.size());
+    for (const Vec3& m : question.model) moved.push_back(transform(question.poses[i], m));
+#pragma omp parallel for schedule(static)
+    for (std::size_t e = 0; e < environment.size(); ++e) {
+      if (first[e] != HitSet::kNever) continue;
+      for (const Vec3& m : moved) {
+        if (collides(environment[e], m, question.radius)) {
+          first[e] = i;
+          break;
+        }
+      }
+    }
+  }
+  return first;
+}
+
+}  // namespace clearway

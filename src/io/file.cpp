@@ -1,0 +1,184 @@
+#include "io/file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "core/error.hpp"
+
+namespace clearway {
+namespace {
+
+[[noreturn]] void fail(const std::string& name, const char* what) {
+  throw ResourceError(name + ": cannot " + what + ": " + std::strerror(errno));
+}
+
+int checked_open(const std::filesystem::path& path, int flags, const char* what) {
+  int descriptor;
+  do {
+    descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  } while (descriptor < 0 && errno == EINTR);
+  if (descriptor < 0) fail(path.string(), what);
+  return descriptor;
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+}  // namespace
+
+File File::open_for_reading(const std::filesystem::path& path) {
+  File file(checked_open(path, O_RDONLY, "open"), path.string());
+  struct stat status {};
+  if (::fstat(file.descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) {
+    throw ResourceError(path.string() + ": is a directory, expected a file");
+  }
+  return file;
+}
+
+File File::create(const std::filesystem::path& path) {
+  return {checked_open(path, O_RDWR | O_CREAT | O_TRUNC, "create"), path.string()};
+}
+
+File File::create_temporary(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (descriptor >= 0) return {descriptor, folder.string() + " (temporary file)"};
+  std::string pattern = (folder / ".clearway-XXXXXX").string();  // file systems without O_TMPFILE
+  const int named = ::mkostemp(pattern.data(), O_CLOEXEC);
+  if (named < 0) fail(folder.string(), "create a temporary file in it");
+  ::unlink(pattern.c_str());
+  return {named, folder.string() + " (temporary file)"};
+}
+
+File File::adopt(int descriptor, std::string name) { return {descriptor, std::move(name)}; }
+
+File::File(File&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_)) {}
+
+File& File::operator=(File&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(name_, other.name_);
+  return *this;
+}
+
+File::~File() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::uint64_t File::size_bytes() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail(name_, "read the size");
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+bool File::is_regular() const {
+  struct stat status {};
+  return ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+void File::read_at(std::uint64_t offset, std::span<std::byte> out) const {
+  while (!out.empty()) {
+    const ssize_t got =
+        ::pread(descriptor_, out.data(), out.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(name_, "read");
+    if (got == 0) {
+      throw InputError(name_ + ": ends at byte " + std::to_string(offset) + ", expected " +
+                       std::to_string(out.size()) + " more bytes");
+    }
+    offset += static_cast<std::uint64_t>(got);
+    out = out.subspan(static_cast<std::size_t>(got));
+  }
+}
+
+std::size_t File::read_some(std::span<std::byte> out) const {
+  for (;;) {
+    const ssize_t got = ::read(descriptor_, out.data(), out.size());
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR) fail(name_, "read");
+  }
+}
+
+void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t put =
+        ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) fail(name_, "write");
+    offset += static_cast<std::uint64_t>(put);
+    bytes = bytes.subspan(static_cast<std::size_t>(put));
+  }
+}
+
+void File::write(std::span<const std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(descriptor_, bytes.data(), bytes.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) fail(name_, "write");
+    bytes = bytes.subspan(static_cast<std::size_t>(put));
+  }
+}
+
+void File::rewind() const {
+  if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail(name_, "seek");
+}
+
+void File::reserve(std::uint64_t bytes) const {
+  if (bytes == 0) return;
+  const int error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+  if (error != 0) {
+    errno = error;
+    fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());
+  }
+}
+
+void File::sync() const {
+  if (::fsync(descriptor_) != 0) fail(name_, "sync");
+}
+
+PendingFile::PendingFile(std::filesystem::path path, bool overwrite)
+    : final_(std::move(path)), partial_(final_), overwrite_(overwrite) {
+  partial_ += ".partial";
+  if (std::filesystem::is_directory(final_)) {
+    throw UsageError(final_.string() + ": is a directory, expected a file name for the output");
+  }
+  if (!overwrite && std::filesystem::exists(final_)) {
+    throw UsageError(final_.string() + ": exists already; --force overwrites it");
+  }
+  if (!std::filesystem::is_directory(folder_of(final_))) {
+    throw ResourceError(folder_of(final_).string() + ": no such folder for the output");
+  }
+}
+
+PendingFile::~PendingFile() {
+  if (!published_) ::unlink(partial_.c_str());
+}
+
+void PendingFile::publish() {
+  File::open_for_reading(partial_).sync();
+  const unsigned flags = overwrite_ ? 0 : RENAME_NOREPLACE;
+  int failed = ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, final_.c_str(), flags);
+  if (failed != 0 && errno == EINVAL) {  // a file system without RENAME_NOREPLACE
+    failed = ::rename(partial_.c_str(), final_.c_str());
+  }
+  if (failed != 0) fail(final_.string(), "rename the finished file to it");
+  published_ = true;
+  const File folder = File::adopt(
+      checked_open(folder_of(final_), O_RDONLY | O_DIRECTORY, "open"), folder_of(final_).string());
+  folder.sync();
+}
+
+std::uint64_t free_disk_bytes(const std::filesystem::path& folder) {
+  struct statvfs status {};
+  if (::statvfs(folder.c_str(), &status) != 0) fail(folder.string(), "ask for free space");
+  return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
+}
+
+}  // namespace clearway

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace clearway {
+
+/// Owner of an open file descriptor. Every failure throws ResourceError with the file's name and the
+/// system's reason; interrupted and short calls are continued.
+class File {
+ public:
+  static File open_for_reading(const std::filesystem::path& path);
+  /// Creates the file or empties an existing one.
+  static File create(const std::filesystem::path& path);
+  /// A file without a name in `folder`, gone when closed or when the process dies.
+  static File create_temporary(const std::filesystem::path& folder);
+  /// Takes over an open descriptor, for example standard input; `name` is for messages.
+  static File adopt(int descriptor, std::string name);
+
+  File(File&& other) noexcept;
+  File& operator=(File&& other) noexcept;
+  ~File();
+
+  int descriptor() const { return descriptor_; }
+  const std::string& name() const { return name_; }
+  std::uint64_t size_bytes() const;
+  bool is_regular() const;
+
+  /// Reads exactly out.size() bytes at `offset`; the file ending early throws InputError.
+  void read_at(std::uint64_t offset, std::span<std::byte> out) const;
+  /// Reads up to out.size() bytes at the current position; 0 at the end.
+  std::size_t read_some(std::span<std::byte> out) const;
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) const;
+  /// Writes at the current position.
+  void write(std::span<const std::byte> bytes) const;
+  void rewind() const;
+  /// Reserves disk space; throws when there is not enough.
+  void reserve(std::uint64_t bytes) const;
+  void sync() const;
+
+ private:
+  File(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+
+  int descriptor_ = -1;
+  std::string name_;
+};
+
+/// The name a file has until it is complete, and its publication under the final one. The
+/// destructor removes an unpublished file.
+class PendingFile {
+ public:
+  /// Throws UsageError when `path` exists and not `overwrite`, ResourceError when its folder does
+  /// not exist.
+  PendingFile(std::filesystem::path path, bool overwrite);
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+  ~PendingFile();
+
+  /// Where to write: the final name with ".partial" appended.
+  const std::filesystem::path& partial() const { return partial_; }
+
+  /// fsync, rename to the final name, fsync of the folder. The file must be closed.
+  void publish();
+
+ private:
+  std::filesystem::path final_;
+  std::filesystem::path partial_;
+  bool overwrite_;
+  bool published_ = false;
+};
+
+/// Bytes free for this user in the file system of `folder`.
+std::uint64_t free_disk_bytes(const std::filesystem::path& folder);
+
+}  // namespace clearway

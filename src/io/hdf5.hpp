@@ -1,0 +1,101 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Owners and the few calls of HDF5 that Clearway makes. All HDF5 calls of a file are made by one
+/// thread. Files are written with H5F_LIBVER_V110 on both bounds, no object times, fletcher32 on
+/// every unpacked dataset and fixed-length strings, so that equal contents give equal bytes and
+/// damaged metadata is noticed (design section 3).
+namespace clearway::hdf5 {
+
+/// Move-only owner of an HDF5 identifier; closes it with the function for its kind.
+class Id {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Id() = default;
+  /// Throws ResourceError "`what`" with HDF5's own reason when id < 0.
+  Id(hid_t id, Close close, const std::string& what);
+  Id(Id&& other) noexcept;
+  Id& operator=(Id&& other) noexcept;
+  ~Id();
+
+  hid_t get() const { return id_; }
+  /// Closes now; throws ResourceError on failure (a full disk shows here).
+  void close(const std::string& what);
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// Throws ResourceError "`what`: reason" when status < 0.
+void check(herr_t status, const std::string& what);
+
+Id create_file(const std::filesystem::path& path);
+/// Throws InputError when the file is missing its HDF5 signature or cannot be opened as HDF5.
+Id open_file(const std::filesystem::path& path);
+Id create_group(const Id& parent, const std::string& name);
+
+/// The HDF5 type of a C++ number, little-endian in the file.
+template <typename Number>
+hid_t file_type();
+template <typename Number>
+hid_t memory_type();
+
+/// Writes a one- or two-dimensional dataset, chunked by up to `chunk_rows` rows, with fletcher32.
+/// values: rows x columns, row-major; columns 0 makes it one-dimensional.
+template <typename Number>
+void write_dataset(const Id& parent, const std::string& name, std::span<const Number> values,
+                   std::uint64_t columns = 0);
+
+/// Reads a whole dataset of `rows` x `columns` (columns 0: one-dimensional). Throws InputError when
+/// it is missing, of another type or shape, or fails its checksum; `file` names it in messages.
+template <typename Number>
+std::vector<Number> read_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
+                                 std::uint64_t columns, const std::string& file);
+
+/// Rows of a one- or two-dimensional dataset, from its extent.
+std::uint64_t dataset_rows(const Id& parent, const std::string& name, const std::string& file);
+
+template <typename Number>
+void write_attribute(const Id& object, const std::string& name, std::span<const Number> values);
+void write_attribute(const Id& object, const std::string& name, const std::string& text);
+
+template <typename Number>
+std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
+                                   const std::string& file);
+std::string read_text_attribute(const Id& object, const std::string& name,
+                                const std::string& file);
+
+/// A one-dimensional dataset written or read by ranges of rows.
+template <typename Number>
+class Rows {
+ public:
+  /// Creates rows x columns (columns 0: one-dimensional), as write_dataset.
+  Rows(const Id& parent, const std::string& name, std::uint64_t rows, std::uint64_t columns);
+  /// Opens an existing one; throws InputError unless type and columns are these.
+  static Rows open(const Id& parent, const std::string& name, std::uint64_t columns,
+                   const std::string& file);
+
+  std::uint64_t rows() const { return rows_; }
+  void write(std::uint64_t first_row, std::span<const Number> values);
+  void read(std::uint64_t first_row, std::span<Number> values) const;
+
+ private:
+  Rows() = default;
+  Id select(std::uint64_t first_row, std::uint64_t row_count, Id& memory_space) const;
+
+  Id dataset_;
+  std::uint64_t rows_ = 0;
+  std::uint64_t columns_ = 0;
+  std::string name_;
+};
+
+}  // namespace clearway::hdf5

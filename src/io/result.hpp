@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/quantisation.hpp"
+#include "core/vec3.hpp"
+
+namespace clearway {
+
+/// What a result says of its question: a function of the source points, the model, the trajectory
+/// and the parameters, and of nothing else (design section 4), so that `cmp` compares runs.
+struct ResultHeader {
+  std::uint64_t environment_points = 0;
+  std::uint64_t environment_hash = 0;  ///< of the source points, whatever file format or layout
+  std::uint64_t model_points = 0;
+  std::uint64_t model_hash = 0;
+  std::uint64_t poses = 0;
+  std::uint64_t trajectory_hash = 0;
+  double radius = 0;
+  bool first_pose = false;
+  Quantisation quantisation{};
+  std::string crs_wkt;
+  friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
+};
+
+/// Writes `/collisions/source` (uint64, ascending), `/collisions/xyz` (float64, n x 3) and, where the
+/// header asks, `/collisions/first_pose` (uint32) to a file of its own; the caller publishes it.
+class ResultWriter {
+ public:
+  ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
+               std::uint64_t collisions);
+  ~ResultWriter();
+
+  /// The next rows, ascending by source. first_pose: empty unless the header has it.
+  void append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
+              std::span<const std::uint32_t> first_pose);
+  /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Reads a result by ranges of rows. Throws InputError when the file is not a complete result.
+class ResultReader {
+ public:
+  explicit ResultReader(const std::filesystem::path& path);
+  ~ResultReader();
+  ResultReader(ResultReader&&) noexcept;
+
+  const ResultHeader& header() const;
+  std::uint64_t collisions() const;
+  void read_source(std::uint64_t first, std::span<std::uint64_t> out) const;
+  void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
+  void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace clearway

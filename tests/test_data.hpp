@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace clearway::test {
+
+/// The folder of real scans. Only for programs made with clearway_add_data_tests.
+inline std::filesystem::path data_folder() { return std::getenv("CLEARWAY_TEST_DATA"); }
+
+}  // namespace clearway::test

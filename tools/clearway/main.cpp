@@ -1,0 +1,48 @@
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <new>
+
+#include "clearway/commands.hpp"
+#include "clearway/console.hpp"
+#include "core/error.hpp"
+
+namespace {
+
+enum ExitCode { kDone = 0, kWrongUsage = 2, kBadInput = 3, kResource = 4 };
+
+int run(int argc, char** argv) {
+  CLI::App program{
+      "Clearway: does this vehicle, machine or car body pass through this scanned environment "
+      "without touching it?"};
+  program.set_version_flag("--version", CLEARWAY_VERSION);
+  program.require_subcommand(1);
+  int exit_code = kDone;
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kDone : kWrongUsage;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  clearway::tool::start_log();
+  try {
+    return run(argc, argv);
+  } catch (const clearway::UsageError& error) {
+    spdlog::error("{}", error.what());
+    return kWrongUsage;
+  } catch (const clearway::InputError& error) {
+    spdlog::error("{}", error.what());
+    return kBadInput;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("out of memory; a smaller --memory or fewer --threads may help");
+    return kResource;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kResource;
+  }
+}
