@@ -32,8 +32,8 @@ struct TreeNode {
   QuantumBox box;  ///< of the node's points
 };
 
-/// Expands the top tree down to single cells and gives every node the box of its cells. Empty for no
-/// cells. Throws InputError when `top` is not a tree over exactly these cells.
+/// Expands the top tree down to single cells and gives every node the box of its cells. Empty for
+/// no cells. Throws InputError when `top` is not a tree over exactly these cells.
 std::vector<TreeNode> build_cell_tree(std::span<const TopNode> top, std::span<const Cell> cells);
 
 }  // namespace clearway

@@ -14,7 +14,8 @@ class HitSet {
   static constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
   HitSet(std::uint64_t slots, bool first_pose)
-      : words_((slots + 63) / 64), first_pose_(first_pose ? slots : 0, kNever),
+      : words_((slots + 63) / 64),
+        first_pose_(first_pose ? slots : 0, kNever),
         has_first_pose_(first_pose) {}
 
   void mark(std::uint64_t slot) { mark_word(slot / 64, std::uint64_t{1} << (slot % 64)); }
@@ -36,9 +37,7 @@ class HitSet {
     }
   }
 
-  bool contains(std::uint64_t slot) const {
-    return (words_[slot / 64] >> (slot % 64) & 1) != 0;
-  }
+  bool contains(std::uint64_t slot) const { return (words_[slot / 64] >> (slot % 64) & 1) != 0; }
   std::uint64_t word(std::uint64_t index) const { return words_[index]; }
   std::uint64_t word_now(std::uint64_t index) {
     return std::atomic_ref(words_[index]).load(std::memory_order_relaxed);
@@ -52,7 +51,8 @@ class HitSet {
 
   std::uint64_t count() const {
     std::uint64_t total = 0;
-    for (const std::uint64_t word : words_) total += static_cast<std::uint64_t>(__builtin_popcountll(word));
+    for (const std::uint64_t word : words_)
+      total += static_cast<std::uint64_t>(__builtin_popcountll(word));
     return total;
   }
 

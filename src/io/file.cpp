@@ -85,8 +85,7 @@ bool File::is_regular() const {
 
 void File::read_at(std::uint64_t offset, std::span<std::byte> out) const {
   while (!out.empty()) {
-    const ssize_t got =
-        ::pread(descriptor_, out.data(), out.size(), static_cast<off_t>(offset));
+    const ssize_t got = ::pread(descriptor_, out.data(), out.size(), static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(name_, "read");
     if (got == 0) {
@@ -170,8 +169,8 @@ void PendingFile::publish() {
   }
   if (failed != 0) fail(final_.string(), "rename the finished file to it");
   published_ = true;
-  const File folder = File::adopt(
-      checked_open(folder_of(final_), O_RDONLY | O_DIRECTORY, "open"), folder_of(final_).string());
+  const File folder = File::adopt(checked_open(folder_of(final_), O_RDONLY | O_DIRECTORY, "open"),
+                                  folder_of(final_).string());
   folder.sync();
 }
 

@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// Owner of an open file descriptor. Every failure throws ResourceError with the file's name and the
-/// system's reason; interrupted and short calls are continued.
+/// Owner of an open file descriptor. Every failure throws ResourceError with the file's name and
+/// the system's reason; interrupted and short calls are continued.
 class File {
  public:
   static File open_for_reading(const std::filesystem::path& path);

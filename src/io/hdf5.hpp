@@ -49,7 +49,7 @@ hid_t file_type();
 template <typename Number>
 hid_t memory_type();
 
-/// Writes a one- or two-dimensional dataset, chunked by up to `chunk_rows` rows, with fletcher32.
+/// Writes a one- or two-dimensional dataset, chunked by rows, with fletcher32.
 /// values: rows x columns, row-major; columns 0 makes it one-dimensional.
 template <typename Number>
 void write_dataset(const Id& parent, const std::string& name, std::span<const Number> values,
@@ -71,8 +71,7 @@ void write_attribute(const Id& object, const std::string& name, const std::strin
 template <typename Number>
 std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
                                    const std::string& file);
-std::string read_text_attribute(const Id& object, const std::string& name,
-                                const std::string& file);
+std::string read_text_attribute(const Id& object, const std::string& name, const std::string& file);
 
 /// A one-dimensional dataset written or read by ranges of rows.
 template <typename Number>

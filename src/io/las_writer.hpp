@@ -17,9 +17,9 @@ namespace clearway {
 struct LasHeader {
   Quantisation quantisation;
   std::uint64_t points = 0;
-  QuantumBox bounds{};       ///< of the points; ignored for 0 points
-  std::string crs_wkt;       ///< empty: none
-  bool first_pose = false;   ///< adds the extra-bytes field "first_pose", uint32
+  QuantumBox bounds{};      ///< of the points; ignored for 0 points
+  std::string crs_wkt;      ///< empty: none
+  bool first_pose = false;  ///< adds the extra-bytes field "first_pose", uint32
 };
 
 /// Writes LAS front to back, so that the output may be a pipe: version 1.2 with point format 0, or

@@ -57,9 +57,9 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path);
 std::unique_ptr<PointReader> open_las_stream(File stream);
 
 /// The point files of a list of inputs in the order that counts: the inputs as given, a folder's
-/// files in byte order of their names (not recursive; hidden files, and files whose ending is that of
-/// no point format, such as a readme, are left out). Throws InputError for a missing input and for
-/// a folder without any point file.
+/// files in byte order of their names (not recursive; hidden files, and files whose ending is that
+/// of no point format, such as a readme, are left out). Throws InputError for a missing input and
+/// for a folder without any point file.
 std::vector<std::filesystem::path> list_point_files(
     const std::vector<std::filesystem::path>& inputs);
 

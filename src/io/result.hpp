@@ -27,8 +27,9 @@ struct ResultHeader {
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
 };
 
-/// Writes `/collisions/source` (uint64, ascending), `/collisions/xyz` (float64, n x 3) and, where the
-/// header asks, `/collisions/first_pose` (uint32) to a file of its own; the caller publishes it.
+/// Writes `/collisions/source` (uint64, ascending), `/collisions/xyz` (float64, n x 3) and, where
+/// the header asks, `/collisions/first_pose` (uint32) to a file of its own; the caller publishes
+/// it.
 class ResultWriter {
  public:
   ResultWriter(const std::filesystem::path& path, const ResultHeader& header,

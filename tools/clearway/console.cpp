@@ -66,7 +66,8 @@ void ConsoleProgress::draw(Clock::time_point now) {
   std::string line = stage_ + ": " + short_number(static_cast<double>(done_));
   if (total_ > 0) {
     const double share = static_cast<double>(done_) / static_cast<double>(total_);
-    const double left = static_cast<double>(total_ - std::min(done_, total_)) / std::max(rate, 1e-9);
+    const double left =
+        static_cast<double>(total_ - std::min(done_, total_)) / std::max(rate, 1e-9);
     line += " of " + short_number(static_cast<double>(total_)) + " " + unit_ + ", " +
             std::to_string(static_cast<int>(100 * share)) + " %, " + short_number(rate) + " " +
             unit_ + "/s, " + short_time(left) + " left";
