@@ -28,10 +28,6 @@ int checked_open(const std::filesystem::path& path, int flags, const char* what)
   return descriptor;
 }
 
-std::filesystem::path folder_of(const std::filesystem::path& path) {
-  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-}
-
 }  // namespace
 
 File File::open_for_reading(const std::filesystem::path& path) {
@@ -172,6 +168,10 @@ void PendingFile::publish() {
   const File folder = File::adopt(checked_open(folder_of(final_), O_RDONLY | O_DIRECTORY, "open"),
                                   folder_of(final_).string());
   folder.sync();
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
 }
 
 std::uint64_t free_disk_bytes(const std::filesystem::path& folder) {

@@ -72,6 +72,9 @@ class PendingFile {
   bool published_ = false;
 };
 
+/// The folder a path lies in; "." for a bare name.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
 /// Bytes free for this user in the file system of `folder`.
 std::uint64_t free_disk_bytes(const std::filesystem::path& folder);
 

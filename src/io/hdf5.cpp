@@ -105,7 +105,7 @@ std::pair<Id, std::uint64_t> open_dataset(const Id& parent, const std::string& n
 
 }  // namespace
 
-Id::Id(hid_t id, Close close, const std::string& what) : id_(id), close_(close) {
+Id::Id(hid_t id, Close close_with, const std::string& what) : id_(id), close_(close_with) {
   silence();
   if (id < 0) throw ResourceError(what + ": " + reason());
 }

@@ -21,7 +21,7 @@ class Id {
 
   Id() = default;
   /// Throws ResourceError "`what`" with HDF5's own reason when id < 0.
-  Id(hid_t id, Close close, const std::string& what);
+  Id(hid_t id, Close close_with, const std::string& what);
   Id(Id&& other) noexcept;
   Id& operator=(Id&& other) noexcept;
   ~Id();

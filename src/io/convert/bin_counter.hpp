@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "io/convert/lattice.hpp"
+
+namespace clearway {
+
+/// Points of a half-open box of lattice coordinates: x, y, z, source.
+struct Bin {
+  std::array<std::uint64_t, 4> lo;
+  std::array<std::uint64_t, 4> hi;
+  std::uint64_t count;
+};
+
+inline constexpr std::uint64_t kAllSources = ~std::uint64_t{0};
+
+/// Counts points in cubic power-of-two bins, no finer than needed: where more than `most_bins` are
+/// occupied, every 2 x 2 x 2 bins become one. The outcome is a function of the points alone.
+class BinCounter {
+ public:
+  /// least_shift >= 2: log2 of the finest bin's side.
+  BinCounter(unsigned least_shift, std::size_t most_bins);
+
+  void add(const LatticePoint& point, std::uint64_t count = 1);
+  void merge(const BinCounter& other);
+
+  unsigned shift() const { return shift_; }
+  /// In an order that depends on the points alone.
+  std::vector<Bin> bins() const;
+
+ private:
+  struct Slot {
+    std::array<std::uint32_t, 3> key;
+    std::uint64_t count;  // 0: free
+  };
+
+  Slot& find(const std::array<std::uint32_t, 3>& key);
+  void add_key(const std::array<std::uint32_t, 3>& key, std::uint64_t count);
+  void coarsen();
+
+  unsigned shift_;
+  std::size_t most_bins_;
+  std::size_t occupied_ = 0;
+  std::vector<Slot> slots_;  // open addressing, at most half full
+};
+
+}  // namespace clearway

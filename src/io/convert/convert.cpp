@@ -1,0 +1,231 @@
+#include "io/convert/convert.hpp"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <memory>
+
+#include "core/error.hpp"
+#include "io/convert/count.hpp"
+#include "io/convert/distribute.hpp"
+#include "io/convert/environment_source.hpp"
+#include "io/convert/pack_unit.hpp"
+#include "io/file.hpp"
+#include "io/store_writer.hpp"
+#include "io/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kBaseBytes = 64 * kMiB;     // batches, index, libraries
+constexpr std::uint64_t kThreadBytes = 32 * kMiB;   // a counting grid and its refinement
+constexpr std::uint64_t kBufferBytes = 16 * kMiB;   // units' write buffers
+constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
+constexpr std::uint32_t kLeastCellPoints = 64;
+constexpr std::uint32_t kMostCellPoints = 1 << 20;
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check_options(const ConversionOptions& options) {
+  if (options.memory_bytes < kLeastConversionMemory) {
+    throw UsageError("--memory: a conversion needs at least " +
+                     std::to_string(kLeastConversionMemory / kMiB) + "M");
+  }
+  if (options.cell_points < kLeastCellPoints || options.cell_points > kMostCellPoints) {
+    throw UsageError("--cell-points " + std::to_string(options.cell_points) + ": expected " +
+                     std::to_string(kLeastCellPoints) + " to " + std::to_string(kMostCellPoints));
+  }
+  if (options.regular_size && !(*options.regular_size > 0)) {
+    throw UsageError("--layout regular:SIZE: expected a positive length");
+  }
+}
+
+/// Threads that --memory allows, as each has a counting grid of its own.
+int affordable_threads(const ConversionOptions& options) {
+  const int wanted =
+      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  const std::uint64_t affordable = (options.memory_bytes - kBaseBytes) / kThreadBytes;
+  return static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(wanted), affordable));
+}
+
+Lattice lattice_for(const ConversionOptions& options, const Quantisation& quantisation) {
+  if (!options.regular_size) return {};
+  std::array<std::uint64_t, 3> cube{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double quanta = std::nearbyint(*options.regular_size / quantisation.scale[k]);
+    if (!(quanta >= Lattice::kLeastCubeQuanta && quanta <= 0x1p32)) {
+      throw UsageError("--layout regular:SIZE: expected SIZE from " +
+                       std::to_string(Lattice::kLeastCubeQuanta) + " to 2^32 times the scale");
+    }
+    cube[k] = static_cast<std::uint64_t>(quanta);
+  }
+  return Lattice(cube);
+}
+
+SourceFile describe(const std::filesystem::path& path) {
+  if (path == "-") return {"-", 0, 0};
+  const File file = File::open_for_reading(path);
+  std::vector<std::byte> buffer(kMiB);
+  Xxh64Stream hash;
+  std::uint64_t bytes = 0;
+  while (const std::size_t got = file.read_some(buffer)) {
+    hash.update(std::span(buffer).first(got));
+    bytes += got;
+  }
+  return {path.filename().string(), bytes, hash.digest()};
+}
+
+std::vector<SourceFile> describe_all(const std::vector<std::filesystem::path>& files) {
+  std::vector<SourceFile> sources;
+  for (const auto& file : files) sources.push_back(describe(file));
+  return sources;
+}
+
+void check_disk(const std::filesystem::path& folder, std::uint64_t points) {
+  const std::uint64_t needed = points * (sizeof(DistributedPoint) + kOutputBytesPerPoint);
+  const std::uint64_t free = free_disk_bytes(folder);
+  if (needed > free) {
+    throw ResourceError(folder.string() + ": " + std::to_string(free / kMiB) +
+                        " MiB free, expected about " + std::to_string(needed / kMiB) +
+                        " MiB for the temporary file and the store of " + std::to_string(points) +
+                        " points");
+  }
+}
+
+std::string layout_name(const std::optional<double>& regular_size) {
+  if (!regular_size) return "adaptive";
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, *regular_size).ptr;
+  return "regular:" + std::string(text, end);
+}
+
+/// Partitions and packs the units, several at a time as memory allows, and writes them in order.
+void write_cells(const Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
+                 const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
+                 Progress& progress) {
+  using Cells = std::shared_ptr<std::vector<PackedCell>>;
+  std::size_t next = 0;
+  progress.begin("partition", metadata.point_count, "points");
+  tbb::parallel_pipeline(
+      units_in_flight,
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
+                                          [&](tbb::flow_control& flow) {
+                                            if (next == tree.units().size()) flow.stop();
+                                            return next++;
+                                          }) &
+          tbb::make_filter<std::size_t, Cells>(tbb::filter_mode::parallel,
+                                               [&](std::size_t unit) {
+                                                 return std::make_shared<std::vector<PackedCell>>(
+                                                     pack_unit(distribution, unit, tree, lattice,
+                                                               metadata.quantisation,
+                                                               metadata.cell_points));
+                                               }) &
+          tbb::make_filter<Cells, void>(tbb::filter_mode::serial_in_order, [&](const Cells& cells) {
+            for (const PackedCell& cell : *cells) {
+              writer.append(cell);
+              progress.advance(cell.cell.count);
+            }
+          }));
+  progress.end();
+}
+
+class Conversion {
+ public:
+  Conversion(const ConversionOptions& options, int threads, Progress& progress)
+      : options_(options),
+        threads_(threads),
+        progress_(progress),
+        folder_(folder_of(options.output)),
+        output_(options.output, options.overwrite) {}
+
+  ConversionReport run() {
+    EnvironmentSource environment(options_.inputs,
+                                  {options_.scale, options_.ignore_crs, options_.strict, folder_});
+    if (environment.declared_points()) check_disk(folder_, *environment.declared_points());
+    auto sources = std::async(std::launch::async, describe_all, environment.files());
+    const Lattice lattice = lattice_for(options_, environment.quantisation());
+    CountedEnvironment counted = count_environment(environment, lattice, threads_, progress_);
+    report_.non_finite_points = environment.non_finite_points();
+    fill_metadata(environment, counted, sources.get());
+    check_disk(folder_, counted.points);
+    const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
+    report_.count_seconds = watch_.lap();
+
+    const Distribution distribution =
+        distribute(environment, lattice, tree, folder_, kBufferBytes, threads_, progress_);
+    report_.largest_change = environment.largest_change();
+    report_.temporary_bytes = counted.points * sizeof(DistributedPoint);
+    report_.distribute_seconds = watch_.lap();
+    write_store(distribution, tree, lattice);
+    return std::move(report_);
+  }
+
+ private:
+  void fill_metadata(const EnvironmentSource& environment, const CountedEnvironment& counted,
+                     std::vector<SourceFile> sources) {
+    report_.metadata = {.point_count = counted.points,
+                        .input_points = counted.input_points,
+                        .cell_points = options_.cell_points,
+                        .quantisation = environment.quantisation(),
+                        .layout = layout_name(options_.regular_size),
+                        .unit = environment.unit(),
+                        .crs_wkt = environment.crs_wkt(),
+                        .points_hash = counted.points_hash,
+                        .sources = std::move(sources)};
+    report_.remarks = environment.remarks();
+  }
+
+  void write_store(const Distribution& distribution, const SplitTree& tree,
+                   const Lattice& lattice) {
+    const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
+    report_.cells = top.empty() ? 0 : top[0].cell_count;
+    StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
+    const std::uint64_t for_units = options_.memory_bytes - kBaseBytes;
+    const std::size_t units_in_flight =
+        std::clamp<std::size_t>(for_units / kUnitBytes, 1, static_cast<std::size_t>(threads_) + 1);
+    write_cells(distribution, tree, lattice, report_.metadata, units_in_flight, writer, progress_);
+    report_.partition_seconds = watch_.lap();
+    writer.finish(top);
+    output_.publish();
+    report_.output_bytes = std::filesystem::file_size(options_.output);
+    report_.confirm_seconds = watch_.lap();
+  }
+
+  const ConversionOptions& options_;
+  int threads_;
+  Progress& progress_;
+  std::filesystem::path folder_;
+  PendingFile output_;
+  ConversionReport report_;
+  Stopwatch watch_;
+};
+
+}  // namespace
+
+ConversionReport convert(const ConversionOptions& options, Progress& progress) {
+  check_options(options);
+  const int threads = affordable_threads(options);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  return Conversion(options, threads, progress).run();
+}
+
+}  // namespace clearway

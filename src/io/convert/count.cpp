@@ -1,0 +1,162 @@
+#include "io/convert/count.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_pipeline.h>
+
+#include <map>
+#include <memory>
+
+#include "core/error.hpp"
+#include "io/convert/points_hash.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr unsigned kFinestShift = 4;  // 16 quanta
+constexpr unsigned kSubShift = 2;     // the finest a bin can be before source indices
+constexpr std::size_t kMostBins = 1 << 17;
+constexpr std::size_t kMostSubBins = 1 << 10;  // of one overfull bin
+constexpr unsigned kSourceShift = 20;          // coinciding points: ranges of 2^20 source indices
+
+std::vector<Bin> count_bins(EnvironmentSource& environment, const Lattice& lattice, int threads,
+                            PointsHash& hash, std::uint64_t& points, Progress& progress) {
+  tbb::enumerable_thread_specific<BinCounter> counters(
+      [] { return BinCounter(kFinestShift, kMostBins); });
+  for_each_batch(
+      environment, threads,
+      [&](const QuantaBatch& batch) {
+        hash.add(batch);
+        points += batch.quanta.size();
+      },
+      [&](const QuantaBatch& batch) {
+        BinCounter& counter = counters.local();
+        for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
+        progress.advance(batch.quanta.size());
+      });
+  BinCounter all(kFinestShift, kMostBins);
+  for (const BinCounter& counter : counters) all.merge(counter);
+  if (lattice.regular() && all.shift() > lattice.cube_bits()) {
+    throw UsageError("--layout regular: more than " + std::to_string(kMostBins) +
+                     " cubes hold points; expected a larger SIZE");
+  }
+  return all.bins();
+}
+
+/// Counts the points of each overfull bin on its own: on a finer grid, or by source indices where
+/// the bin cannot be made finer.
+class Refinement {
+ public:
+  explicit Refinement(const std::vector<Bin>& overfull) {
+    for (const Bin& bin : overfull) {
+      const bool finest = bin.hi[0] - bin.lo[0] <= std::uint64_t{1} << kSubShift;
+      parts_.push_back({BinCounter(kSubShift, finest ? 1 : kMostSubBins), finest, {}});
+    }
+  }
+
+  void add(std::size_t bin, const LatticePoint& point) {
+    Part& part = parts_[bin];
+    if (part.by_source) {
+      ++part.ranges[point[3] >> kSourceShift];
+    } else {
+      part.counter.add(point);
+    }
+  }
+
+  void merge(const Refinement& other) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      parts_[i].counter.merge(other.parts_[i].counter);
+      for (const auto& [range, count] : other.parts_[i].ranges) parts_[i].ranges[range] += count;
+    }
+  }
+
+  void append_to(std::vector<Bin>& bins, std::size_t i, const Bin& parent) const {
+    if (!parts_[i].by_source) {
+      const std::vector<Bin> sub = parts_[i].counter.bins();
+      bins.insert(bins.end(), sub.begin(), sub.end());
+      return;
+    }
+    for (const auto& [range, count] : parts_[i].ranges) {
+      Bin bin = parent;
+      bin.lo[3] = range << kSourceShift;
+      bin.hi[3] = (range + 1) << kSourceShift;
+      bin.count = count;
+      bins.push_back(bin);
+    }
+  }
+
+ private:
+  struct Part {
+    BinCounter counter;
+    bool by_source;
+    std::map<std::uint64_t, std::uint64_t> ranges;
+  };
+  std::vector<Part> parts_;
+};
+
+/// Replaces the overfull bins of `bins` by finer ones; one more pass over the input.
+void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
+            const SplitTree& tree, std::vector<Bin>& bins, Progress& progress) {
+  tbb::enumerable_thread_specific<Refinement> counters(
+      [&tree] { return Refinement(tree.overfull()); });
+  environment.rewind();
+  for_each_batch(
+      environment, threads, [](const QuantaBatch&) {},
+      [&](const QuantaBatch& batch) {
+        Refinement& counter = counters.local();
+        for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
+          const LatticePoint point = lattice(batch.quanta[i], batch.source(i));
+          const std::int32_t bin = tree.overfull_at(tree.descend(point));
+          if (bin >= 0) counter.add(static_cast<std::size_t>(bin), point);
+        }
+        progress.advance(batch.quanta.size());
+      });
+  Refinement all(tree.overfull());
+  for (const Refinement& counter : counters) all.merge(counter);
+  std::erase_if(bins, [](const Bin& bin) { return bin.count > kBucketPoints; });
+  for (std::size_t i = 0; i < tree.overfull().size(); ++i) {
+    all.append_to(bins, i, tree.overfull()[i]);
+  }
+}
+
+}  // namespace
+
+void for_each_batch(EnvironmentSource& environment, int threads,
+                    const std::function<void(const QuantaBatch&)>& in_order,
+                    const std::function<void(const QuantaBatch&)>& work) {
+  using Batch = std::shared_ptr<QuantaBatch>;
+  tbb::parallel_pipeline(
+      2 * static_cast<std::size_t>(threads),
+      tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
+                                    [&](tbb::flow_control& flow) {
+                                      auto batch = std::make_shared<QuantaBatch>();
+                                      if (environment.read(*batch)) {
+                                        in_order(*batch);
+                                      } else {
+                                        flow.stop();
+                                      }
+                                      return batch;
+                                    }) &
+          tbb::make_filter<Batch, void>(tbb::filter_mode::parallel,
+                                        [&](const Batch& batch) { work(*batch); }));
+}
+
+CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
+                                     int threads, Progress& progress) {
+  CountedEnvironment counted;
+  PointsHash hash(environment.quantisation());
+  progress.begin("count", environment.declared_points().value_or(0), "points");
+  environment.rewind();
+  counted.bins = count_bins(environment, lattice, threads, hash, counted.points, progress);
+  counted.input_points = environment.input_points();
+  counted.points_hash = hash.digest(counted.input_points);
+  progress.end();
+  for (;;) {
+    const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
+    if (tree.overfull().empty()) return counted;
+    progress.begin("refine", counted.points, "points");
+    refine(environment, lattice, threads, tree, counted.bins, progress);
+    progress.end();
+  }
+}
+
+}  // namespace clearway

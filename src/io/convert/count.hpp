@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "io/convert/environment_source.hpp"
+#include "io/convert/split_tree.hpp"
+
+namespace clearway {
+
+/// Reads the environment once from its start, in order, and hands every batch to `work`, several
+/// threads at a time; `in_order` sees the batches first, one by one.
+void for_each_batch(EnvironmentSource& environment, int threads,
+                    const std::function<void(const QuantaBatch&)>& in_order,
+                    const std::function<void(const QuantaBatch&)>& work);
+
+struct CountedEnvironment {
+  std::uint64_t points = 0;        ///< finite ones
+  std::uint64_t input_points = 0;  ///< all
+  std::uint64_t points_hash = 0;
+  std::vector<Bin> bins;  ///< none with more than kBucketPoints points
+};
+
+/// The counting pass, and further ones while a bin is too full (docs/conversion.md).
+CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
+                                     int threads, Progress& progress);
+
+}  // namespace clearway

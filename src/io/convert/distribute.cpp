@@ -1,0 +1,147 @@
+#include "io/convert/distribute.hpp"
+
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+
+#include "core/error.hpp"
+
+namespace clearway {
+namespace {
+
+/// A batch's points grouped by unit, each group in source order.
+struct GroupedBatch {
+  struct Group {
+    std::uint32_t unit;
+    std::uint32_t begin, end;
+  };
+  std::vector<DistributedPoint> points;
+  std::vector<Group> groups;
+};
+
+class Grouper {
+ public:
+  Grouper(const Lattice& lattice, const SplitTree& tree) : lattice_(lattice), tree_(tree) {}
+
+  GroupedBatch operator()(const QuantaBatch& batch) const {
+    const std::size_t n = batch.quanta.size();
+    std::vector<std::uint32_t> unit(n);
+    std::vector<std::uint32_t> ends(tree_.units().size() + 1, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::uint32_t node = tree_.descend(lattice_(batch.quanta[i], batch.source(i)));
+      unit[i] = static_cast<std::uint32_t>(tree_.nodes()[node].unit);
+      ++ends[unit[i] + 1];
+    }
+    GroupedBatch out;
+    for (std::uint32_t u = 0; u + 1 < ends.size(); ++u) {
+      if (ends[u + 1] > 0) out.groups.push_back({u, ends[u], ends[u] + ends[u + 1]});
+      ends[u + 1] += ends[u];
+    }
+    out.points.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& q = batch.quanta[i];
+      const std::uint64_t source = batch.source(i);
+      out.points[ends[unit[i]]++] = {
+          {q[0], q[1], q[2]},
+          {static_cast<std::uint32_t>(source), static_cast<std::uint32_t>(source >> 32)}};
+    }
+    return out;
+  }
+
+ private:
+  const Lattice& lattice_;
+  const SplitTree& tree_;
+};
+
+/// Appends each unit's points to its region of the file through a buffer a unit.
+class RegionWriter {
+ public:
+  RegionWriter(Distribution& out, std::uint64_t buffer_points)
+      : out_(out),
+        next_(out.first.begin(), out.first.end() - 1),
+        buffers_(next_.size()),
+        buffer_points_(buffer_points) {}
+
+  void append(const GroupedBatch& batch) {
+    for (const GroupedBatch::Group& group : batch.groups) {
+      append(group.unit, std::span(batch.points).subspan(group.begin, group.end - group.begin));
+    }
+  }
+
+  void finish() {
+    for (std::uint32_t unit = 0; unit < next_.size(); ++unit) {
+      flush(unit);
+      if (next_[unit] != out_.first[unit + 1]) changed();
+    }
+  }
+
+ private:
+  void append(std::uint32_t unit, std::span<const DistributedPoint> points) {
+    auto& buffer = buffers_[unit];
+    buffer.insert(buffer.end(), points.begin(), points.end());
+    if (buffer.size() >= buffer_points_) flush(unit);
+  }
+
+  void flush(std::uint32_t unit) {
+    auto& buffer = buffers_[unit];
+    if (buffer.size() > out_.first[unit + 1] - next_[unit]) changed();
+    out_.file.write_at(next_[unit] * sizeof(DistributedPoint), std::as_bytes(std::span(buffer)));
+    next_[unit] += buffer.size();
+    buffer.clear();
+    if (buffer.capacity() > 2 * buffer_points_) buffer.shrink_to_fit();
+  }
+
+  [[noreturn]] static void changed() {
+    throw InputError("the input changed between two passes over it, expected the same points");
+  }
+
+  Distribution& out_;
+  std::vector<std::uint64_t> next_;
+  std::vector<std::vector<DistributedPoint>> buffers_;
+  std::uint64_t buffer_points_;
+};
+
+}  // namespace
+
+Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
+                        const SplitTree& tree, const std::filesystem::path& temporary_folder,
+                        std::uint64_t buffer_bytes, int threads, Progress& progress) {
+  Distribution out{File::create_temporary(temporary_folder), {0}};
+  for (const std::uint32_t node : tree.units()) {
+    out.first.push_back(out.first.back() + tree.nodes()[node].count);
+  }
+  const std::uint64_t points = out.first.back();
+  out.file.reserve(points * sizeof(DistributedPoint));
+  const std::uint64_t units = std::max<std::uint64_t>(1, tree.units().size());
+  RegionWriter writer(out, std::clamp<std::uint64_t>(
+                               buffer_bytes / units / (2 * sizeof(DistributedPoint)), 64, 1 << 15));
+  const Grouper group(lattice, tree);
+
+  progress.begin("distribute", points, "points");
+  environment.rewind();
+  using Batch = std::shared_ptr<QuantaBatch>;
+  using Grouped = std::shared_ptr<GroupedBatch>;
+  tbb::parallel_pipeline(
+      2 * static_cast<std::size_t>(threads),
+      tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
+                                    [&](tbb::flow_control& flow) {
+                                      auto batch = std::make_shared<QuantaBatch>();
+                                      if (!environment.read(*batch)) flow.stop();
+                                      return batch;
+                                    }) &
+          tbb::make_filter<Batch, Grouped>(
+              tbb::filter_mode::parallel,
+              [&](const Batch& batch) { return std::make_shared<GroupedBatch>(group(*batch)); }) &
+          tbb::make_filter<Grouped, void>(tbb::filter_mode::serial_in_order,
+                                          [&](const Grouped& batch) {
+                                            writer.append(*batch);
+                                            progress.advance(batch->points.size());
+                                          }));
+  writer.finish();
+  progress.end();
+  return out;
+}
+
+}  // namespace clearway

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/convert/quanta_batch.hpp"
+#include "io/point_reader.hpp"
+
+namespace clearway {
+
+struct EnvironmentOptions {
+  std::optional<double> scale;  ///< metres; wanted on all axes
+  bool ignore_crs = false;      ///< accept degrees and inputs of different units
+  bool strict = false;          ///< refuse non-finite points
+  std::filesystem::path temporary_folder = ".";
+};
+
+/// All inputs of a conversion as one sequence of points in one quantisation (design section 3):
+/// integers are kept as read where the inputs have them; files of the same scale are rebased by
+/// whole quanta; everything else is rounded to the nearest quantum of a chosen scale.
+class EnvironmentSource {
+ public:
+  /// inputs: files and folders, or "-" alone for LAS on standard input. Reads headers, and all
+  /// points once where a scale has to be chosen. Throws InputError and UsageError.
+  EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
+                    const EnvironmentOptions& options);
+  ~EnvironmentSource();
+
+  const Quantisation& quantisation() const { return quantisation_; }
+  const std::string& crs_wkt() const { return crs_wkt_; }
+  LengthUnit unit() const { return unit_; }
+  const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-": stream
+  /// Points that the inputs declare, where all do.
+  std::optional<std::uint64_t> declared_points() const { return declared_points_; }
+  /// Remarks for the log (different CRS, feet).
+  const std::vector<std::string>& remarks() const { return remarks_; }
+
+  /// The next batch in input order; false at the end.
+  bool read(QuantaBatch& batch);
+  void rewind();
+
+  // Of what has been read since the last rewind:
+  std::uint64_t input_points() const { return input_points_; }
+  std::uint64_t non_finite_points() const { return non_finite_points_; }
+  /// Largest |stored - read| of any coordinate, metres.
+  double largest_change() const { return largest_change_; }
+
+ private:
+  struct Input {
+    CloudInfo info;
+    std::array<std::int64_t, 3> shift{};  ///< whole quanta to add; only where kept
+    bool kept = false;                    ///< integers are kept (rebased), not rounded anew
+  };
+
+  void open_inputs();
+  void check_crs();
+  void choose_quantisation();
+  bool try_keeping_integers();
+  void choose_offset_and_scale();
+  bool next_batch(PointBatch& batch);
+  PointReader& reader(std::size_t file);
+  void append_kept(const PointBatch& batch, const Input& input, QuantaBatch& out);
+  void append_rounded(const PointBatch& batch, const Input& input, QuantaBatch& out);
+  void drop_non_finite(std::uint64_t source);
+
+  EnvironmentOptions options_;
+  std::vector<std::filesystem::path> files_;
+  std::vector<Input> inputs_;
+  Quantisation quantisation_{};
+  std::string crs_wkt_;
+  LengthUnit unit_ = LengthUnit::kUnknown;
+  std::optional<std::uint64_t> declared_points_;
+  std::vector<std::string> remarks_;
+
+  std::unique_ptr<PointReader> stream_;   // standard input, spooled
+  std::unique_ptr<PointReader> current_;  // the open file
+  std::size_t open_file_ = 0;
+  std::size_t file_ = 0;
+  std::uint64_t file_points_ = 0;
+  PointBatch raw_;
+  std::uint64_t input_points_ = 0;
+  std::uint64_t non_finite_points_ = 0;
+  double largest_change_ = 0;
+};
+
+}  // namespace clearway

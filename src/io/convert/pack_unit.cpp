@@ -1,0 +1,132 @@
+#include "io/convert/pack_unit.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "core/kd_order.hpp"
+#include "core/packed_chunk.hpp"
+#include "io/convert/kd_partition.hpp"
+
+namespace clearway {
+namespace {
+
+/// The points of a unit: as loaded (in source order) and as they are put in order.
+class Unit {
+ public:
+  Unit(const Distribution& distribution, std::size_t unit)
+      : loaded_(distribution.first[unit + 1] - distribution.first[unit]),
+        points_(loaded_.size()),
+        scratch_(loaded_.size()) {
+    distribution.file.read_at(distribution.first[unit] * sizeof(DistributedPoint),
+                              std::as_writable_bytes(std::span(loaded_)));
+    for (std::size_t i = 0; i < loaded_.size(); ++i) {
+      const auto& q = loaded_[i].q;
+      points_[i] = {{q[0], q[1], q[2]}, static_cast<std::uint32_t>(i)};
+    }
+  }
+
+  std::size_t size() const { return points_.size(); }
+  std::uint64_t source(const BucketPoint& p) const { return loaded_[p.index].source_index(); }
+  std::span<BucketPoint> points() { return points_; }
+  std::span<BucketPoint> scratch() { return scratch_; }
+
+ private:
+  std::vector<DistributedPoint> loaded_;
+  std::vector<BucketPoint> points_;
+  std::vector<BucketPoint> scratch_;
+};
+
+QuantumBox box_of(std::span<const BucketPoint> points) {
+  QuantumBox box{{points[0].q[0], points[0].q[1], points[0].q[2]},
+                 {points[0].q[0], points[0].q[1], points[0].q[2]}};
+  for (const BucketPoint& p : points) {
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], p.q[k]);
+      box.hi[k] = std::max(box.hi[k], p.q[k]);
+    }
+  }
+  return box;
+}
+
+PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
+                     std::uint32_t cell_points) {
+  PackedCell cell;
+  cell.cell = {static_cast<std::uint32_t>(points.size()), box_of(points)};
+  for (std::size_t first = 0; first < points.size(); first += kBlockPoints) {
+    const auto block =
+        points.subspan(first, std::min<std::size_t>(kBlockPoints, points.size() - first));
+    cell.blocks.push_back(encode_block_box(cell.cell.box, box_of(block)));
+  }
+  std::vector<std::int32_t> values(cell_points);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[axis];
+    std::fill(values.begin() + static_cast<std::ptrdiff_t>(points.size()), values.end(),
+              points.back().q[axis]);
+    append_packed_chunk<std::int32_t>(values, cell.chunks[axis]);
+  }
+  std::vector<std::uint64_t> sources(cell_points, unit.source(points.back()));
+  for (std::size_t i = 0; i < points.size(); ++i) sources[i] = unit.source(points[i]);
+  append_packed_chunk<std::uint64_t>(sources, cell.chunks[3]);
+  return cell;
+}
+
+/// The buckets below a unit's node: their sizes, after the points were parted by the tree's planes.
+class UnitBuckets {
+ public:
+  UnitBuckets(Unit& unit, const SplitTree& tree, const Lattice& lattice)
+      : unit_(unit), tree_(tree), lattice_(lattice) {}
+
+  std::vector<std::span<BucketPoint>> part(std::uint32_t node) {
+    part(node, unit_.points());
+    return std::move(buckets_);
+  }
+
+ private:
+  void part(std::uint32_t node, std::span<BucketPoint> points) {
+    const SplitNode& split = tree_.nodes()[node];
+    if (split.right == 0) {
+      buckets_.push_back(points);
+      return;
+    }
+    const auto middle =
+        std::stable_partition(points.begin(), points.end(), [&](const BucketPoint& p) {
+          const LatticePoint at = lattice_({p.q[0], p.q[1], p.q[2]}, unit_.source(p));
+          return at[static_cast<std::size_t>(split.axis)] < split.plane;
+        });
+    const auto left = static_cast<std::size_t>(middle - points.begin());
+    part(node + 1, points.first(left));
+    part(split.right, points.subspan(left));
+  }
+
+  Unit& unit_;
+  const SplitTree& tree_;
+  const Lattice& lattice_;
+  std::vector<std::span<BucketPoint>> buckets_;
+};
+
+}  // namespace
+
+std::vector<PackedCell> pack_unit(const Distribution& distribution, std::size_t unit,
+                                  const SplitTree& tree, const Lattice& lattice,
+                                  const Quantisation& quantisation, std::uint32_t cell_points) {
+  Unit loaded(distribution, unit);
+  std::vector<std::span<const BucketPoint>> cells;
+  for (const std::span<BucketPoint> bucket :
+       UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
+    const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
+    order_bucket(bucket, loaded.scratch().subspan(first, bucket.size()), cell_points,
+                 quantisation.scale);
+    for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
+      cells.push_back(bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
+    }
+  }
+  std::vector<PackedCell> packed(cells.size());
+  tbb::parallel_for(std::size_t{0}, cells.size(),
+                    [&](std::size_t i) { packed[i] = pack_cell(loaded, cells[i], cell_points); });
+  return packed;
+}
+
+}  // namespace clearway

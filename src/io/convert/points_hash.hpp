@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/quantisation.hpp"
+#include "io/convert/quanta_batch.hpp"
+#include "io/xxh64.hpp"
+
+namespace clearway {
+
+/// What the stored points are, in source order: XXH64 over scale, offset, the integers of all
+/// points, the source indices of those that directly follow a dropped (non-finite) point, and the
+/// number of input points. Independent of file format, batches, layout and cell size.
+class PointsHash {
+ public:
+  explicit PointsHash(const Quantisation& quantisation) {
+    quanta_.update(std::as_bytes(std::span(&quantisation, 1)));
+  }
+
+  void add(const QuantaBatch& batch) {
+    quanta_.update(std::as_bytes(std::span(batch.quanta)));
+    for (std::size_t i = 0; i < batch.offsets.size(); ++i) {
+      const std::uint64_t source = batch.source(i);
+      if (source != expected_) sources_.update(std::as_bytes(std::span(&source, 1)));
+      expected_ = source + 1;
+    }
+    if (batch.offsets.empty()) {
+      if (!batch.quanta.empty() && batch.first_source != expected_) {
+        sources_.update(std::as_bytes(std::span(&batch.first_source, 1)));
+      }
+      expected_ = batch.first_source + batch.quanta.size();
+    }
+  }
+
+  std::uint64_t digest(std::uint64_t input_points) const {
+    const std::uint64_t parts[3] = {quanta_.digest(), sources_.digest(), input_points};
+    return xxh64(std::as_bytes(std::span(parts)));
+  }
+
+ private:
+  Xxh64Stream quanta_;
+  Xxh64Stream sources_;
+  std::uint64_t expected_ = 0;  ///< source index of the next point when none is dropped
+};
+
+}  // namespace clearway

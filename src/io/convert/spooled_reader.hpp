@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "io/point_reader.hpp"
+
+namespace clearway {
+
+/// Makes a stream of integer points (LAS from standard input) readable more than once: the first
+/// reading spools 12 bytes a point into a temporary file in `folder`, later ones read that.
+std::unique_ptr<PointReader> spool(std::unique_ptr<PointReader> stream,
+                                   const std::filesystem::path& folder);
+
+}  // namespace clearway

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/packed_cloud.hpp"
+#include "io/mapped_file.hpp"
+#include "io/store_layout.hpp"
+#include "io/store_metadata.hpp"
+
+namespace clearway {
+
+/// A store opened for reading: its index in memory, its points in a read-only map of the file.
+/// Throws InputError when the file is not an intact, complete store of this version, or when
+/// another tool rewrote it.
+class Store final : public PackedCloud {
+ public:
+  explicit Store(const std::filesystem::path& path);
+
+  const StoreMetadata& metadata() const { return metadata_; }
+  const std::string& name() const { return map_.name(); }
+  const CellIndex& index() const { return index_; }
+  std::span<const TopNode> top_tree() const { return top_; }
+
+  /// Hash of the cells' hashes and of everything else that the store says: tells whether two files
+  /// are the same store without reading their points.
+  std::uint64_t fingerprint() const;
+
+  /// The packed source indices of a cell, checked against their hash.
+  PackedChunk<std::uint64_t> sources(std::uint32_t cell) const;
+
+  // PackedCloud
+  std::uint64_t point_count() const override { return metadata_.point_count; }
+  std::uint32_t cell_points() const override { return metadata_.cell_points; }
+  const Quantisation& quantisation() const override { return metadata_.quantisation; }
+  std::span<const Cell> cells() const override { return cells_; }
+  std::span<const TreeNode> tree() const override { return tree_; }
+  std::span<const BlockBox> blocks() const override { return blocks_; }
+  std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
+
+  /// Bytes of memory that the index takes.
+  std::uint64_t allocated_bytes() const;
+
+ private:
+  std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
+  void check_index() const;
+
+  MappedFile map_;
+  StoreMetadata metadata_;
+  CellIndex index_;
+  std::vector<TopNode> top_;
+  std::vector<Cell> cells_;
+  std::vector<TreeNode> tree_;
+  std::vector<BlockBox> blocks_;
+  /// Per cell: 1 when the hashes of x, y and z were found right.
+  mutable std::vector<std::uint8_t> checked_;
+};
+
+}  // namespace clearway

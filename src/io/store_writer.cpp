@@ -1,0 +1,195 @@
+#include "io/store_writer.hpp"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/error.hpp"
+#include "core/kd_order.hpp"
+#include "io/file.hpp"
+#include "io/hdf5.hpp"
+#include "io/store_layout.hpp"
+#include "io/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+/// A point dataset: [cells, cell_points], chunk [1, cell_points], packed by scale-offset.
+template <typename Number>
+hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t cells,
+                       std::uint32_t cell_points) {
+  const std::array<hsize_t, 2> size{cells, cell_points};
+  const std::array<hsize_t, 2> chunk{1, cell_points};
+  const hdf5::Id space(H5Screate_simple(2, size.data(), nullptr), H5Sclose, "HDF5 dataspace");
+  const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "HDF5 property list");
+  const hid_t type = hdf5::file_type<Number>();
+  hdf5::check(H5Pset_obj_track_times(list.get(), false), "HDF5 object times");
+  if (cells > 0) {
+    hdf5::check(H5Pset_chunk(list.get(), 2, chunk.data()), "HDF5 chunk size");
+    hdf5::check(H5Pset_fill_value(list.get(), type, nullptr), "HDF5 undefined fill value");
+    hdf5::check(H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER), "HDF5 fill time");
+    hdf5::check(H5Pset_scaleoffset(list.get(), H5Z_SO_INT, H5Z_SO_INT_MINBITS_DEFAULT),
+                "HDF5 scale-offset");
+  }
+  return {H5Dcreate2(group.get(), name, type, space.get(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
+          H5Dclose, std::string("create dataset ") + name};
+}
+
+void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata) {
+  const auto number = [&file]<typename Number>(const char* name, Number value) {
+    hdf5::write_attribute<Number>(file, name, std::span(&value, 1));
+  };
+  hdf5::write_attribute(file, "format", kStoreFormat);
+  number("version", kStoreVersion);
+  number("point_count", metadata.point_count);
+  number("input_points", metadata.input_points);
+  number("cell_points", metadata.cell_points);
+  number("points_hash", metadata.points_hash);
+  hdf5::write_attribute<double>(file, "scale", metadata.quantisation.scale);
+  hdf5::write_attribute<double>(file, "offset", metadata.quantisation.offset);
+  hdf5::write_attribute(file, "layout", metadata.layout);
+  hdf5::write_attribute(file, "length_unit", to_string(metadata.unit));
+  hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
+
+  std::vector<std::uint8_t> names;
+  std::vector<std::uint64_t> bytes, hashes;
+  for (const SourceFile& source : metadata.sources) {
+    names.insert(names.end(), source.name.begin(), source.name.end());
+    names.push_back(0);
+    bytes.push_back(source.bytes);
+    hashes.push_back(source.xxh64);
+  }
+  const hdf5::Id group = hdf5::create_group(file, "sources");
+  hdf5::write_dataset<std::uint8_t>(group, "names", names);
+  hdf5::write_dataset<std::uint64_t>(group, "bytes", bytes);
+  hdf5::write_dataset<std::uint64_t>(group, "xxh64", hashes);
+}
+
+}  // namespace
+
+struct StoreWriter::State {
+  std::filesystem::path path;
+  StoreMetadata metadata;
+  std::uint64_t promised_cells;
+  hdf5::Id file;
+  std::array<hdf5::Id, 4> points;
+  CellIndex index;
+  File blocks;  ///< rows of /blocks/box, spooled: too many to keep in memory
+  std::uint64_t block_rows = 0;
+
+  std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
+
+  void spool_blocks(std::span<const BlockBox> boxes) {
+    static_assert(sizeof(BlockBox) == 6 * sizeof(std::uint16_t));
+    std::vector<BlockBox> rows(boxes.begin(), boxes.end());
+    rows.resize(blocks_per_cell());
+    blocks.write(std::as_bytes(std::span(rows)));
+    block_rows += rows.size();
+  }
+
+  void write_blocks() {
+    constexpr std::uint64_t kPieceRows = 1 << 16;
+    const hdf5::Id group = hdf5::create_group(file, "blocks");
+    hdf5::Rows<std::uint16_t> dataset(group, "box", block_rows, 6);
+    std::vector<std::uint16_t> piece;
+    for (std::uint64_t row = 0; row < block_rows; row += kPieceRows) {
+      piece.resize(6 * std::min(kPieceRows, block_rows - row));
+      blocks.read_at(row * sizeof(BlockBox), std::as_writable_bytes(std::span(piece)));
+      dataset.write(row, piece);
+    }
+  }
+
+  /// Writes a packed chunk at the end of the file; gives its address.
+  std::uint64_t write_chunk(int dataset, std::uint64_t cell, std::span<const std::byte> bytes) {
+    haddr_t address = 0;
+    hdf5::check(H5Fget_eoa(file.get(), &address), path.string() + ": HDF5 end of file");
+    const std::array<hsize_t, 2> at{cell, 0};
+    hdf5::check(H5Dwrite_chunk(points[static_cast<std::size_t>(dataset)].get(), H5P_DEFAULT, 0,
+                               at.data(), bytes.size(), bytes.data()),
+                path.string() + ": cannot write");
+    return address;
+  }
+
+  void confirm_addresses() const {
+    const File reread = File::open_for_reading(path);
+    std::vector<std::byte> bytes;
+    for (std::size_t i = 0; i < index.bytes.size(); ++i) {
+      bytes.resize(index.bytes[i]);
+      reread.read_at(index.address[i], bytes);
+      if (xxh64(bytes) != index.xxh64[i]) {
+        throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(i / 4) +
+                            " read back differs from what was written at byte " +
+                            std::to_string(index.address[i]));
+      }
+    }
+  }
+};
+
+StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
+                         std::uint64_t cells)
+    : state_(new State{.path = path,
+                       .metadata = metadata,
+                       .promised_cells = cells,
+                       .file = {},
+                       .points = {},
+                       .index = {},
+                       .blocks = File::create_temporary(folder_of(path))}) {
+  state_->file = hdf5::create_file(path);
+  write_metadata(state_->file, metadata);
+  const hdf5::Id group = hdf5::create_group(state_->file, "points");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    state_->points[axis] =
+        create_packed<std::int32_t>(group, kPointDatasets[axis], cells, metadata.cell_points);
+  }
+  state_->points[3] =
+      create_packed<std::uint64_t>(group, kPointDatasets[3], cells, metadata.cell_points);
+}
+
+StoreWriter::~StoreWriter() = default;
+
+void StoreWriter::append(const PackedCell& packed) {
+  State& state = *state_;
+  CellIndex& index = state.index;
+  const std::uint64_t cell = index.count.size();
+  if (cell >= state.promised_cells) throw std::logic_error("more cells than promised");
+  for (int i = 0; i < 4; ++i) {
+    const std::vector<std::byte>& chunk = packed.chunks[static_cast<std::size_t>(i)];
+    index.address.push_back(state.write_chunk(i, cell, chunk));
+    index.bytes.push_back(static_cast<std::uint32_t>(chunk.size()));
+    index.xxh64.push_back(xxh64(chunk));
+  }
+  index.count.push_back(packed.cell.count);
+  index.box.insert(index.box.end(), packed.cell.box.lo, packed.cell.box.lo + 3);
+  index.box.insert(index.box.end(), packed.cell.box.hi, packed.cell.box.hi + 3);
+  state.spool_blocks(packed.blocks);
+}
+
+void StoreWriter::finish(const std::vector<TopNode>& tree) {
+  State& state = *state_;
+  if (state.index.count.size() != state.promised_cells) {
+    throw std::logic_error("fewer cells than promised");
+  }
+  std::vector<std::uint32_t> nodes;
+  for (const TopNode& node : tree) {
+    nodes.insert(nodes.end(), {node.first_cell, node.cell_count, node.right});
+  }
+  {
+    const hdf5::Id cells = hdf5::create_group(state.file, "cells");
+    hdf5::write_dataset<std::uint32_t>(cells, "count", state.index.count);
+    hdf5::write_dataset<std::int32_t>(cells, "box", state.index.box, 6);
+    hdf5::write_dataset<std::uint64_t>(cells, "address", state.index.address, 4);
+    hdf5::write_dataset<std::uint32_t>(cells, "bytes", state.index.bytes, 4);
+    hdf5::write_dataset<std::uint64_t>(cells, "xxh64", state.index.xxh64, 4);
+    state.write_blocks();
+    const hdf5::Id group = hdf5::create_group(state.file, "tree");
+    hdf5::write_dataset<std::uint32_t>(group, "nodes", nodes, 3);
+  }
+  const std::uint32_t complete = 1;
+  hdf5::write_attribute<std::uint32_t>(state.file, "complete", std::span(&complete, 1));
+  for (hdf5::Id& dataset : state.points) dataset.close(state.path.string() + ": cannot write");
+  state.file.close(state.path.string() + ": cannot write");
+  state.confirm_addresses();
+}
+
+}  // namespace clearway
