@@ -50,16 +50,18 @@ class PointReader {
 };
 
 /// Opens a file by its content, where the content tells, and by the ending of its name otherwise:
-/// LAS 1.0-1.4, PLY, XYZ text. LAZ and unknown formats throw InputError with advice.
+/// LAS 1.0-1.4, PLY, XYZ and PTS text. What is no regular file is read as by open_las_stream. LAZ
+/// and unknown formats throw InputError with advice.
 std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path);
 
-/// Reads LAS from a stream that cannot seek, for example standard input.
+/// Reads LAS from a stream that cannot seek, for example standard input. A CRS that only a record
+/// behind the points holds (LAS 1.4) is in info() once read() has returned false.
 std::unique_ptr<PointReader> open_las_stream(File stream);
 
 /// The point files of a list of inputs in the order that counts: the inputs as given, a folder's
-/// files in byte order of their names (not recursive; hidden files, and files whose ending is that
-/// of no point format, such as a readme, are left out). Throws InputError for a missing input and
-/// for a folder without any point file.
+/// files in byte order of their names (not recursive; hidden files, and files whose ending is not
+/// that of a point format alone, such as .md, .txt and .csv, are left out). Throws InputError for a
+/// missing input and for a folder without any point file.
 std::vector<std::filesystem::path> list_point_files(
     const std::vector<std::filesystem::path>& inputs);
 

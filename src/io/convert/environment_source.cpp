@@ -80,6 +80,7 @@ void EnvironmentSource::open_inputs() {
 }
 
 void EnvironmentSource::check_crs() {
+  remarks_.clear();
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const CloudInfo& info = inputs_[i].info;
     const std::string name = files_[i].string();
@@ -206,6 +207,10 @@ bool EnvironmentSource::next_batch(PointBatch& batch) {
     if (!reader(file_).read(batch)) continue;
     file_points_ += batch.size();
     return true;
+  }
+  if (stream_ && inputs_[0].info.crs_wkt != stream_->info().crs_wkt) {
+    inputs_[0].info = stream_->info();  // a CRS may follow the points
+    check_crs();
   }
   return false;
 }

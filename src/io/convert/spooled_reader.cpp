@@ -27,6 +27,7 @@ class SpooledReader final : public PointReader {
 
   bool read_stream(PointBatch& batch) {
     if (!stream_->read(batch)) {
+      info_ = stream_->info();  // a CRS that follows the points is known now
       stream_.reset();
       next_ = spooled_;
       return false;

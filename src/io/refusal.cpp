@@ -1,0 +1,35 @@
+#include "io/refusal.hpp"
+
+#include <charconv>
+
+#include "core/error.hpp"
+
+namespace clearway {
+
+void refuse(const std::string& name, const std::string& what) {
+  throw InputError(name + ": " + what);
+}
+
+void refuse_byte(const std::string& name, std::uint64_t byte, const std::string& what) {
+  refuse(name, "byte " + std::to_string(byte) + ": " + what);
+}
+
+void refuse_line(const std::string& name, std::uint64_t line, const std::string& what) {
+  refuse(name, "line " + std::to_string(line) + ": " + what);
+}
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string result = "\"";
+  for (const char c : text.substr(0, kLongest)) {
+    result += c == '\t' ? ' ' : c >= ' ' && c <= '~' ? c : '?';
+  }
+  return result + (text.size() > kLongest ? "...\"" : "\"");
+}
+
+std::string shown(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+}  // namespace clearway

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace clearway {
+
+/// Throws InputError "name: what".
+[[noreturn]] void refuse(const std::string& name, const std::string& what);
+
+/// Throws InputError "name: byte N: what". `byte` counts from 0.
+[[noreturn]] void refuse_byte(const std::string& name, std::uint64_t byte, const std::string& what);
+
+/// Throws InputError "name: line N: what". `line` counts from 1.
+[[noreturn]] void refuse_line(const std::string& name, std::uint64_t line, const std::string& what);
+
+/// The start of a text from a file in double quotes, fit for a message: at most 40 characters,
+/// unprintable bytes as '?'.
+std::string excerpt(std::string_view text);
+
+/// A double for a message, with all the digits that tell it from its neighbours.
+std::string shown(double value);
+
+}  // namespace clearway

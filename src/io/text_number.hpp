@@ -1,0 +1,55 @@
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace clearway {
+
+inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+inline const char* skip_blanks(const char* at, const char* end) {
+  while (at != end && is_blank(*at)) ++at;
+  return at;
+}
+
+/// strtod for what std::from_chars finds out of range: too small gives 0 or the nearest number, too
+/// large is refused (false).
+bool parse_extreme_number(const char* begin, const char* end, double& value);
+
+/// Parses the number that starts at `at` (nan, inf and a leading + included) and moves `at` behind
+/// it; false where there is none. What may follow is the caller's business.
+inline bool parse_number(const char*& at, const char* end, double& value) {
+  const char* start = at;
+  if (start != end && *start == '+' && end - start > 1 && start[1] != '-') ++start;
+  const auto [stop, error] = std::from_chars(start, end, value);
+  if (error == std::errc::invalid_argument) return false;
+  if (error != std::errc() && !parse_extreme_number(start, stop, value)) return false;
+  at = stop;
+  return true;
+}
+
+/// Skips the separator of two numbers: blanks, or one comma or semicolon with or without blanks
+/// around it. Returns ',', ';' or ' ' for blanks alone, and 0 where there is none.
+inline char skip_separator(const char*& at, const char* end) {
+  const char* const start = at;
+  at = skip_blanks(at, end);
+  if (at != end && (*at == ',' || *at == ';')) {
+    const char separator = *at;
+    at = skip_blanks(at + 1, end);
+    return separator;
+  }
+  return at != start ? ' ' : '\0';
+}
+
+/// Parses a line that consists of nothing but numbers, up to out.size() of them, in blanks, commas
+/// or semicolons, one kind throughout. Returns how many there are (out.size() + 1 for more); none
+/// for anything else in the line.
+std::optional<std::size_t> parse_number_line(std::string_view line, std::span<double> out);
+
+/// The whole of a field, blanks around it aside, as a number.
+std::optional<double> parse_whole_number(std::string_view field);
+
+}  // namespace clearway
