@@ -25,6 +25,8 @@ inline Outcome run_program(const ScratchFolder& folder, const std::string& argum
   return {WEXITSTATUS(status), bytes_of(out), bytes_of(err)};
 }
 
-inline std::string quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
+inline std::string quoted(const std::filesystem::path& path) {
+  return std::string("'").append(path.string()).append("'");
+}
 
 }  // namespace clearway::test
