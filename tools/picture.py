@@ -325,8 +325,8 @@ def main():
         sys.exit("nothing to show: the model or the trajectory is empty")
     with h5py.File(options.result, "r") as result:
         colliding = result["collisions/xyz"][:]
-        radius = float(result.attrs["radius"])
-        total = int(result.attrs["environment_points"])
+        radius = float(np.ravel(result.attrs["radius"])[0])
+        total = int(np.ravel(result.attrs["environment_points"])[0])
     index = options.pose if options.pose is not None else busiest_pose(poses, model, colliding)
     if not 0 <= index < len(poses):
         sys.exit(f"--pose {index}: expected 0 to {len(poses) - 1}")
