@@ -69,7 +69,8 @@ inline ResultRows sample_rows(const ResultHeader& header, std::size_t count) {
     const auto q = static_cast<std::int32_t>(i * 2654435761u);
     rows.source.push_back(3 * i + i % 3 + (i > count / 2 ? 4'000'000'000 : 0));
     rows.xyz.push_back(position(header.quantisation, q, -(q / 2), q ^ 0x55555555));
-    if (header.first_pose) rows.first_pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
+    if (header.first_pose)
+      rows.first_pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
   }
   return rows;
 }

@@ -26,8 +26,10 @@ std::string reason() {
   return text.empty() ? "HDF5 gives no reason" : text;
 }
 
+/// Before the first other call. Without HDF5's clean-up at exit, which crashes on a file whose
+/// closing failed (a full disk); an Id closes what is open.
 void silence() {
-  static const herr_t once = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  static const herr_t once = (H5dont_atexit(), H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
   (void)once;
 }
 
