@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "leaks_of_hdf5.hpp"
 #include "result_fixture.hpp"
 
 using namespace clearway;
@@ -216,6 +217,7 @@ TEST_CASE("a disk that fills up leaves nothing under the output's name") {
 }
 
 TEST_CASE("a result for which the disk has no room is not finished") {
+  const LeaksOfHdf5 ignored;
   const ScratchFolder folder;
   const bool first_pose = GENERATE(false, true);
   const Sample s = sample(first_pose, GENERATE(1'000u, kMany, 3 * kMany));
