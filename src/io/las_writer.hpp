@@ -17,14 +17,15 @@ namespace clearway {
 struct LasHeader {
   Quantisation quantisation;
   std::uint64_t points = 0;
-  QuantumBox bounds{};      ///< of the points; ignored for 0 points
-  std::string crs_wkt;      ///< empty: none
+  QuantumBox bounds{};      ///< holds every point; ignored for 0 points
+  std::string crs_wkt{};    ///< empty: none
   bool first_pose = false;  ///< adds the extra-bytes field "first_pose", uint32
 };
 
 /// Writes LAS front to back, so that the output may be a pipe: version 1.2 with point format 0, or
-/// 1.4 with point format 6 where the count exceeds 32 bits or there is a CRS. Buffered; the file
-/// stays the caller's.
+/// 1.4 with point format 6 where the count exceeds 32 bits, there is a CRS or there are first poses
+/// (extra bytes are defined since 1.4). Equal contents give equal bytes: no date is written.
+/// Buffered; the file stays the caller's.
 class LasWriter {
  public:
   LasWriter(const File& file, const LasHeader& header);

@@ -29,14 +29,16 @@ struct ResultHeader {
 
 /// Writes `/collisions/source` (uint64, ascending), `/collisions/xyz` (float64, n x 3) and, where
 /// the header asks, `/collisions/first_pose` (uint32) to a file of its own; the caller publishes
-/// it.
+/// it. Its bytes depend on header and rows alone. A failing disk throws ResourceError.
+/// docs/result-format.md has the layout.
 class ResultWriter {
  public:
   ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
                std::uint64_t collisions);
   ~ResultWriter();
 
-  /// The next rows, ascending by source. first_pose: empty unless the header has it.
+  /// The next rows, ascending by source. first_pose: empty unless the header has it. Throws
+  /// std::logic_error for rows out of order, more than promised, or spans of unequal lengths.
   void append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
               std::span<const std::uint32_t> first_pose);
   /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
@@ -47,17 +49,21 @@ class ResultWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Reads a result by ranges of rows. Throws InputError when the file is not a complete result.
+/// Reads a result by ranges of rows, which lie below collisions(). Throws InputError when the file
+/// is not a complete result, is damaged, or holds rows that no run can have found.
 class ResultReader {
  public:
   explicit ResultReader(const std::filesystem::path& path);
   ~ResultReader();
   ResultReader(ResultReader&&) noexcept;
 
+  const std::string& name() const;  ///< the file's, for messages
   const ResultHeader& header() const;
   std::uint64_t collisions() const;
+  /// Strictly ascending and below header().environment_points.
   void read_source(std::uint64_t first, std::span<std::uint64_t> out) const;
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
+  /// Below header().poses. Only where the header has first poses.
   void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
 
  private:

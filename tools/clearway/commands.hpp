@@ -4,4 +4,9 @@
 
 /// One function a subcommand: adds its options to `program` and sets the callback that runs it. A
 /// callback sets `exit_code` where success is not 0 (compare, verify) and throws otherwise.
-namespace clearway::tool {}  // namespace clearway::tool
+namespace clearway::tool {
+
+void add_export(CLI::App& program);
+void add_compare(CLI::App& program, int& exit_code);
+
+}  // namespace clearway::tool

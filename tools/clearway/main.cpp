@@ -18,6 +18,8 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", CLEARWAY_VERSION);
   program.require_subcommand(1);
   int exit_code = kDone;
+  clearway::tool::add_export(program);
+  clearway::tool::add_compare(program, exit_code);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -208,7 +208,8 @@ bool EnvironmentSource::next_batch(PointBatch& batch) {
     file_points_ += batch.size();
     return true;
   }
-  if (stream_ && inputs_[0].info.crs_wkt != stream_->info().crs_wkt) {
+  if (stream_ && (inputs_[0].info.crs_wkt != stream_->info().crs_wkt ||
+                  inputs_[0].info.unit != stream_->info().unit)) {
     inputs_[0].info = stream_->info();  // a CRS may follow the points
     check_crs();
   }

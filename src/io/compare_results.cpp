@@ -1,0 +1,148 @@
+#include "io/compare_results.hpp"
+
+#include <array>
+#include <charconv>
+#include <cinttypes>
+#include <cstdio>
+
+#include "core/error.hpp"
+#include "io/result_rows.hpp"
+
+namespace clearway {
+namespace {
+
+std::string hash_text(std::uint64_t hash) {
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, hash);
+  return digits.data();
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+std::string content_text(std::uint64_t count, const char* unit, std::uint64_t hash) {
+  return std::to_string(count) + " " + unit + ", hash " + hash_text(hash);
+}
+
+std::string environment_text(const ResultHeader& header) {
+  return content_text(header.environment_points, "points", header.environment_hash);
+}
+
+std::string quantisation_text(const Quantisation& quantisation) {
+  std::string text = "scale";
+  for (const double scale : quantisation.scale) text.append(" ").append(number_text(scale));
+  text += ", offset";
+  for (const double offset : quantisation.offset) text.append(" ").append(number_text(offset));
+  return text;
+}
+
+std::vector<QuestionDifference> question_differences(const ResultHeader& a, const ResultHeader& b) {
+  std::vector<QuestionDifference> out;
+  const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
+    if (text_a != text_b) out.push_back({std::move(what), std::move(text_a), std::move(text_b)});
+  };
+  differ("model", content_text(a.model_points, "points", a.model_hash),
+         content_text(b.model_points, "points", b.model_hash));
+  differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
+         content_text(b.poses, "poses", b.trajectory_hash));
+  differ("radius", number_text(a.radius) + " m", number_text(b.radius) + " m");
+  differ("first poses", a.first_pose ? "asked for" : "not asked for",
+         b.first_pose ? "asked for" : "not asked for");
+  differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
+  differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
+  return out;
+}
+
+/// One row after the other.
+class RowCursor {
+ public:
+  explicit RowCursor(const ResultReader& reader) : stream_(reader) { stream_.read(rows_); }
+
+  bool at_end() const { return rows_.size() == 0; }
+  std::uint64_t source() const { return rows_.source[at_]; }
+  Vec3 xyz() const { return rows_.xyz[at_]; }
+  std::optional<std::uint32_t> first_pose() const {
+    return rows_.first_pose.empty() ? std::nullopt : std::optional(rows_.first_pose[at_]);
+  }
+  void advance() {
+    if (++at_ < rows_.size()) return;
+    at_ = 0;
+    stream_.read(rows_);
+  }
+
+ private:
+  ResultRowStream stream_;
+  ResultRows rows_;
+  std::size_t at_ = 0;
+};
+
+class Merge {
+ public:
+  Merge(const ResultReader& a, const ResultReader& b, std::size_t kept)
+      : a_(a), b_(b), kept_(kept) {
+    out_.in_a = a.collisions();
+    out_.in_b = b.collisions();
+    out_.questions = question_differences(a.header(), b.header());
+    if (a.header().first_pose && b.header().first_pose) out_.differing_first_poses = 0;
+  }
+
+  Comparison run() {
+    while (!a_.at_end() || !b_.at_end()) {
+      if (b_.at_end() || (!a_.at_end() && a_.source() < b_.source())) {
+        ++out_.only_in_a;
+        keep({Kind::kOnlyInA, a_.source(), a_.xyz(), a_.first_pose(), std::nullopt});
+        a_.advance();
+      } else if (a_.at_end() || b_.source() < a_.source()) {
+        ++out_.only_in_b;
+        keep({Kind::kOnlyInB, b_.source(), b_.xyz(), std::nullopt, b_.first_pose()});
+        b_.advance();
+      } else {
+        common();
+        a_.advance();
+        b_.advance();
+      }
+    }
+    return std::move(out_);
+  }
+
+ private:
+  using Kind = PointDifference::Kind;
+
+  void common() {
+    ++out_.common;
+    const PointDifference point{Kind::kFirstPose, a_.source(), a_.xyz(), a_.first_pose(),
+                                b_.first_pose()};
+    if (out_.differing_first_poses && point.first_pose_a != point.first_pose_b) {
+      ++*out_.differing_first_poses;
+      keep(point);
+    }
+    if (a_.xyz() != b_.xyz()) {
+      ++out_.differing_coordinates;
+      keep({Kind::kCoordinates, point.source, point.xyz, point.first_pose_a, point.first_pose_b});
+    }
+  }
+
+  void keep(const PointDifference& point) {
+    if (out_.points.size() < kept_) out_.points.push_back(point);
+  }
+
+  RowCursor a_, b_;
+  std::size_t kept_;
+  Comparison out_;
+};
+
+}  // namespace
+
+Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept) {
+  if (a.header().environment_points != b.header().environment_points ||
+      a.header().environment_hash != b.header().environment_hash) {
+    throw InputError(a.name() + " and " + b.name() + ": results about different environments (" +
+                     environment_text(a.header()) + "; " + environment_text(b.header()) +
+                     "), whose point indices cannot be compared");
+  }
+  return Merge(a, b, kept).run();
+}
+
+}  // namespace clearway

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+
+/// What reader and writer of a result agree on (docs/result-format.md).
+namespace clearway::result_names {
+
+inline constexpr const char* kFormat = "clearway result";
+inline constexpr std::uint32_t kVersion = 1;
+
+inline constexpr const char* kGroup = "collisions";
+inline constexpr const char* kSource = "source";
+inline constexpr const char* kXyz = "xyz";
+inline constexpr const char* kFirstPose = "first_pose";
+
+}  // namespace clearway::result_names

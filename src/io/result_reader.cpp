@@ -1,0 +1,172 @@
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "core/error.hpp"
+#include "io/file.hpp"
+#include "io/hdf5.hpp"
+#include "io/result.hpp"
+#include "io/result_names.hpp"
+
+namespace clearway {
+namespace {
+
+namespace names = result_names;
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+
+std::span<double> as_numbers(std::span<Vec3> points) {
+  return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
+}
+
+template <typename Number>
+Number read_number(const hdf5::Id& file, const std::string& attribute, const std::string& name) {
+  return hdf5::read_attribute<Number>(file, attribute, 1, name).front();
+}
+
+void check_readable(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) {
+    throw InputError(path.string() + ": no such file, expected a result of clearway run");
+  }
+  File::open_for_reading(path);
+}
+
+/// HDF5 does not say whether the disk or the content failed: in a file that could be opened, it is
+/// taken for the content.
+template <typename Call>
+auto as_input(const std::string& name, Call call) {
+  try {
+    return call();
+  } catch (const ResourceError& error) {
+    throw InputError(name + ": damaged: " + error.what());
+  }
+}
+
+void check_format(const hdf5::Id& file, const std::string& name) {
+  if (H5Aexists(file.get(), "format") <= 0 ||
+      hdf5::read_text_attribute(file, "format", name) != names::kFormat) {
+    throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
+                     "\"; this HDF5 file is not a result of clearway run");
+  }
+  const auto version = read_number<std::uint32_t>(file, "version", name);
+  if (version != names::kVersion) {
+    throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
+                     std::to_string(names::kVersion) + "; another release of clearway wrote it");
+  }
+  if (H5Aexists(file.get(), "complete") <= 0 ||
+      read_number<std::uint8_t>(file, "complete", name) != 1) {
+    throw InputError(name + ": not complete: the run that wrote it was interrupted");
+  }
+}
+
+void read_axes(const hdf5::Id& file, const std::string& attribute, const std::string& name,
+               double (&out)[3]) {
+  const auto values = hdf5::read_attribute<double>(file, attribute, 3, name);
+  for (int k = 0; k < 3; ++k) out[k] = values[k];
+}
+
+ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
+  check_format(file, name);
+  ResultHeader header;
+  header.environment_points = read_number<std::uint64_t>(file, "environment_points", name);
+  header.environment_hash = read_number<std::uint64_t>(file, "environment_hash", name);
+  header.model_points = read_number<std::uint64_t>(file, "model_points", name);
+  header.model_hash = read_number<std::uint64_t>(file, "model_hash", name);
+  header.poses = read_number<std::uint64_t>(file, "poses", name);
+  header.trajectory_hash = read_number<std::uint64_t>(file, "trajectory_hash", name);
+  header.radius = read_number<double>(file, "radius", name);
+  header.first_pose = read_number<std::uint8_t>(file, "first_pose", name) != 0;
+  read_axes(file, "scale", name, header.quantisation.scale);
+  read_axes(file, "offset", name, header.quantisation.offset);
+  header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
+  return header;
+}
+
+}  // namespace
+
+struct ResultReader::State {
+  explicit State(const std::filesystem::path& path)
+      : name(path.string()),
+        file(hdf5::open_file(path)),
+        header(read_header(file, name)),
+        source(open<std::uint64_t>(names::kSource, 0)),
+        xyz(open<double>(names::kXyz, 3)) {
+    if (header.first_pose) first_pose.emplace(open<std::uint32_t>(names::kFirstPose, 0));
+    if (xyz.rows() != source.rows() || (first_pose && first_pose->rows() != source.rows())) {
+      throw InputError(name + ": the datasets of /" + names::kGroup + " differ in their rows");
+    }
+  }
+
+  template <typename Number>
+  hdf5::Rows<Number> open(const char* dataset, std::uint64_t columns) const {
+    const std::string path = std::string(names::kGroup) + "/" + dataset;
+    return hdf5::Rows<Number>::open(file, path, columns, name);
+  }
+
+  [[noreturn]] void malformed_row(const char* dataset, std::uint64_t row,
+                                  const std::string& expected) const {
+    throw InputError(name + ": /" + names::kGroup + "/" + dataset + ", row " + std::to_string(row) +
+                     ": expected " + expected);
+  }
+
+  void check_range(std::uint64_t first, std::size_t count) const {
+    if (first > source.rows() || count > source.rows() - first) {
+      throw std::logic_error("ResultReader: rows past the end");
+    }
+  }
+
+  std::string name;
+  hdf5::Id file;
+  ResultHeader header;
+  hdf5::Rows<std::uint64_t> source;
+  hdf5::Rows<double> xyz;
+  std::optional<hdf5::Rows<std::uint32_t>> first_pose;
+};
+
+ResultReader::ResultReader(const std::filesystem::path& path) {
+  check_readable(path);
+  state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
+}
+
+ResultReader::~ResultReader() = default;
+ResultReader::ResultReader(ResultReader&&) noexcept = default;
+
+const std::string& ResultReader::name() const { return state_->name; }
+const ResultHeader& ResultReader::header() const { return state_->header; }
+std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
+
+void ResultReader::read_source(std::uint64_t first, std::span<std::uint64_t> out) const {
+  state_->check_range(first, out.size());
+  as_input(state_->name, [&] { state_->source.read(first, out); });
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i] >= state_->header.environment_points || (i > 0 && out[i] <= out[i - 1])) {
+      state_->malformed_row(names::kSource, first + i,
+                            "an index above the row before and below environment_points");
+    }
+  }
+}
+
+void ResultReader::read_xyz(std::uint64_t first, std::span<Vec3> out) const {
+  state_->check_range(first, out.size());
+  as_input(state_->name, [&] { state_->xyz.read(first, as_numbers(out)); });
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!std::isfinite(out[i][k])) {
+        state_->malformed_row(names::kXyz, first + i, "finite coordinates");
+      }
+    }
+  }
+}
+
+void ResultReader::read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const {
+  state_->check_range(first, out.size());
+  if (!state_->first_pose) throw std::logic_error("ResultReader: no first poses");
+  as_input(state_->name, [&] { state_->first_pose->read(first, out); });
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i] >= state_->header.poses) {
+      state_->malformed_row(names::kFirstPose, first + i, "a pose below poses");
+    }
+  }
+}
+
+}  // namespace clearway

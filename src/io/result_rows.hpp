@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/vec3.hpp"
+#include "io/result.hpp"
+
+namespace clearway {
+
+/// Consecutive rows of a result. first_pose is empty where the result has none.
+struct ResultRows {
+  std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;
+  std::vector<std::uint32_t> first_pose;
+
+  std::size_t size() const { return source.size(); }
+};
+
+/// A result's rows front to back in constant memory. The reader outlives the stream.
+class ResultRowStream {
+ public:
+  static constexpr std::size_t kBatchRows = 1 << 16;  ///< whole chunks of every dataset
+
+  explicit ResultRowStream(const ResultReader& reader) : reader_(reader) {}
+
+  /// Fills `rows` with up to kBatchRows rows; false, and no rows, at the end. Throws InputError as
+  /// the reader does, also where sources do not ascend from one batch to the next.
+  bool read(ResultRows& rows);
+
+ private:
+  const ResultReader& reader_;
+  std::uint64_t next_ = 0;
+  std::uint64_t last_source_ = 0;
+};
+
+}  // namespace clearway

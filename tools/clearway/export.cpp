@@ -1,0 +1,54 @@
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "clearway/commands.hpp"
+#include "clearway/console.hpp"
+#include "clearway/options.hpp"
+#include "io/export_result.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct Options {
+  std::filesystem::path result, output;
+  bool force = false;
+};
+
+void run_export(const Options& options) {
+  const ResultReader result(options.result);
+  ConsoleProgress progress;
+  export_result(result, options.output, options.force, progress);
+  spdlog::info("{}: {} colliding points", options.output.string(),
+               format_count(result.collisions()));
+}
+
+}  // namespace
+
+void add_export(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "export", "Write the colliding points of a result as LAS, PLY, XYZ or CSV");
+  command->add_option("RESULT", options->result, "Result of clearway run")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "Output; the ending of its name chooses the format")
+      ->type_name("FILE")
+      ->required();
+  command->add_flag("--force", options->force, "Overwrite an existing output");
+  command->footer(
+      "Formats, coordinates in the environment's unit (metres):\n"
+      "  .las  the source's own integers, scale, offset and CRS; first_pose as extra bytes\n"
+      "  .ply  binary little-endian, double x y z, uint first_pose\n"
+      "  .xyz  text: x y z\n"
+      "  .csv  text with a header: source,x,y,z,first_pose\n"
+      "first_pose (0-based) where the result has it; source is the point's index in the order of\n"
+      "the input scans. Text has as many digits as give back each coordinate exactly.\n"
+      "Example: clearway export out.h5 -o colliding.las");
+  command->callback([options] { run_export(*options); });
+}
+
+}  // namespace clearway::tool
