@@ -6,4 +6,6 @@
 /// callback sets `exit_code` where success is not 0 (compare, verify) and throws otherwise.
 namespace clearway::tool {
 
+void add_scene(CLI::App& program);
+
 }  // namespace clearway::tool

@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", CLEARWAY_VERSION);
   program.require_subcommand(1);
   int exit_code = kDone;
+  clearway::tool::add_scene(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
