@@ -6,7 +6,12 @@
 /// callback sets `exit_code` where success is not 0 (compare, verify) and throws otherwise.
 namespace clearway::tool {
 
+void add_convert(CLI::App& program);
+void add_run(CLI::App& program);
 void add_export(CLI::App& program);
 void add_compare(CLI::App& program, int& exit_code);
+void add_info(CLI::App& program);
+void add_verify(CLI::App& program, int& exit_code);
+void add_scene(CLI::App& program);
 
 }  // namespace clearway::tool

@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <exception>
@@ -6,6 +7,7 @@
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
 #include "core/error.hpp"
+#include "io/mapped_file.hpp"
 
 namespace {
 
@@ -18,8 +20,13 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", CLEARWAY_VERSION);
   program.require_subcommand(1);
   int exit_code = kDone;
+  clearway::tool::add_convert(program);
+  clearway::tool::add_run(program);
   clearway::tool::add_export(program);
   clearway::tool::add_compare(program, exit_code);
+  clearway::tool::add_info(program);
+  clearway::tool::add_verify(program, exit_code);
+  clearway::tool::add_scene(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -32,6 +39,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   clearway::tool::start_log();
+  clearway::install_map_fault_handler(kResource);
+  // Large blocks go back to the system when freed, so that --memory bounds what it sees.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {
     return run(argc, argv);
   } catch (const clearway::UsageError& error) {

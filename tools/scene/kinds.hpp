@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+
+#include "scene/scene.hpp"
+
+/// One function for each kind of scene; scene.hpp's make_scene chooses.
+namespace clearway::scene {
+
+std::unique_ptr<const Scene> make_hall(const Sizes& sizes, std::uint64_t seed);
+std::unique_ptr<const Scene> make_plant(const Sizes& sizes, std::uint64_t seed);
+std::unique_ptr<const Scene> make_mine(const Sizes& sizes, std::uint64_t seed);
+std::unique_ptr<const Scene> make_tunnel(const Sizes& sizes, std::uint64_t seed);
+
+/// Streams of random numbers; the scanner has 1 to 3.
+enum Stream : std::uint64_t { kModelStream = 10, kLayoutStream = 11, kShapeStream = 12 };
+
+/// The place of pose `number` of `count` on the way from begin to end, both reached.
+inline double along(double begin, double end, std::uint64_t number, std::uint64_t count) {
+  if (count < 2) return (begin + end) / 2;
+  return begin + (end - begin) * (static_cast<double>(number) / static_cast<double>(count - 1));
+}
+
+}  // namespace clearway::scene

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/pose.hpp"
+#include "core/vec3.hpp"
+#include "scene/path.hpp"
+#include "scene/scanner.hpp"
+#include "scene/world.hpp"
+
+namespace clearway::scene {
+
+enum class Kind { kHall, kPlant, kMine, kTunnel };
+
+inline constexpr Kind kAllKinds[] = {Kind::kHall, Kind::kPlant, Kind::kMine, Kind::kTunnel};
+
+std::string_view name_of(Kind kind);
+
+struct Sizes {
+  std::uint64_t points;        ///< of the environment, >= 1
+  std::uint64_t model_points;  ///< >= 1
+  std::uint64_t poses;         ///< >= 1
+};
+
+/// Those of the data set that the scene is like. Source: the paper, table 1.
+Sizes full_sizes(Kind kind);
+
+/// A synthetic environment, a model and its trajectory: the same for the same kind, sizes and seed,
+/// bit for bit, on every machine. The extent does not depend on the sizes. z is up, metres.
+struct Scene {
+  Kind kind;
+  Sizes sizes;
+  Path path;
+  World world;
+  ScanPlan plan;
+  std::vector<Vec3> model;
+  std::function<Pose(std::uint64_t)> pose;  ///< of 0 to sizes.poses - 1
+  std::vector<double> stations;             ///< arc lengths where a scanner stood; mine only
+};
+
+/// Distance of the wagon's bogies: pivots at x = +-kBogieDistance / 2 of its frame, on the height
+/// of the rails' tops.
+inline constexpr double kBogieDistance = 20;
+
+/// The scene may not be moved or copied away: it refers to itself.
+std::unique_ptr<const Scene> make_scene(Kind kind, const Sizes& sizes, std::uint64_t seed);
+
+}  // namespace clearway::scene

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/vec3.hpp"
+
+/// What the scenes need of vectors and angles, made of + - * / and sqrt alone: IEEE rounds these
+/// alike everywhere, which the sine of a C library does not promise.
+namespace clearway::scene {
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator*(double f, const Vec3& a) { return {f * a.x, f * a.y, f * a.z}; }
+inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
+inline Vec3 normalised(const Vec3& a) { return (1 / length(a)) * a; }
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+struct SineCosine {
+  double sine, cosine;
+};
+
+/// Of an angle in radians, |angle| < 1e6; within 1e-12.
+inline SineCosine sine_cosine(double angle) {
+  constexpr double kHalfPiHigh = 1.57079632673412561417, kHalfPiLow = 6.07710050650619224932e-11;
+  const double turns = std::floor(angle * (2 / kPi) + 0.5);
+  const double x = (angle - turns * kHalfPiHigh) - turns * kHalfPiLow;  // |x| <= pi / 4
+  const double y = x * x;
+  const double s =
+      x * (1 + y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 +
+                                                     y * (1.0 / 362880 + y * (-1.0 / 39916800))))));
+  const double c =
+      1 + y * (-0.5 + y * (1.0 / 24 +
+                           y * (-1.0 / 720 +
+                                y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
+  const auto quadrant = static_cast<long long>(turns) & 3;
+  const double sine = (quadrant & 1) != 0 ? c : s;
+  const double cosine = (quadrant & 1) != 0 ? s : c;
+  return {(quadrant & 2) != 0 ? -sine : sine, ((quadrant + 1) & 2) != 0 ? -cosine : cosine};
+}
+
+}  // namespace clearway::scene

@@ -1,0 +1,94 @@
+#include "scene/write.hpp"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_pipeline.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+
+#include "io/las_writer.hpp"
+#include "io/ply_writer.hpp"
+
+namespace clearway::scene {
+namespace {
+
+constexpr std::uint64_t kBatchPoints = 1 << 15;
+
+/// Sweeps of consecutive batches: scanned in parallel, written in order.
+void scan_in_order(const Scanner& scanner, int threads, LasWriter& writer, Progress& progress) {
+  const std::uint64_t sweeps = scanner.plan().sweeps();
+  const std::uint64_t batch =
+      std::max<std::uint64_t>(1, kBatchPoints / scanner.plan().rays_a_sweep);
+  std::uint64_t next = 0;
+  const auto number = [&](tbb::flow_control& flow) {
+    const std::uint64_t first = next;
+    if (first >= sweeps) flow.stop();
+    next += batch;
+    return first;
+  };
+  const auto scan = [&](std::uint64_t first) {
+    Scanner::Points points;
+    points.reserve((batch + 1) * scanner.plan().rays_a_sweep);
+    for (std::uint64_t i = first; i < std::min(first + batch, sweeps); ++i) scanner.scan(i, points);
+    return points;
+  };
+  const auto write = [&](const Scanner::Points& points) {
+    writer.write(points);
+    progress.advance(points.size());
+  };
+  tbb::parallel_pipeline(
+      static_cast<std::size_t>(4 * threads),
+      tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order, number) &
+          tbb::make_filter<std::uint64_t, Scanner::Points>(tbb::filter_mode::parallel, scan) &
+          tbb::make_filter<Scanner::Points, void>(tbb::filter_mode::serial_in_order, write));
+}
+
+}  // namespace
+
+void write_environment(const Scene& scene, std::uint64_t seed, const File& file, int threads,
+                       Progress& progress) {
+  const Scanner scanner(scene.path, scene.world, scene.plan, seed);
+  LasWriter writer(file, {.quantisation = Scanner::kQuantisation,
+                          .points = scene.sizes.points,
+                          .bounds = scanner.bounds()});
+  progress.begin("scan", scene.sizes.points, "points");
+  const int count = threads > 0 ? threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(count));
+  tbb::task_arena arena(count);
+  arena.execute([&] { scan_in_order(scanner, count, writer, progress); });
+  writer.finish();
+  progress.end();
+}
+
+void write_model(const Scene& scene, const File& file) {
+  PlyWriter writer(file, {.points = scene.model.size(),
+                          .coordinates = PlyCoordinates::kFloat32,
+                          .comment = "Clearway scene " + std::string(name_of(scene.kind))});
+  writer.write(scene.model);
+  writer.finish();
+}
+
+void write_trajectory(const Scene& scene, const File& file) {
+  ByteWriter out(file);
+  const auto put = [&](double value, char end) {
+    char text[32];
+    const auto written =
+        std::to_chars(text, text + sizeof text, value, std::chars_format::general, 9);
+    *written.ptr = end;
+    out.put_text({text, written.ptr + 1}, static_cast<std::size_t>(written.ptr + 1 - text));
+  };
+  for (std::uint64_t i = 0; i < scene.sizes.poses; ++i) {
+    const Pose pose = scene.pose(i);
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 3; ++k) put(pose.rotation[3 * row + k], ' ');
+      put(pose.translation[row], row < 2 ? ' ' : '\n');
+    }
+  }
+  out.flush();
+}
+
+}  // namespace clearway::scene

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/progress.hpp"
+#include "io/file.hpp"
+#include "scene/scene.hpp"
+
+namespace clearway::scene {
+
+/// Writes the environment as LAS in the order of scanning, front to back, with `threads` threads
+/// (0: all) and memory that does not depend on the number of points. Throws ResourceError.
+void write_environment(const Scene& scene, std::uint64_t seed, const File& file, int threads,
+                       Progress& progress);
+
+/// Binary PLY, float32.
+void write_model(const Scene& scene, const File& file);
+
+/// Twelve numbers a line, nine digits each: rotation and translation, row-major 3 x 4.
+void write_trajectory(const Scene& scene, const File& file);
+
+}  // namespace clearway::scene
