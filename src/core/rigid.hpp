@@ -20,11 +20,15 @@ struct Stretch {
 /// Source: Eigen's JacobiSVD.
 Stretch stretch_of(const Pose& pose);
 
+/// An upper bound of the largest singular value of a pose's rotation, rounding included: within
+/// 1e-4 of it for rigid poses and at most sqrt(3) times it for others. Far cheaper than stretch_of.
+double greatest_stretch_bound(const Pose& pose);
+
 bool is_rigid(const Stretch& stretch);
 
-/// An upper bound, rounding included, of |transform(a, m) - transform(b, m)| over every m of the box
-/// `model`, in the predicate's arithmetic. The displacement is an affine map of m, so its norm is
-/// convex and the eight corners suffice (design section 2; docs/numerics.md, "Motion").
+/// An upper bound, rounding included, of |transform(a, m) - transform(b, m)| over every m of the
+/// box `model`, in the predicate's arithmetic. The displacement is an affine map of m, so its norm
+/// is convex and the eight corners suffice (design section 2; docs/numerics.md, "Motion").
 double displacement_bound(const Box& model, const Pose& a, const Pose& b);
 
 /// An upper bound of the rounding error of each coordinate of transform(pose, m) for every m with
