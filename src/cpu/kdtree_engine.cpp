@@ -16,6 +16,9 @@
 namespace clearway {
 namespace {
 
+/// A leaf of the model's spheres is no wider than this many search radii.
+constexpr double kLeafRadii = 2;
+
 /// The first exception of a parallel region, kept until it is over.
 class FirstFailure {
  public:
@@ -136,7 +139,7 @@ HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTr
                        !(rounded_product(question.radius, question.radius) > 0);
   if (!nothing) {
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-    const ModelSpheres model(question.model);
+    const ModelSpheres model(question.model, kLeafRadii * question.radius);
     const EnvironmentTree environment(cloud, threads);
     SettledPoints settled(environment, hits);
     Tasks tasks(question, model, threads);

@@ -56,7 +56,8 @@ double length_above(double squared) {
 
 }  // namespace
 
-ModelSpheres::ModelSpheres(std::span<const Vec3> model) {
+ModelSpheres::ModelSpheres(std::span<const Vec3> model, double leaf_radius)
+    : leaf_radius_(leaf_radius) {
   if (model.empty()) return;
   if (model.size() >= kMostPoints) {
     throw InputError("a model of " + std::to_string(model.size()) +
@@ -75,7 +76,8 @@ ModelSpheres::ModelSpheres(std::span<const Vec3> model) {
 }
 
 void ModelSpheres::add_children(std::uint32_t parent, std::span<const Keyed> points, int level) {
-  if (points.size() <= kLeafPoints || level == 0) {
+  const bool small = points.size() <= kLeafPoints && nodes_[parent].radius <= leaf_radius_;
+  if (points.size() == 1 || small || level == 0) {
     add_columns(nodes_[parent], points);
     return;
   }

@@ -24,15 +24,17 @@ struct ModelSphere {
 
 /// The model partitioned into a regular grid of bounding spheres, and coarser grids of twice the
 /// edge above it up to one sphere around all. A grid cell is split while it holds more than
-/// kLeafPoints. Source: Schauer et al. (the paper), section 3.1.
+/// kLeafPoints or is wide beside the search radius. Source: Schauer et al. (the paper),
+/// section 3.1.
 class ModelSpheres {
  public:
   static constexpr std::uint32_t kLeafPoints = 16;
   static constexpr std::uint32_t kColumnStep = 8;
   static constexpr int kLevels = 21;
 
-  /// Throws InputError for a model of 2^28 or more points.
-  explicit ModelSpheres(std::span<const Vec3> model);
+  /// Spheres of several points above `leaf_radius` are split as far as the finest grid goes. Throws
+  /// InputError for a model of 2^28 or more points.
+  ModelSpheres(std::span<const Vec3> model, double leaf_radius);
 
   bool empty() const { return nodes_.empty(); }
   /// Node 0 is the root.
@@ -56,6 +58,7 @@ class ModelSpheres {
   std::vector<ModelSphere> nodes_;
   std::vector<double> x_, y_, z_;
   Box box_{};
+  double leaf_radius_;
   std::uint32_t largest_leaf_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "core/hit_set.hpp"
 
+#include <barrier>
 #include <catch2/catch.hpp>
 #include <thread>
 
@@ -47,22 +48,45 @@ TEST_CASE("a set costs a bit a slot, first poses four bytes more") {
   CHECK(HitSet(6400, true).allocated_bytes() == 800 + 4 * 6400);
 }
 
-TEST_CASE("marks of many threads in the same words are all there") {
-  constexpr std::uint64_t kSlots = 1 << 18;
-  constexpr std::uint64_t kThreads = 8;
-  HitSet hits(kSlots, true);
-  std::vector<std::thread> threads;
-  for (std::uint64_t t = 0; t < kThreads; ++t) {
-    threads.emplace_back([&hits, t] {
-      for (std::uint64_t slot = t; slot < kSlots; slot += kThreads) hits.mark(slot);
-      for (std::uint64_t slot = 0; slot < kSlots; slot += 16) {
-        hits.mark(slot, static_cast<std::uint32_t>(kThreads - t));
+TEST_CASE("the least first pose of many threads wins") {
+  constexpr std::uint64_t kSlots = 1 << 14;
+  constexpr std::uint64_t kThreads = 4;
+  constexpr int kRounds = 50;
+  std::vector<HitSet> rounds(kRounds, HitSet(kSlots, true));
+  std::barrier start(kThreads);
+  const auto mark_all = [&](std::uint64_t thread) {
+    for (HitSet& hits : rounds) {
+      start.arrive_and_wait();
+      for (std::uint64_t slot = 0; slot < kSlots; ++slot) {
+        hits.mark(slot, static_cast<std::uint32_t>((thread + slot) % kThreads));
       }
-    });
-  }
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::uint64_t t = 0; t < kThreads; ++t) threads.emplace_back(mark_all, t);
   for (std::thread& thread : threads) thread.join();
-  CHECK(hits.count() == kSlots);
   std::uint64_t wrong = 0;
-  for (std::uint64_t slot = 0; slot < kSlots; slot += 16) wrong += hits.first_pose(slot) != 1;
+  for (const HitSet& hits : rounds) {
+    wrong += kSlots - hits.count();
+    for (std::uint64_t slot = 0; slot < kSlots; ++slot) wrong += hits.first_pose(slot) != 0;
+  }
   CHECK(wrong == 0);
+}
+
+TEST_CASE("marks of many threads in the same words are all there") {
+  constexpr std::uint64_t kSlots = 1 << 20;
+  constexpr std::uint64_t kThreads = 4;
+  constexpr int kRounds = 10;
+  std::vector<HitSet> rounds(kRounds, HitSet(kSlots, false));
+  std::barrier start(kThreads);
+  const auto mark_own = [&](std::uint64_t thread) {
+    for (HitSet& hits : rounds) {
+      start.arrive_and_wait();
+      for (std::uint64_t slot = thread; slot < kSlots; slot += kThreads) hits.mark(slot);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::uint64_t t = 0; t < kThreads; ++t) threads.emplace_back(mark_own, t);
+  for (std::thread& thread : threads) thread.join();
+  for (const HitSet& hits : rounds) CHECK(hits.count() == kSlots);
 }

@@ -42,6 +42,7 @@ struct Boundary {
   Vec3 stretch;
   std::size_t model_points;
   std::size_t poses;
+  double length = 3;  ///< of the model, metres
 };
 
 /// Model points on a line, at poses that hardly move, and environment points beyond the line's end
@@ -51,7 +52,7 @@ std::uint64_t check_boundary(Random& random, const Boundary& boundary, std::uint
   const Vec3 along = random_direction(random);
   std::vector<Vec3> model;
   for (std::size_t i = 0; i < boundary.model_points; ++i) {
-    const double t = i == 0 ? 3.0 : uniform(random, 0, 3);
+    const double t = boundary.length * (i == 0 ? 1.0 : uniform(random, 0, 1));
     model.push_back({along.x * t, along.y * t, along.z * t});
   }
   const Pose base = stretched(random_rotation(random, boundary.offset), boundary.stretch);
@@ -99,6 +100,9 @@ TEST_CASE("points at the radius, rounding apart") {
   CAPTURE(model_points, poses);
   SECTION("near the origin") {
     check_boundaries({{0, 0, 0}, 1e-15, {1, 1, 1}, model_points, poses});
+  }
+  SECTION("a model small beside the radius") {
+    check_boundaries({{0, 0, 0}, 4e-16, {1, 1, 1}, model_points, poses, 1e-9});
   }
   SECTION("far from it") {
     check_boundaries({{5e6, 2e6, 1e3}, 2e-9, {1, 1, 1}, model_points, poses});

@@ -306,3 +306,25 @@ TEST_CASE("touched points on the borders of cells and blocks") {
     CHECK(scene.check() > 0);
   }
 }
+
+TEST_CASE("a cell far wider than the radius") {
+  // Boxes of blocks are stored in steps of 3 mm here; the model touches one point at a time.
+  Scene scene;
+  scene.points = quantise(random_points(scene.random, {{-100, -100, -100}, {100, 100, 100}}, 2000),
+                          scene.quantisation);
+  scene.model = {{0, 0, 0}, {0.1, 0, 0}};
+  scene.poses.clear();
+  for (std::size_t i = 0; i < 600; ++i) {
+    const Quantum& q = scene.points[i];
+    scene.poses.push_back(translation(position(scene.quantisation, q[0], q[1], q[2])));
+  }
+  scene.radius = 1e-4;
+  CHECK(scene.check() == 600);
+}
+
+TEST_CASE("a model of a few points far apart") {
+  Scene scene;
+  scene.model = random_points(scene.random, kRoom, 12);
+  scene.radius = 0.1;
+  CHECK(scene.check() > 0);
+}

@@ -7,22 +7,23 @@
 using namespace clearway;
 
 TEST_CASE("a million points, each touched by exactly one pose, lose no hit") {
-  // Points on a line. Poses that are searched at the same time touch points that are neighbours in
-  // memory: runs of 16 poses take turns at every 16th point of 256.
-  constexpr std::uint32_t kPoints = 1 << 20;
+  // Points on a line. The model is a comb: pose i touches point i of every `teeth`, so that poses
+  // searched at the same time touch points that are neighbours in memory.
+  constexpr std::int32_t kPoints = 1 << 20;
   const Quantisation quantisation{{1, 1, 1}, {0, 0, 0}};
   std::vector<Quantum> points;
-  std::vector<Pose> poses;
-  for (std::uint32_t i = 0; i < kPoints; ++i) {
-    points.push_back({static_cast<std::int32_t>(i), 0, 0});
-    const std::uint32_t touched = i / 256 * 256 + i % 16 * 16 + i / 16 % 16;
-    poses.push_back(translation({static_cast<double>(touched), 0.1, 0}));
-  }
+  for (std::int32_t i = 0; i < kPoints; ++i) points.push_back({i, 0, 0});
   const MemoryCloud cloud(points, quantisation);
-  const std::vector<Vec3> model{{0, 0, 0.1}};
-  for (const Engine& engine : engines()) {
-    CAPTURE(engine.name);
-    CHECK(engine.run(cloud, {model, poses, 0.25}, 8).count() == kPoints);
+  for (const std::int32_t teeth : {256, 1024, 4096, 16384, 1024, 4096}) {
+    const std::int32_t pitch = kPoints / teeth;
+    std::vector<Vec3> model;
+    std::vector<Pose> poses;
+    for (std::int32_t i = 0; i < teeth; ++i) model.push_back({1.0 * i * pitch, 0, 0.1});
+    for (std::int32_t i = 0; i < pitch; ++i) poses.push_back(translation({1.0 * i, 0.1, 0}));
+    for (const Engine& engine : engines()) {
+      CAPTURE(engine.name, teeth);
+      CHECK(engine.run(cloud, {model, poses, 0.25}, 8).count() == kPoints);
+    }
   }
 }
 
