@@ -74,9 +74,9 @@ TEST_CASE("the least first pose of many threads wins") {
 }
 
 TEST_CASE("marks of many threads in the same words are all there") {
-  constexpr std::uint64_t kSlots = 1 << 20;
+  constexpr std::uint64_t kSlots = 1 << 21;
   constexpr std::uint64_t kThreads = 4;
-  constexpr int kRounds = 10;
+  constexpr int kRounds = 20;
   std::vector<HitSet> rounds(kRounds, HitSet(kSlots, false));
   std::barrier start(kThreads);
   const auto mark_own = [&](std::uint64_t thread) {
