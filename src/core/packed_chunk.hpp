@@ -106,6 +106,19 @@ inline Value PackedChunk<Value>::operator[](std::uint32_t index) const {
 
 template <std::integral Value>
 inline void PackedChunk<Value>::decode(std::uint32_t first, std::span<Value> out) const {
+  if constexpr (sizeof(Value) == 4) {
+    const std::uint64_t end_bit = (std::uint64_t{first} + out.size()) * minbits_;
+    if (minbits_ > 0 && minbits_ < kValueBits<Value> && end_bit / 8 + 8 <= payload_bytes_) {
+      std::uint64_t bit = std::uint64_t{first} * minbits_;
+      for (std::size_t i = 0; i < out.size(); ++i, bit += minbits_) {
+        std::uint64_t word;  // all eight bytes are inside the payload
+        std::memcpy(&word, payload_ + bit / 8, 8);
+        const std::uint64_t delta = __builtin_bswap64(word) << (bit % 8) >> (64 - minbits_);
+        out[i] = static_cast<Value>(static_cast<Unsigned>(minimum_ + static_cast<Unsigned>(delta)));
+      }
+      return;
+    }
+  }
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = (*this)[first + static_cast<std::uint32_t>(i)];
   }

@@ -39,7 +39,8 @@ struct BlockBox {
 
 inline constexpr std::uint64_t kBlockBoxSteps = 65535;
 
-/// The smallest BlockBox whose decoded box holds `block`; `block` lies in `cell`.
+/// A BlockBox whose decoded box holds `block` and exceeds it by at most a step (and a quantum) on
+/// any side; `block` lies in `cell`.
 CLEARWAY_HD inline BlockBox encode_block_box(const QuantumBox& cell, const QuantumBox& block) {
   BlockBox out;
   for (int k = 0; k < 3; ++k) {

@@ -35,6 +35,21 @@ Stretch stretch_of(const Pose& pose) {
           matrix.determinant()};
 }
 
+double greatest_stretch_bound(const Pose& pose) {
+  // The largest row sum of |R^T R|, a norm of a symmetric matrix, bounds its largest eigenvalue.
+  const double* r = pose.rotation;
+  double greatest = 0;
+  for (int i = 0; i < 3; ++i) {
+    double sum = 0;
+    for (int j = 0; j < 3; ++j) {
+      sum += std::abs(r[i] * r[j] + r[3 + i] * r[3 + j] + r[6 + i] * r[6 + j]);
+    }
+    greatest = std::isnan(sum) ? std::numeric_limits<double>::infinity() : std::max(greatest, sum);
+  }
+  // 12 u covers the rounding of the nine products and their sums, 1e-150 their underflow.
+  return std::sqrt(greatest) * (1 + 32 * kUnitRoundoff) + 1e-150;
+}
+
 bool is_rigid(const Stretch& stretch) {
   return stretch.determinant > 0 && stretch.least >= 1 - kRigidTolerance &&
          stretch.greatest <= 1 + kRigidTolerance;

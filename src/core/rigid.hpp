@@ -20,6 +20,10 @@ struct Stretch {
 /// Source: Eigen's JacobiSVD.
 Stretch stretch_of(const Pose& pose);
 
+/// An upper bound of the largest singular value of a pose's rotation, rounding included: within
+/// 1e-4 of it for rigid poses and at most sqrt(3) times it for others. Far cheaper than stretch_of.
+double greatest_stretch_bound(const Pose& pose);
+
 bool is_rigid(const Stretch& stretch);
 
 /// An upper bound, rounding included, of |transform(a, m) - transform(b, m)| over every m of the

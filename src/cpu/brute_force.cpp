@@ -4,6 +4,11 @@
 #include "core/predicate.hpp"
 
 namespace clearway {
+namespace {
+
+constexpr std::size_t kPairsWorthThreads = 1'000'000;
+
+}  // namespace
 
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
                                                    const Question& question) {
@@ -12,7 +17,8 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
     std::vector<Vec3> moved;
     moved.reserve(question.model.size());
     for (const Vec3& m : question.model) moved.push_back(transform(question.poses[i], m));
-#pragma omp parallel for schedule(static)
+    const bool worth_threads = environment.size() * moved.size() > kPairsWorthThreads;
+#pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
       if (first[e] != HitSet::kNever) continue;
       for (const Vec3& m : moved) {

@@ -156,6 +156,11 @@ Id open_file(const std::filesystem::path& path) {
   return {id, H5Fclose, path.string()};
 }
 
+bool holds(const std::filesystem::path& path, const std::string& name) {
+  const Id file = open_file(path);
+  return H5Lexists(file.get(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
 Id create_group(const Id& parent, const std::string& name) {
   const Id creation = untimed(H5P_GROUP_CREATE);
   return {H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),

@@ -41,6 +41,8 @@ void check(herr_t status, const std::string& what);
 Id create_file(const std::filesystem::path& path);
 /// Throws InputError when the file is missing its HDF5 signature or cannot be opened as HDF5.
 Id open_file(const std::filesystem::path& path);
+/// Whether an HDF5 file has an object of this name at its root. Throws like open_file.
+bool holds(const std::filesystem::path& path, const std::string& name);
 Id create_group(const Id& parent, const std::string& name);
 
 /// The HDF5 type of a C++ number, little-endian in the file.

@@ -246,6 +246,16 @@ std::uint64_t Store::fingerprint() const {
   return hash.digest();
 }
 
+Store::Touched Store::touched() const {
+  Touched touched;
+  for (std::size_t cell = 0; cell < checked_.size(); ++cell) {
+    if (checked_[cell] == 0) continue;
+    ++touched.cells;
+    for (std::size_t i = 4 * cell; i < 4 * cell + 3; ++i) touched.bytes += index_.bytes[i];
+  }
+  return touched;
+}
+
 std::uint64_t Store::allocated_bytes() const {
   const auto bytes = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
   return bytes(index_.count) + bytes(index_.box) + bytes(index_.address) + bytes(index_.bytes) +

@@ -43,6 +43,13 @@ class Store final : public PackedCloud {
   std::span<const BlockBox> blocks() const override { return blocks_; }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
 
+  /// Cells whose coordinates were asked for since the store was opened, and their packed bytes.
+  struct Touched {
+    std::uint64_t cells = 0;
+    std::uint64_t bytes = 0;
+  };
+  Touched touched() const;
+
   /// Bytes of memory that the index takes.
   std::uint64_t allocated_bytes() const;
 

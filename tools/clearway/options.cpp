@@ -3,6 +3,19 @@
 #include <cstdio>
 
 namespace clearway::tool {
+void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
+  command.add_option("--memory", bytes, "Bound of the working memory, for example 512M or 4G")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false))
+      ->default_str(format_size(bytes));
+}
+
+void add_threads_option(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Threads (default: all cores)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+}
+
 std::string format_size(std::uint64_t bytes) {
   const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   auto value = static_cast<double>(bytes);

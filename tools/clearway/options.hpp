@@ -1,9 +1,16 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 
 namespace clearway::tool {
+
+/// --memory, in bytes; "512M" and "4G" are powers of 1024.
+void add_memory_option(CLI::App& command, std::uint64_t& bytes);
+
+/// --threads; 0 stands for all cores.
+void add_threads_option(CLI::App& command, int& threads);
 
 /// "1.5 GiB", for messages.
 std::string format_size(std::uint64_t bytes);

@@ -1,0 +1,72 @@
+#include "cpu/environment_tree.hpp"
+
+#include <algorithm>
+
+namespace clearway {
+namespace {
+
+/// Both in steps of the same cell.
+BlockBox united(const BlockBox& a, const BlockBox& b) {
+  BlockBox out;
+  for (int k = 0; k < 3; ++k) {
+    out.lo[k] = std::min(a.lo[k], b.lo[k]);
+    out.hi[k] = std::max(a.hi[k], b.hi[k]);
+  }
+  return out;
+}
+
+std::uint32_t block_count(const Cell& cell) {
+  return static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
+}
+
+}  // namespace
+
+EnvironmentTree::EnvironmentTree(const PackedCloud& cloud, int threads)
+    : cloud_(cloud),
+      cells_(cloud.cells()),
+      blocks_(cloud.blocks()),
+      blocks_per_cell_(cloud.blocks_per_cell()),
+      inner_boxes_(cells_.size() * blocks_per_cell_) {
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    unite_blocks(static_cast<std::uint32_t>(cell), 0, block_count(cells_[cell]));
+  }
+}
+
+BlockBox EnvironmentTree::unite_blocks(std::uint32_t cell, std::uint32_t first,
+                                       std::uint32_t count) {
+  if (count == 1) return blocks_[block_index(cell, first)];
+  const auto left = static_cast<std::uint32_t>(left_count(count, 1));
+  const BlockBox box =
+      united(unite_blocks(cell, first, left), unite_blocks(cell, first + left, count - left));
+  inner_boxes_[inner_index({EnvironmentNode::kInCell, cell, first, count})] = box;
+  return box;
+}
+
+EnvironmentNode EnvironmentTree::from_top(std::uint32_t index) const {
+  const TreeNode& node = cloud_.tree()[index];
+  if (node.right != 0) return {index, 0, 0, 0};
+  return {EnvironmentNode::kInCell, node.first_cell, 0, block_count(cells_[node.first_cell])};
+}
+
+std::array<EnvironmentNode, 2> EnvironmentTree::children(const EnvironmentNode& node) const {
+  if (node.top != EnvironmentNode::kInCell) {
+    return {from_top(node.top + 1), from_top(cloud_.tree()[node.top].right)};
+  }
+  const auto left = static_cast<std::uint32_t>(left_count(node.block_count, 1));
+  return {EnvironmentNode{EnvironmentNode::kInCell, node.cell, node.first_block, left},
+          EnvironmentNode{EnvironmentNode::kInCell, node.cell, node.first_block + left,
+                          node.block_count - left}};
+}
+
+Box EnvironmentTree::box(const EnvironmentNode& node) const {
+  const Quantisation& quantisation = cloud_.quantisation();
+  if (node.top != EnvironmentNode::kInCell) {
+    return position_box(quantisation, cloud_.tree()[node.top].box);
+  }
+  const BlockBox& inside = node.block_count == 1 ? blocks_[block_index(node.cell, node.first_block)]
+                                                 : inner_boxes_[inner_index(node)];
+  return position_box(quantisation, decode_block_box(cells_[node.cell].box, inside));
+}
+
+}  // namespace clearway

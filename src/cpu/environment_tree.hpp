@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/box.hpp"
+#include "core/packed_cloud.hpp"
+
+namespace clearway {
+
+/// A node of the environment's k-d tree: several cells (an inner node of PackedCloud::tree()), or a
+/// run of blocks of one cell, whose tree is implicit.
+struct EnvironmentNode {
+  static constexpr std::uint32_t kInCell = 0xffffffff;
+
+  std::uint32_t top;  ///< index in PackedCloud::tree(), or kInCell
+  std::uint32_t cell;
+  std::uint32_t first_block;
+  std::uint32_t block_count;
+
+  bool is_block() const { return top == kInCell && block_count == 1; }
+};
+
+/// The whole k-d tree of a cloud, from all cells down to blocks. Of the points it keeps the boxes
+/// of the inner nodes of cells only: 12 bytes a block. The cloud must outlive it.
+class EnvironmentTree {
+ public:
+  EnvironmentTree(const PackedCloud& cloud, int threads);
+
+  const PackedCloud& cloud() const { return cloud_; }
+  bool empty() const { return cloud_.tree().empty(); }
+  EnvironmentNode root() const { return from_top(0); }
+
+  /// The two halves of a node that is not a block.
+  std::array<EnvironmentNode, 2> children(const EnvironmentNode& node) const;
+
+  /// Holds every point of the node.
+  Box box(const EnvironmentNode& node) const;
+
+  /// Points of the node, or a little more for a node of several cells.
+  std::uint64_t most_points(const EnvironmentNode& node) const {
+    if (node.top == EnvironmentNode::kInCell) return std::uint64_t{node.block_count} * kBlockPoints;
+    return std::uint64_t{cloud_.tree()[node.top].cell_count} * cloud_.cell_slots();
+  }
+
+  /// A number below node_slots() that no other inner node of the cells has.
+  std::uint64_t inner_index(const EnvironmentNode& node) const {
+    return std::uint64_t{node.cell} * blocks_per_cell_ + node.first_block +
+           left_count(node.block_count, 1);
+  }
+  /// The block's word of a HitSet.
+  std::uint64_t block_index(std::uint32_t cell, std::uint32_t block) const {
+    return std::uint64_t{cell} * blocks_per_cell_ + block;
+  }
+  std::uint64_t node_slots() const { return inner_boxes_.size(); }
+
+  std::uint32_t points_in_block(std::uint32_t cell, std::uint32_t block) const {
+    const std::uint32_t rest = cells_[cell].count - block * kBlockPoints;
+    return rest < kBlockPoints ? rest : kBlockPoints;
+  }
+
+  std::uint64_t allocated_bytes() const { return inner_boxes_.capacity() * sizeof(BlockBox); }
+
+ private:
+  EnvironmentNode from_top(std::uint32_t index) const;
+  BlockBox unite_blocks(std::uint32_t cell, std::uint32_t first, std::uint32_t count);
+
+  const PackedCloud& cloud_;
+  std::span<const Cell> cells_;
+  std::span<const BlockBox> blocks_;
+  std::uint32_t blocks_per_cell_;
+  std::vector<BlockBox> inner_boxes_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,175 @@
+#include "cpu/kdtree_engine.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/predicate.hpp"
+#include "cpu/range_search.hpp"
+
+namespace clearway {
+namespace {
+
+/// A leaf of the model's spheres is no wider than this many search radii.
+constexpr double kLeafRadii = 2;
+
+/// The first exception of a parallel region, kept until it is over.
+class FirstFailure {
+ public:
+  bool happened() const { return happened_.load(std::memory_order_relaxed); }
+
+  void keep_current() {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+    happened_.store(true, std::memory_order_relaxed);
+  }
+
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+  std::atomic<bool> happened_ = false;
+};
+
+/// The question cut into tasks: a run of poses and a part of the model, in the order of the poses.
+class Tasks {
+ public:
+  Tasks(const Question& question, const ModelSpheres& model, int threads)
+      : pose_count_(static_cast<std::uint32_t>(question.poses.size())) {
+    // Few poses are spread over the threads by cutting the model.
+    const auto wanted = static_cast<std::uint64_t>(threads) * kTasksPerThread;
+    run_poses_ = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(pose_count_ / wanted, 1, PoseTree::kMostPoses));
+    spheres_ = {0};
+    for (std::size_t next = 0; next < spheres_.size() && count() < wanted;) {
+      const ModelSphere& sphere = model.node(spheres_[next]);
+      if (sphere.children == 0) {
+        ++next;
+        continue;
+      }
+      spheres_[next] = sphere.first_child;
+      for (std::uint32_t i = 1; i < sphere.children; ++i) {
+        spheres_.push_back(sphere.first_child + i);
+      }
+    }
+    parts_left_ = std::vector<std::atomic<std::uint32_t>>(divide_up(pose_count_, run_poses_));
+    for (auto& left : parts_left_) left = static_cast<std::uint32_t>(spheres_.size());
+  }
+
+  std::uint64_t count() const { return divide_up(pose_count_, run_poses_) * spheres_.size(); }
+
+  std::uint32_t first_pose(std::uint64_t task) const {
+    return static_cast<std::uint32_t>(task / spheres_.size()) * run_poses_;
+  }
+  std::uint32_t poses(std::uint64_t task) const {
+    return std::min(run_poses_, pose_count_ - first_pose(task));
+  }
+  std::uint32_t sphere(std::uint64_t task) const { return spheres_[task % spheres_.size()]; }
+
+  /// The poses that are complete now that the task is.
+  std::uint32_t finish(std::uint64_t task) {
+    return --parts_left_[task / spheres_.size()] == 0 ? poses(task) : 0;
+  }
+
+ private:
+  static constexpr std::uint64_t kTasksPerThread = 16;
+
+  std::uint32_t pose_count_;
+  std::uint32_t run_poses_;
+  std::vector<std::uint32_t> spheres_;
+  std::vector<std::atomic<std::uint32_t>> parts_left_;
+};
+
+void check(const Question& question) {
+  if (question.poses.size() >= HitSet::kNever) {
+    throw InputError("a trajectory of " + std::to_string(question.poses.size()) +
+                     " poses, expected fewer than " + std::to_string(HitSet::kNever));
+  }
+}
+
+/// What the threads of one run share.
+struct Shared {
+  const Question& question;
+  const ModelSpheres& model;
+  const EnvironmentTree& environment;
+  SettledPoints& settled;
+  Tasks& tasks;
+  Progress& progress;
+  KdTreeStatistics& statistics;
+  std::atomic<std::uint64_t> next_task = 0;
+  std::mutex mutex{};
+  FirstFailure failure{};
+};
+
+/// Takes tasks until none is left or a thread has failed.
+void search_tasks(Shared& shared) {
+  RangeSearch search(shared.environment, shared.settled, shared.model, shared.question);
+  while (!shared.failure.happened()) {
+    const std::uint64_t task = shared.next_task++;
+    if (task >= shared.tasks.count()) break;
+    const PoseTree poses(shared.question.poses, shared.tasks.first_pose(task),
+                         shared.tasks.poses(task), shared.model.box());
+    search.search(poses, shared.model.node(shared.tasks.sphere(task)));
+    if (const std::uint32_t done = shared.tasks.finish(task)) shared.progress.advance(done);
+  }
+  const std::lock_guard lock(shared.mutex);
+  shared.statistics.tested_searches += search.tested_searches();
+  shared.statistics.cache_bytes += search.allocated_bytes();
+}
+
+}  // namespace
+
+std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Question& question, int threads) {
+  constexpr std::uint64_t kThreadBytes = std::uint64_t{4} << 20;
+  constexpr std::uint64_t kModelPointBytes = 96;  // ordered columns and spheres
+  const std::uint64_t blocks = cloud.slot_count() / kBlockPoints;
+  const std::uint64_t block_bytes =
+      sizeof(std::uint64_t) + sizeof(BlockBox) +
+      (question.first_pose ? (kBlockPoints + 2) * sizeof(std::uint32_t) : 1);
+  return blocks * block_bytes + cloud.tree().size() * sizeof(std::uint32_t) +
+         question.model.size() * kModelPointBytes + static_cast<unsigned>(threads) * kThreadBytes;
+}
+
+HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTreeOptions& options,
+                  Progress& progress, KdTreeStatistics* statistics) {
+  check(question);
+  KdTreeStatistics counted;
+  counted.searches = std::uint64_t{question.poses.size()} * question.model.size();
+  HitSet hits(cloud.slot_count(), question.first_pose);
+  progress.begin("search", question.poses.size(), "poses");
+  const bool nothing = counted.searches == 0 || cloud.tree().empty() ||
+                       !(rounded_product(question.radius, question.radius) > 0);
+  if (!nothing) {
+    const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
+    const ModelSpheres model(question.model, kLeafRadii * question.radius);
+    const EnvironmentTree environment(cloud, threads);
+    SettledPoints settled(environment, hits);
+    Tasks tasks(question, model, threads);
+    Shared shared{question, model, environment, settled, tasks, progress, counted};
+#pragma omp parallel num_threads(threads)
+    {
+      try {
+        search_tasks(shared);
+      } catch (...) {
+        shared.failure.keep_current();
+      }
+    }
+    shared.failure.rethrow();
+    counted.allocated_bytes =
+        hits.allocated_bytes() + environment.allocated_bytes() + settled.allocated_bytes();
+  }
+  progress.end();
+  if (statistics != nullptr) *statistics = counted;
+  return hits;
+}
+
+}  // namespace clearway

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/hit_set.hpp"
+#include "core/packed_cloud.hpp"
+#include "core/progress.hpp"
+#include "core/question.hpp"
+
+namespace clearway {
+
+struct KdTreeOptions {
+  int threads = 0;  ///< 0: all that OpenMP offers
+};
+
+struct KdTreeStatistics {
+  std::uint64_t searches = 0;         ///< pairs of pose and model point
+  std::uint64_t tested_searches = 0;  ///< of these, those that no filter dismissed
+  std::uint64_t allocated_bytes = 0;  ///< per-thread caches and the cloud's own memory not counted
+  std::uint64_t cache_bytes = 0;      ///< per-thread caches
+};
+
+/// An upper bound of the memory that run_kdtree takes beside the cloud's own, bytes.
+std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Question& question, int threads);
+
+/// Every point of `cloud` that the question's model touches: for every pose and model point a
+/// fixed-range search in the cloud's k-d tree, over the packed points. Poses are searched in
+/// parallel. Progress counts poses. Throws InputError for a damaged cell.
+/// Source: Schauer et al. (the paper), section 3.1 (kd-CD-simple).
+HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTreeOptions& options,
+                  Progress& progress, KdTreeStatistics* statistics = nullptr);
+
+}  // namespace clearway

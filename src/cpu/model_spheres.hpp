@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/box.hpp"
+#include "core/vec3.hpp"
+#include "cpu/range_kernels.hpp"
+
+namespace clearway {
+
+/// The points of one cell of a regular grid over the model. The centre is one of them, so that a
+/// distance to the moved centre is itself a distance of the predicate.
+struct ModelSphere {
+  Vec3 centre;
+  double radius;              ///< no point is farther from the centre, rounding included
+  std::uint32_t first;        ///< of the leaf's columns; leaves only
+  std::uint32_t padded;       ///< points in the columns, a multiple of 8; leaves only
+  std::uint32_t count;        ///< points of the model below this node
+  std::uint32_t first_child;  ///< children are consecutive
+  std::uint32_t children;     ///< 0 for a leaf
+};
+
+/// The model partitioned into a regular grid of bounding spheres, and coarser grids of twice the
+/// edge above it up to one sphere around all. A grid cell is split while it holds more than
+/// kLeafPoints or is wide beside the search radius. Source: Schauer et al. (the paper),
+/// section 3.1.
+class ModelSpheres {
+ public:
+  static constexpr std::uint32_t kLeafPoints = 16;
+  static constexpr std::uint32_t kColumnStep = 8;
+  static constexpr int kLevels = 21;
+
+  /// Spheres of several points above `leaf_radius` are split as far as the finest grid goes. Throws
+  /// InputError for a model of 2^28 or more points.
+  ModelSpheres(std::span<const Vec3> model, double leaf_radius);
+
+  bool empty() const { return nodes_.empty(); }
+  /// Node 0 is the root.
+  const ModelSphere& node(std::uint32_t index) const { return nodes_[index]; }
+  std::span<const ModelSphere> nodes() const { return nodes_; }
+  const Box& box() const { return box_; }
+  /// Largest padded size of a leaf.
+  std::uint32_t largest_leaf() const { return largest_leaf_; }
+
+  /// A leaf's points, the last one repeated up to `padded`.
+  Columns columns(const ModelSphere& leaf) const {
+    return {x_.data() + leaf.first, y_.data() + leaf.first, z_.data() + leaf.first};
+  }
+
+ private:
+  struct Keyed;
+  void add_children(std::uint32_t parent, std::span<const Keyed> points, int level);
+  ModelSphere make_sphere(std::span<const Keyed> points) const;
+  void add_columns(ModelSphere& leaf, std::span<const Keyed> points);
+
+  std::vector<ModelSphere> nodes_;
+  std::vector<double> x_, y_, z_;
+  Box box_{};
+  double leaf_radius_;
+  std::uint32_t largest_leaf_ = 0;
+};
+
+}  // namespace clearway

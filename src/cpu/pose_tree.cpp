@@ -1,0 +1,49 @@
+#include "cpu/pose_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/rigid.hpp"
+
+namespace clearway {
+namespace {
+
+Vec3 reach_of(const Box& box) {
+  Vec3 reach{};
+  for (int k = 0; k < 3; ++k) reach[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
+  return reach;
+}
+
+}  // namespace
+
+PoseTree::PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
+                   const Box& model) {
+  nodes_.reserve(2 * count);
+  add(poses, first, count, model);
+}
+
+std::uint32_t PoseTree::add(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
+                            const Box& model) {
+  const std::uint32_t reference = first + count / 2;
+  double motion = 0;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    if (i != reference) {
+      motion = std::max(motion, displacement_bound(model, poses[reference], poses[i]));
+    }
+  }
+  // Of either of two points moved by the reference pose, each coordinate errs by `rounding`.
+  const double rounding =
+      2 * std::sqrt(3.0) * 1.01 * transform_rounding(reach_of(model), poses[reference]);
+  const auto self = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back(
+      {first, count, reference, 0, 0, motion + rounding, greatest_stretch_bound(poses[reference])});
+  if (count > 1) {
+    const std::uint32_t earlier = add(poses, first, count / 2, model);
+    const std::uint32_t later = add(poses, first + count / 2, count - count / 2, model);
+    nodes_[self].earlier = earlier;
+    nodes_[self].later = later;
+  }
+  return self;
+}
+
+}  // namespace clearway

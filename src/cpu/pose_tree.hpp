@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/box.hpp"
+#include "core/pose.hpp"
+
+namespace clearway {
+
+/// A range of consecutive poses. At any of them a model point within distance d of a model point c
+/// lies within stretch * d + spread of transform(reference pose, c), rounding included
+/// (docs/numerics.md, "Motion").
+struct PoseNode {
+  std::uint32_t first;
+  std::uint32_t count;
+  std::uint32_t reference;
+  std::uint32_t earlier, later;  ///< indices of the two halves, where count > 1
+  double spread;                 ///< metres
+  double stretch;
+};
+
+/// Binary tree over one run of poses.
+class PoseTree {
+ public:
+  static constexpr std::uint32_t kMostPoses = 32;
+
+  /// Poses first .. first + count - 1 of `poses`, 0 < count <= kMostPoses; `model` holds every
+  /// model point.
+  PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count, const Box& model);
+
+  /// Node 0 is the root.
+  const PoseNode& node(std::uint32_t index) const { return nodes_[index]; }
+
+ private:
+  std::uint32_t add(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
+                    const Box& model);
+
+  std::vector<PoseNode> nodes_;
+};
+
+}  // namespace clearway

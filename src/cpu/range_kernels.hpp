@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/pose.hpp"
+#include "core/vec3.hpp"
+
+/// The inner loops of range searches, compiled for several vector widths. All of them round as the
+/// predicate does: they are the predicate, over columns.
+namespace clearway {
+
+/// Coordinates of points by axis, metres. Does not own them.
+struct Columns {
+  const double* x;
+  const double* y;
+  const double* z;
+};
+
+/// The same, to write to.
+struct MutableColumns {
+  double* x;
+  double* y;
+  double* z;
+
+  operator Columns() const { return {x, y, z}; }
+};
+
+/// squared[i] = d2 between point i and m.
+void squared_distances(Columns points, std::size_t count, const Vec3& m, double* squared);
+
+/// moved[i] = transform(pose, model point i).
+void transform_points(const Pose& pose, Columns model, std::size_t count, MutableColumns moved);
+
+/// hit[i] = 1 when environment point i collides with any of the moved model points, else 0.
+void collide_any(Columns environment, std::size_t count, Columns moved, std::size_t moved_count,
+                 double radius, std::uint8_t* hit);
+
+}  // namespace clearway

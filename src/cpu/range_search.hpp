@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/question.hpp"
+#include "cpu/block_cache.hpp"
+#include "cpu/environment_tree.hpp"
+#include "cpu/model_spheres.hpp"
+#include "cpu/pose_tree.hpp"
+#include "cpu/settled_points.hpp"
+
+namespace clearway {
+
+/// The coherent fixed-range searches of one thread: a descent through poses, model and environment
+/// at once. A range of poses and a sphere of the model inherit from their parents the part of the
+/// environment within reach, so that what is far is dismissed for many searches together. What is
+/// left is decided by the predicate. Filters: docs/numerics.md, "Spheres of the model".
+class RangeSearch {
+ public:
+  /// All arguments must outlive it. Allocates its caches: about 3 MiB, and a little for the largest
+  /// leaf of the model.
+  RangeSearch(const EnvironmentTree& environment, SettledPoints& settled, const ModelSpheres& model,
+              const Question& question);
+
+  /// Searches for every model point below `sphere` at every pose of `poses`. Throws InputError for
+  /// a damaged cell.
+  void search(const PoseTree& poses, const ModelSphere& sphere);
+
+  /// Pairs of pose and model point that no filter dismissed.
+  std::uint64_t tested_searches() const { return tested_searches_; }
+  std::uint64_t allocated_bytes() const;
+
+ private:
+  struct Candidate {
+    EnvironmentNode node;
+    Box box;
+  };
+
+  /// A stretch of the stack of points.
+  struct Points {
+    std::size_t begin;
+    std::size_t count;
+  };
+
+  /// One sphere of the model over a range of poses.
+  struct Query {
+    const PoseNode& poses;
+    const ModelSphere& sphere;
+    Vec3 centre;           ///< the sphere's centre at the reference pose
+    double reach_squared;  ///< nothing whose d2 to the centre is above it is touched
+    bool hit_is_final;     ///< no pose of the range precedes the reference pose
+    bool at_leaves() const { return poses.count == 1 && sphere.children == 0; }
+  };
+
+  Query make_query(const PoseNode& poses, const ModelSphere& sphere) const;
+  template <typename Visit>
+  void for_each_half(const Query& query, Visit visit);
+
+  void search_nodes(const Query& query, std::size_t begin, std::size_t end);
+  void add_candidate(const Query& query, const Candidate& candidate);
+  bool dismiss_or_take(const Query& query, const Candidate& candidate);
+  void gather(const Query& query, std::size_t begin, std::size_t end);
+  void gather_node(const Query& query, const Candidate& candidate);
+  void gather_block(const Query& query, const EnvironmentNode& block);
+  void flush(const Query& query);
+
+  void search_points(const Query& query, Points points);
+  void refine_points(const Query& query, Points points);
+  void test_points(const Query& query, Points points);
+  void put_point(std::size_t to, Columns from, std::size_t i, std::uint64_t slot) {
+    x_[to] = from.x[i];
+    y_[to] = from.y[i];
+    z_[to] = from.z[i];
+    slots_[to] = slot;
+  }
+
+  Columns columns(Points points) const {
+    return {x_.data() + points.begin, y_.data() + points.begin, z_.data() + points.begin};
+  }
+
+  const EnvironmentTree& environment_;
+  SettledPoints& settled_;
+  const ModelSpheres& model_;
+  const Question& question_;
+  double radius_squared_;
+  const PoseTree* pose_tree_ = nullptr;
+
+  BlockCache cache_;
+  std::vector<Candidate> candidates_;  ///< a stack
+  std::uint64_t candidate_points_ = 0;
+  std::vector<double> x_, y_, z_;  ///< a stack of points in columns
+  std::vector<std::uint64_t> slots_;
+  std::size_t gathered_ = 0;  ///< points at the bottom of the stack
+  std::vector<double> squared_;
+  std::vector<std::uint8_t> hit_;
+  std::vector<double> moved_x_, moved_y_, moved_z_;
+  std::uint64_t tested_searches_ = 0;
+};
+
+}  // namespace clearway

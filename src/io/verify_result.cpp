@@ -1,0 +1,39 @@
+#include "io/verify_result.hpp"
+
+#include "core/error.hpp"
+#include "io/recovered_quanta.hpp"
+#include "io/result_rows.hpp"
+
+namespace clearway {
+namespace {
+
+void check_rows(const ResultReader& result, const ResultRows& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!quantum_at(result.header().quantisation, axis, rows.xyz[i][axis])) {
+        throw InputError(result.name() + ": a coordinate of source point " +
+                         std::to_string(rows.source[i]) + " is not on the environment's scale");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> verify_result(const ResultReader& result, Progress& progress) {
+  ResultRowStream stream(result);
+  ResultRows rows;
+  progress.begin("verify", result.collisions(), "points");
+  try {
+    while (stream.read(rows)) {
+      check_rows(result, rows);
+      progress.advance(rows.size());
+    }
+  } catch (const InputError& fault) {
+    return {fault.what()};
+  }
+  progress.end();
+  return {};
+}
+
+}  // namespace clearway

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "io/result.hpp"
+
+namespace clearway {
+
+/// Re-reads a result and checks it: rows intact, source indices ascending and below the number of
+/// environment points, coordinates finite and on the result's scale, first poses below the number
+/// of poses. Gives the first fault found, if any.
+std::vector<std::string> verify_result(const ResultReader& result, Progress& progress);
+
+}  // namespace clearway

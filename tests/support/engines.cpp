@@ -1,0 +1,69 @@
+#include "support/engines.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+
+#include "cpu/brute_force.hpp"
+#include "cpu/kdtree_engine.hpp"
+
+namespace clearway {
+namespace {
+
+HitSet kdtree(const PackedCloud& cloud, const Question& question, int threads) {
+  NoProgress progress;
+  return run_kdtree(cloud, question, {threads}, progress);
+}
+
+const std::array kEngines{Engine{"kdtree", kdtree}};
+
+constexpr int kThreads = 3;
+
+std::uint64_t check_packed(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
+                           Question question) {
+  std::uint64_t colliding = 0;
+  for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
+  for (const Engine& engine : engines()) {
+    for (const bool first_pose : {false, true}) {
+      question.first_pose = first_pose;
+      const HitSet hits = engine.run(cloud, question, kThreads);
+      CAPTURE(engine.name, first_pose, cloud.cell_points(), cloud.cells().size());
+      std::uint64_t wrong = 0;
+      for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
+        if (!cloud.is_used(slot)) {
+          wrong += hits.contains(slot);
+          continue;
+        }
+        const std::uint32_t pose = expected[cloud.source(slot)];
+        wrong += hits.contains(slot) != (pose != HitSet::kNever);
+        if (first_pose) wrong += hits.first_pose(slot) != pose;
+      }
+      CHECK(wrong == 0);
+      CHECK(hits.count() == colliding);
+    }
+  }
+  return colliding;
+}
+
+}  // namespace
+
+std::span<const Engine> engines() { return kEngines; }
+
+std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
+                            const Question& question, const MemoryCloudOptions& packing) {
+  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
+  return check_packed(MemoryCloud(points, quantisation, packing), expected, question);
+}
+
+std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
+                            const Question& question) {
+  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
+  std::uint64_t colliding = 0;
+  for (const MemoryCloudOptions& packing :
+       {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
+        MemoryCloudOptions{128, 500}}) {
+    colliding = check_packed(MemoryCloud(points, quantisation, packing), expected, question);
+  }
+  return colliding;
+}
+
+}  // namespace clearway

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/packed_cloud.hpp"
+
+namespace clearway {
+
+using Quantum = std::array<std::int32_t, 3>;
+
+struct MemoryCloudOptions {
+  std::uint32_t cell_points = 65536;
+  /// Buckets of the explicit top tree hold at most this many points where they can be split by a
+  /// plane; 0: one bucket. Every bucket's last cell may be short.
+  std::uint64_t bucket_points = 0;
+};
+
+/// A PackedCloud in memory, for tests and benchmarks: the k-d order, boxes and packed chunks that a
+/// store has, made in one go.
+class MemoryCloud final : public PackedCloud {
+ public:
+  MemoryCloud(std::span<const Quantum> points, const Quantisation& quantisation,
+              const MemoryCloudOptions& options = {});
+
+  std::uint64_t point_count() const override { return point_count_; }
+  std::uint32_t cell_points() const override { return cell_points_; }
+  const Quantisation& quantisation() const override { return quantisation_; }
+  std::span<const Cell> cells() const override { return cells_; }
+  std::span<const TreeNode> tree() const override { return tree_; }
+  std::span<const BlockBox> blocks() const override { return blocks_; }
+  std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
+
+  /// Index, in the points given, of the point in a used slot.
+  std::uint64_t source(std::uint64_t slot) const { return sources_[slot]; }
+  bool is_used(std::uint64_t slot) const {
+    return slot % cell_slots() < cells_[slot / cell_slots()].count;
+  }
+
+  /// From now on coordinates(cell) throws InputError, as for a damaged store.
+  void damage(std::uint32_t cell) { damaged_cell_ = cell; }
+
+ private:
+  struct Point {
+    Quantum q;
+    std::uint64_t source;
+  };
+
+  void add_top(std::span<Point> points, std::uint64_t bucket_points);
+  void add_cells(std::span<Point> points);
+  void add_cell(std::span<Point> points);
+
+  Quantisation quantisation_;
+  std::uint64_t point_count_;
+  std::uint32_t cell_points_;
+  std::vector<TopNode> top_;
+  std::vector<Cell> cells_;
+  std::vector<TreeNode> tree_;
+  std::vector<BlockBox> blocks_;
+  std::vector<std::uint64_t> sources_;
+  std::vector<std::array<std::vector<std::byte>, 3>> chunks_;
+  std::uint32_t damaged_cell_ = 0xffffffff;
+};
+
+/// The positions of quanta, as the store defines them.
+std::vector<Vec3> positions_of(std::span<const Quantum> points, const Quantisation& quantisation);
+
+/// The nearest quanta.
+std::vector<Quantum> quantise(std::span<const Vec3> points, const Quantisation& quantisation);
+
+}  // namespace clearway

@@ -1,0 +1,81 @@
+#include "support/scenes.hpp"
+
+#include <cmath>
+
+namespace clearway {
+
+double uniform(Random& random, double lo, double hi) {
+  return std::uniform_real_distribution<double>(lo, hi)(random);
+}
+
+std::uint64_t below(Random& random, std::uint64_t end) {
+  return std::uniform_int_distribution<std::uint64_t>(0, end - 1)(random);
+}
+
+Vec3 random_point(Random& random, const Box& box) {
+  Vec3 p{};
+  for (int k = 0; k < 3; ++k) p[k] = box.lo[k] + (box.hi[k] - box.lo[k]) * uniform(random, 0, 1);
+  return p;
+}
+
+std::vector<Vec3> random_points(Random& random, const Box& box, std::size_t count) {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < count; ++i) points.push_back(random_point(random, box));
+  return points;
+}
+
+Vec3 random_direction(Random& random) {
+  std::normal_distribution<double> normal;
+  Vec3 d{};
+  double length = 0;
+  while (length < 1e-3) {
+    d = {normal(random), normal(random), normal(random)};
+    length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+  }
+  return {d.x / length, d.y / length, d.z / length};
+}
+
+Pose rotation(const Vec3& a, double angle, const Vec3& by) {
+  const double c = std::cos(angle), s = std::sin(angle), v = 1 - c;
+  return {{c + a.x * a.x * v, a.x * a.y * v - a.z * s, a.x * a.z * v + a.y * s,
+           a.y * a.x * v + a.z * s, c + a.y * a.y * v, a.y * a.z * v - a.x * s,
+           a.z * a.x * v - a.y * s, a.z * a.y * v + a.x * s, c + a.z * a.z * v},
+          {by.x, by.y, by.z}};
+}
+
+Pose random_rotation(Random& random, const Vec3& by) {
+  return rotation(random_direction(random), uniform(random, -3.2, 3.2), by);
+}
+
+Pose translation(const Vec3& by) { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {by.x, by.y, by.z}}; }
+
+Pose printed_with_six_digits(Pose pose) {
+  for (double& value : pose.rotation) value = std::round(value * 1e6) / 1e6;
+  for (double& value : pose.translation) value = std::round(value * 1e6) / 1e6;
+  return pose;
+}
+
+Pose stretched(Pose pose, const Vec3& by) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] *= by[column];
+  }
+  return pose;
+}
+
+std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count) {
+  const Vec3 from = random_point(random, box);
+  const Vec3 to = random_point(random, box);
+  const Vec3 axis = random_direction(random);
+  const double start = uniform(random, -3, 3);
+  const double turn = uniform(random, -2, 2);
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(count);
+    const Vec3 at{from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t,
+                  from.z + (to.z - from.z) * t};
+    poses.push_back(rotation(axis, start + turn * t, at));
+  }
+  return poses;
+}
+
+}  // namespace clearway

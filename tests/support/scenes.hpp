@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "core/box.hpp"
+#include "core/pose.hpp"
+#include "core/vec3.hpp"
+
+/// Random parts of small scenes. Every test seeds its own generator.
+namespace clearway {
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double lo, double hi);
+std::uint64_t below(Random& random, std::uint64_t end);
+Vec3 random_point(Random& random, const Box& box);
+std::vector<Vec3> random_points(Random& random, const Box& box, std::size_t count);
+Vec3 random_direction(Random& random);
+
+/// Rotation by `angle` about a unit axis, then translation.
+Pose rotation(const Vec3& axis, double angle, const Vec3& translation);
+Pose random_rotation(Random& random, const Vec3& translation);
+Pose translation(const Vec3& by);
+
+/// The pose as a text file with six decimals has it: slightly non-orthonormal.
+Pose printed_with_six_digits(Pose pose);
+
+/// The rotation with its columns scaled.
+Pose stretched(Pose pose, const Vec3& by);
+
+/// A smooth path through the box that turns as it goes.
+std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count);
+
+}  // namespace clearway

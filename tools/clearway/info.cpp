@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "clearway/commands.hpp"
+#include "clearway/options.hpp"
+#include "clearway/standard_output.hpp"
+#include "io/hdf5.hpp"
+#include "io/result.hpp"
+#include "io/store.hpp"
+
+namespace clearway::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+ordered_json box_json(const Store& store) {
+  if (store.tree().empty()) return nullptr;
+  const Box box = position_box(store.quantisation(), store.tree()[0].box);
+  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
+}
+
+ordered_json describe(const Store& store) {
+  const StoreMetadata& m = store.metadata();
+  std::uint64_t packed = 0;
+  for (const std::uint32_t bytes : store.index().bytes) packed += bytes;
+  ordered_json sources = ordered_json::array();
+  for (const SourceFile& source : m.sources) {
+    sources.push_back(
+        {{"name", source.name}, {"bytes", source.bytes}, {"xxh64", hex(source.xxh64)}});
+  }
+  return {{"kind", "store"},
+          {"version", kStoreVersion},
+          {"points", m.point_count},
+          {"non_finite_points", m.input_points - m.point_count},
+          {"layout", m.layout},
+          {"cells", store.cells().size()},
+          {"cell_points", m.cell_points},
+          {"packed_bytes", packed},
+          {"scale", m.quantisation.scale},
+          {"offset", m.quantisation.offset},
+          {"bounds", box_json(store)},
+          {"length_unit", to_string(m.unit)},
+          {"crs_wkt", m.crs_wkt},
+          {"points_hash", hex(m.points_hash)},
+          {"fingerprint", hex(store.fingerprint())},
+          {"sources", sources}};
+}
+
+ordered_json describe(const ResultReader& result) {
+  const ResultHeader& h = result.header();
+  return {{"kind", "result"},
+          {"colliding_points", result.collisions()},
+          {"environment_points", h.environment_points},
+          {"radius", h.radius},
+          {"model_points", h.model_points},
+          {"poses", h.poses},
+          {"first_pose", h.first_pose},
+          {"scale", h.quantisation.scale},
+          {"offset", h.quantisation.offset},
+          {"crs_wkt", h.crs_wkt},
+          {"environment_hash", hex(h.environment_hash)},
+          {"model_hash", hex(h.model_hash)},
+          {"trajectory_hash", hex(h.trajectory_hash)}};
+}
+
+std::string text_of(const ordered_json& description) {
+  std::size_t width = 0;
+  for (const auto& [key, value] : description.items()) width = std::max(width, key.size());
+  std::string text;
+  for (const auto& [key, value] : description.items()) {
+    if (key == "sources") {
+      for (const auto& source : value) {
+        text += fmt::format("{:<{}}  {} ({} bytes, xxh64 {})\n", "source", width,
+                            source["name"].get<std::string>(), source["bytes"].get<std::uint64_t>(),
+                            source["xxh64"].get<std::string>());
+      }
+    } else {
+      text += fmt::format("{:<{}}  {}\n", key, width,
+                          value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+  return text;
+}
+
+struct Options {
+  std::filesystem::path file;
+  bool json = false;
+};
+
+void run_info(const Options& options) {
+  const bool result = hdf5::holds(options.file, "collisions");
+  const ordered_json description =
+      result ? describe(ResultReader(options.file)) : describe(Store(options.file));
+  print(options.json ? description.dump(2) + "\n" : text_of(description));
+}
+
+}  // namespace
+
+void add_info(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("info", "Print what is in a store or a result");
+  command->add_option("FILE", options->file, "Store or result")->type_name("FILE")->required();
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->footer("Lengths in the environment's unit (metres).\nExample: clearway info site.h5");
+  command->callback([options] { run_info(*options); });
+}
+
+}  // namespace clearway::tool

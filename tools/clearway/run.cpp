@@ -1,0 +1,218 @@
+#include <spdlog/spdlog.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "clearway/commands.hpp"
+#include "clearway/console.hpp"
+#include "clearway/memory_use.hpp"
+#include "clearway/options.hpp"
+#include "clearway/standard_output.hpp"
+#include "core/error.hpp"
+#include "cpu/kdtree_engine.hpp"
+#include "io/content_hash.hpp"
+#include "io/model.hpp"
+#include "io/store.hpp"
+#include "io/trajectory.hpp"
+#include "stream/collect.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct Options {
+  std::filesystem::path environment, model, trajectory, output;
+  double radius = 0;
+  std::string engine = "auto", device = "auto";
+  int threads = 0;
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  bool first_pose = false;
+  TrajectoryOptions trajectory_options;
+  bool force = false;
+  bool json = false;
+};
+
+/// Wall clock of the stages, seconds.
+struct Seconds {
+  double read = 0, compute = 0, write = 0, total = 0;
+};
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct Inputs {
+  explicit Inputs(const Options& options)
+      : store(options.environment),
+        model(read_model(options.model)),
+        poses(read_trajectory(options.trajectory, options.trajectory_options)) {}
+
+  Store store;
+  std::vector<Vec3> model;
+  std::vector<Pose> poses;
+};
+
+ResultHeader header_of(const Inputs& inputs, const Options& options) {
+  const StoreMetadata& metadata = inputs.store.metadata();
+  return {.environment_points = metadata.input_points,
+          .environment_hash = metadata.points_hash,
+          .model_points = inputs.model.size(),
+          .model_hash = hash_of_model(inputs.model),
+          .poses = inputs.poses.size(),
+          .trajectory_hash = hash_of_trajectory(inputs.poses),
+          .radius = options.radius,
+          .first_pose = options.first_pose,
+          .quantisation = metadata.quantisation,
+          .crs_wkt = metadata.crs_wkt};
+}
+
+/// Bytes that the engine and the inputs need; refused before anything starts where --memory is
+/// less.
+std::uint64_t check_memory(const Inputs& inputs, const Question& question, const Options& options) {
+  const int threads =
+      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  const std::uint64_t needed =
+      inputs.store.allocated_bytes() + inputs.model.capacity() * sizeof(Vec3) +
+      inputs.poses.capacity() * sizeof(Pose) + kdtree_memory_bytes(inputs.store, question, threads);
+  if (needed > options.memory_bytes) {
+    throw ResourceError("--memory " + format_size(options.memory_bytes) +
+                        " is too little: this run needs " + format_size(needed) +
+                        " beside the mapped store");
+  }
+  return needed;
+}
+
+nlohmann::ordered_json report_of(const Inputs& inputs, const HitSet& hits,
+                                 const KdTreeStatistics& statistics, const Seconds& seconds) {
+  const Store::Touched touched = inputs.store.touched();
+  return {{"environment_points", inputs.store.point_count()},
+          {"model_points", inputs.model.size()},
+          {"poses", inputs.poses.size()},
+          {"colliding_points", hits.count()},
+          {"engine", "kdtree"},
+          {"device", "cpu"},
+          {"searches", statistics.searches},
+          {"cells_total", inputs.store.cells().size()},
+          {"cells_read", touched.cells},
+          {"bytes_read", touched.bytes},
+          {"peak_host_bytes", peak_anonymous_bytes()},
+          {"peak_device_bytes", 0},
+          {"seconds",
+           {{"total", seconds.total},
+            {"context", 0.0},
+            {"plan", 0.0},
+            {"field", 0.0},
+            {"read", seconds.read},
+            {"upload", 0.0},
+            {"compute", seconds.compute},
+            {"write", seconds.write}}}};
+}
+
+void warn_of(const Inputs& inputs) {
+  if (inputs.poses.empty()) spdlog::warn("the trajectory has no poses: nothing can collide");
+  const LengthUnit unit = inputs.store.metadata().unit;
+  if (unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) {
+    spdlog::warn("the environment is in feet: radius, model and trajectory are taken in feet too");
+  }
+}
+
+void run_run(const Options& options) {
+  const Stopwatch total;
+  PendingFile output(options.output, options.force);
+  ConsoleProgress progress;
+  Seconds seconds;
+  const Inputs inputs(options);
+  warn_of(inputs);
+  const Question question{inputs.model, inputs.poses, options.radius, options.first_pose};
+  const std::uint64_t needed = check_memory(inputs, question, options);
+  seconds.read = total.seconds();
+
+  const Stopwatch compute;
+  KdTreeStatistics statistics;
+  const HitSet hits =
+      run_kdtree(inputs.store, question, {.threads = options.threads}, progress, &statistics);
+  seconds.compute = compute.seconds();
+  peak_anonymous_bytes();
+
+  const Stopwatch write;
+  write_collisions(inputs.store, hits, header_of(inputs, options), output.partial(),
+                   options.memory_bytes - needed, progress);
+  output.publish();
+  seconds.write = write.seconds();
+  seconds.total = total.seconds();
+  spdlog::info("{}: {} of {} environment points collide; engine kdtree on the CPU, {:.2f} s",
+               options.output.string(), format_count(hits.count()),
+               format_count(inputs.store.point_count()), seconds.total);
+  if (options.json) print(report_of(inputs, hits, statistics, seconds).dump(2) + "\n");
+}
+
+void add_inputs(CLI::App& command, Options& options) {
+  command.add_option("--env", options.environment, "The environment: a store of clearway convert")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--model", options.model, "The model's points: LAS, PLY or XYZ text, metres")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--radius", options.radius, "Search radius in metres, for example 0.1")
+      ->type_name("METRES")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  command.add_option("-o,--output", options.output, "The result, an HDF5 file")
+      ->type_name("FILE")
+      ->required();
+  const std::map<std::string, TrajectoryFormat> formats{{"auto", TrajectoryFormat::kAuto},
+                                                        {"matrix", TrajectoryFormat::kMatrix},
+                                                        {"tum", TrajectoryFormat::kTum},
+                                                        {"euroc", TrajectoryFormat::kEuroc},
+                                                        {"csv", TrajectoryFormat::kCsv}};
+  command
+      .add_option("--trajectory-format", options.trajectory_options.format,
+                  "Format of the trajectory where a guess could go wrong")
+      ->transform(CLI::CheckedTransformer(formats))
+      ->default_str("auto");
+  command.add_flag("--allow-non-rigid", options.trajectory_options.allow_non_rigid,
+                   "Accept matrices that scale or shear");
+}
+
+}  // namespace
+
+void add_run(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "run", "Find every environment point that the moving model comes closer to than the radius");
+  add_inputs(*command, *options);
+  command->add_flag("--first-pose", options->first_pose,
+                    "Also the first pose (0-based) that touches each colliding point");
+  command->add_option("--engine", options->engine, "kdtree; auto takes it")
+      ->check(CLI::IsMember({"auto", "kdtree"}))
+      ->capture_default_str();
+  command->add_option("--device", options->device, "cpu; auto takes it")
+      ->check(CLI::IsMember({"auto", "cpu"}))
+      ->capture_default_str();
+  add_threads_option(*command, options->threads);
+  add_memory_option(*command, options->memory_bytes);
+  command->add_flag("--force", options->force, "Overwrite an existing result");
+  command->add_flag("--json", options->json, "Print one JSON object about the run");
+  command->footer(
+      "A point collides when it is strictly closer than the radius to a model point at a pose.\n"
+      "The result is the same for every engine, number of threads and memory bound.\n"
+      "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
+      "-o out.h5");
+  command->callback([options] { run_run(*options); });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,48 @@
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "clearway/commands.hpp"
+#include "clearway/console.hpp"
+#include "clearway/options.hpp"
+#include "clearway/standard_output.hpp"
+#include "core/error.hpp"
+#include "io/hdf5.hpp"
+#include "io/verify_result.hpp"
+#include "io/verify_store.hpp"
+
+namespace clearway::tool {
+namespace {
+
+std::vector<std::string> faults_of(const std::filesystem::path& file) {
+  ConsoleProgress progress;
+  try {
+    if (hdf5::holds(file, "collisions")) return verify_result(ResultReader(file), progress);
+    return verify_store(Store(file), progress);
+  } catch (const InputError& fault) {
+    return {fault.what()};
+  }
+}
+
+bool run_verify(const std::filesystem::path& file) {
+  const std::vector<std::string> faults = faults_of(file);
+  for (const std::string& fault : faults) print(fault + "\n");
+  print(faults.empty() ? file.string() + ": sound\n" : file.string() + ": damaged\n");
+  return faults.empty();
+}
+
+}  // namespace
+
+void add_verify(CLI::App& program, int& exit_code) {
+  auto file = std::make_shared<std::filesystem::path>();
+  CLI::App* command =
+      program.add_subcommand("verify", "Re-read and check everything in a store or a result");
+  command->add_option("FILE", *file, "Store or result")->type_name("FILE")->required();
+  command->footer(
+      "Names every damaged cell (at most 20). Exit code 0: sound; 1: a fault, or not a complete\n"
+      "store or result; 4: the file cannot be opened.\nExample: clearway verify site.h5");
+  command->callback([file, &exit_code] { exit_code = run_verify(*file) ? 0 : 1; });
+}
+
+}  // namespace clearway::tool
