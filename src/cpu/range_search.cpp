@@ -15,9 +15,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Points of the environment that are narrowed down together.
 constexpr std::size_t kBatchPoints = 2048;
 /// Candidates with fewer points than this together are taken apart into points.
-constexpr std::uint64_t kGatherPoints = 1024;
+constexpr std::uint64_t kGatherPoints = 2048;
 /// A node is split while it is longer than this part of the reach.
-constexpr double kNodeExtent = 1.0;
+constexpr double kNodeExtent = 0.5;
 /// Levels of spheres and of halved runs of poses: the deepest stack of point batches.
 constexpr std::size_t kDeepest = ModelSpheres::kLevels + std::bit_width(PoseTree::kMostPoses) + 2;
 
