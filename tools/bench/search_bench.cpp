@@ -1,38 +1,57 @@
-// Times the kdtree engine against nanoflann; prints one JSON object.
+// Times the kdtree engine against nanoflann on a store, a model and a trajectory; prints one JSON
+// object.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "bench/compare_engines.hpp"
-#include "bench/stand_in_hall.hpp"
-#include "support/memory_cloud.hpp"
+#include "io/model.hpp"
+#include "io/store.hpp"
+#include "io/trajectory.hpp"
+
+namespace {
+
+struct Options {
+  std::string environment, model, trajectory;
+  double radius = 0.1;
+  std::size_t every_pose = 1;
+  bool first_pose = false;
+  clearway::CompareOptions compare;
+};
+
+void measure(const Options& options) {
+  using namespace clearway;
+  const Store store(options.environment);
+  const std::vector<Vec3> model = read_model(options.model);
+  const std::vector<Pose> all = read_trajectory(options.trajectory, {});
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < all.size(); i += options.every_pose) poses.push_back(all[i]);
+  const std::vector<Vec3> points =
+      options.compare.peer ? positions_by_slot(store) : std::vector<Vec3>{};
+  const Question question{model, poses, options.radius, options.first_pose};
+  std::cout << compare_engines(store, points, question, options.compare).dump(2) << '\n';
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  using namespace clearway;
-  std::uint64_t points = 500'000;
-  std::uint32_t model_points = 20'000;
-  std::uint32_t poses = 4'000;
-  double radius = 0.1;
-  bool first_pose = false;
-  CompareOptions options;
-  CLI::App app("Times the kdtree engine against nanoflann on a synthetic hall");
-  app.add_option("--points", points, "environment points");
-  app.add_option("--model-points", model_points, "model points");
-  app.add_option("--poses", poses, "poses");
-  app.add_option("--radius", radius, "search radius, metres");
-  app.add_option("--threads", options.threads, "threads, 0 for all");
-  app.add_option("--repetitions", options.repetitions, "runs of each engine; the median counts")
+  Options options;
+  CLI::App app("Times the kdtree engine against nanoflann on the same points, poses and threads");
+  app.add_option("--env", options.environment, "store")->required();
+  app.add_option("--model", options.model, "model points")->required();
+  app.add_option("--trajectory", options.trajectory, "poses")->required();
+  app.add_option("--radius", options.radius, "search radius, metres")->capture_default_str();
+  app.add_option("--every-pose", options.every_pose, "take every N-th pose only")
       ->check(CLI::PositiveNumber);
-  app.add_flag("--first-pose", first_pose, "also find first poses (kdtree only)");
-  app.add_flag("!--no-peer", options.peer, "without nanoflann");
+  app.add_option("--threads", options.compare.threads, "threads, 0 for all");
+  app.add_option("--repetitions", options.compare.repetitions,
+                 "runs of each engine; the median counts")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--first-pose", options.first_pose, "also find first poses (kdtree only)");
+  app.add_flag("!--no-peer", options.compare.peer, "without nanoflann");
   CLI11_PARSE(app, argc, argv);
   try {
-    const Hall hall = make_hall(points, model_points, poses, 1);
-    const Quantisation quantisation{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
-    const MemoryCloud cloud(quantise(hall.environment, quantisation), quantisation);
-    const auto positions = positions_by_slot(cloud);
-    const Question question{hall.model, hall.poses, radius, first_pose};
-    std::cout << compare_engines(cloud, positions, question, options).dump(2) << '\n';
+    measure(options);
   } catch (const std::exception& error) {
     std::cerr << "clearway_search_bench: " << error.what() << '\n';
     return 4;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <source_location>
+#include <string>
+
+#include "core/error.hpp"
+
+namespace clearway {
+
+/// Throws ResourceError naming the call's place and CUDA's reason. After a kernel launch:
+/// check_cuda(cudaGetLastError()).
+inline void check_cuda(cudaError_t status,
+                       std::source_location where = std::source_location::current()) {
+  if (status == cudaSuccess) return;
+  throw ResourceError(std::string("CUDA failed at ") + where.file_name() + ":" +
+                      std::to_string(where.line()) + ": " + cudaGetErrorString(status));
+}
+
+}  // namespace clearway

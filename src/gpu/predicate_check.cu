@@ -1,0 +1,36 @@
+#include "gpu/device_buffer.hpp"
+#include "gpu/predicate_check.hpp"
+
+namespace clearway {
+namespace {
+
+__global__ void decide_cases_kernel(const PredicateCase* cases, PredicateAnswer* answers,
+                                    std::size_t count) {
+  const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (i < count) answers[i] = decide(cases[i]);
+}
+
+}  // namespace
+
+bool has_cuda_device() {
+  int count = 0;
+  return cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
+}
+
+std::vector<PredicateAnswer> decide_on_device(const std::vector<PredicateCase>& cases) {
+  constexpr unsigned kThreads = 256;
+  std::vector<PredicateAnswer> answers(cases.size());
+  if (cases.empty()) return answers;
+  const DeviceBuffer<PredicateCase> in(cases.size());
+  const DeviceBuffer<PredicateAnswer> out(cases.size());
+  check_cuda(cudaMemcpy(in.data(), cases.data(), cases.size() * sizeof(PredicateCase),
+                        cudaMemcpyHostToDevice));
+  const auto blocks = static_cast<unsigned>((cases.size() + kThreads - 1) / kThreads);
+  decide_cases_kernel<<<blocks, kThreads>>>(in.data(), out.data(), cases.size());
+  check_cuda(cudaGetLastError());
+  check_cuda(cudaMemcpy(answers.data(), out.data(), answers.size() * sizeof(PredicateAnswer),
+                        cudaMemcpyDeviceToHost));
+  return answers;
+}
+
+}  // namespace clearway

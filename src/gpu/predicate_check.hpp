@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/pose.hpp"
+#include "core/predicate.hpp"
+
+namespace clearway {
+
+/// One pair put to the predicate, by the body that the kernel and its host twin share.
+struct PredicateCase {
+  Vec3 environment;
+  Vec3 model;
+  Pose pose;
+  double radius;
+};
+
+struct PredicateAnswer {
+  double squared_distance;
+  bool hit;
+};
+
+CLEARWAY_HD inline PredicateAnswer decide(const PredicateCase& c) {
+  const Vec3 moved = transform(c.pose, c.model);
+  return {squared_distance(c.environment, moved), collides(c.environment, moved, c.radius)};
+}
+
+/// Whether this machine has a CUDA device that the program can use.
+bool has_cuda_device();
+
+/// The predicate's answers computed on the current CUDA device: bit for bit the host's, or the
+/// device must not be used. Throws ResourceError with CUDA's own words.
+std::vector<PredicateAnswer> decide_on_device(const std::vector<PredicateCase>& cases);
+
+}  // namespace clearway
