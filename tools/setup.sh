@@ -1,0 +1,23 @@
+# Sourced by the scripts beside it: installs what Clearway needs on Debian 12, where it is missing.
+
+clearway_packages=(
+  cmake g++ ninja-build
+  libhdf5-dev libeigen3-dev libtbb-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libxxhash-dev
+  libnanoflann-dev catch2
+  hdf5-tools python3-h5py python3-matplotlib python3-pil
+)
+
+install_missing_packages() {
+  local missing=() package
+  for package in "${clearway_packages[@]}"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  echo "Installing: ${missing[*]}"
+  local as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}"
+}

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Builds Clearway and runs all tests, after installing missing packages (Debian 12).
+# CLEARWAY_TEST_DATA=FOLDER adds the tests on real scans; without it they are skipped and say so.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source tools/setup.sh
+install_missing_packages
+
+cmake --preset release -DCLEARWAY_WERROR=ON
+cmake --build build/release
+log=build/release/ctest.log
+status=0
+ctest --test-dir build/release --output-on-failure -j "$(nproc)" 2>&1 | tee "$log" || status=$?
+if [ -n "${CLEARWAY_TEST_DATA:-}" ] && grep -q 'Skipped' "$log"; then
+  echo "A test was skipped although CLEARWAY_TEST_DATA is set." >&2
+  exit 1
+fi
+exit "$status"
