@@ -9,12 +9,19 @@ namespace {
 constexpr std::size_t kMinimumAt = 5;  // uint32 minbits, one byte 8, then uint64 minimum
 
 template <std::integral Value>
-unsigned bits_for_span(Value minimum, Value maximum) {
+struct Header {
+  std::uint32_t minbits;
+  Value minimum;
+};
+
+template <std::integral Value>
+Header<Value> header_for(Value minimum, Value maximum) {
   using Unsigned = std::make_unsigned_t<Value>;
   const auto range =
       static_cast<Unsigned>(static_cast<Unsigned>(maximum) - static_cast<Unsigned>(minimum));
-  if (range > std::numeric_limits<Unsigned>::max() - 2) return kValueBits<Value>;
-  return static_cast<unsigned>(std::bit_width(range));  // ceil(log2(range + 1))
+  // HDF5 gives up on such a range before it notes the minimum.
+  if (range > std::numeric_limits<Unsigned>::max() - 2) return {kValueBits<Value>, 0};
+  return {static_cast<std::uint32_t>(std::bit_width(range)), minimum};  // ceil(log2(range + 1))
 }
 
 }  // namespace
@@ -54,20 +61,18 @@ PackedChunk<Value>::PackedChunk(std::span<const std::byte> bytes, std::uint32_t 
 template <std::integral Value>
 void append_packed_chunk(std::span<const Value> values, std::vector<std::byte>& out) {
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
-  const Value minimum = *least;
-  const unsigned minbits = bits_for_span(minimum, *greatest);
+  const auto [minbits, minimum] = header_for(*least, *greatest);
   const std::size_t start = out.size();
   out.resize(start + packed_bytes<Value>(values.size(), minbits));
   std::byte* to = out.data() + start;
 
-  const std::uint32_t minbits_word = minbits;
   std::uint64_t minimum_word = 0;
   if constexpr (std::is_signed_v<Value>) {
     minimum_word = static_cast<std::uint64_t>(std::int64_t{minimum});
   } else {
     minimum_word = minimum;
   }
-  std::memcpy(to, &minbits_word, 4);
+  std::memcpy(to, &minbits, 4);
   to[4] = std::byte{8};
   std::memcpy(to + kMinimumAt, &minimum_word, 8);
   to += kPackedHeaderBytes;

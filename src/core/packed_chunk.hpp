@@ -44,6 +44,7 @@ class PackedChunk {
 
   std::uint32_t size() const { return count_; }
   unsigned minbits() const { return minbits_; }
+  /// Of the header: not that of the values where minbits() is the full width.
   Value minimum() const { return static_cast<Value>(minimum_); }
 
   /// Value `index` < size().

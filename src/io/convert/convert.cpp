@@ -46,8 +46,8 @@ class Stopwatch {
 
 void check_options(const ConversionOptions& options) {
   if (options.memory_bytes < kLeastConversionMemory) {
-    throw UsageError("--memory: a conversion needs at least " +
-                     std::to_string(kLeastConversionMemory / kMiB) + "M");
+    throw ResourceError("--memory is too little: a conversion needs at least " +
+                        std::to_string(kLeastConversionMemory / kMiB) + "M");
   }
   if (options.cell_points < kLeastCellPoints || options.cell_points > kMostCellPoints) {
     throw UsageError("--cell-points " + std::to_string(options.cell_points) + ": expected " +
@@ -159,6 +159,7 @@ class Conversion {
   ConversionReport run() {
     EnvironmentSource environment(options_.inputs,
                                   {options_.scale, options_.ignore_crs, options_.strict, folder_});
+    for (const auto& file : environment.files()) output_.refuse_input(file);
     if (environment.declared_points()) check_disk(folder_, *environment.declared_points());
     auto sources = std::async(std::launch::async, describe_all, environment.files());
     const Lattice lattice = lattice_for(options_, environment.quantisation());

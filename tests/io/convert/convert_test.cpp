@@ -1,0 +1,201 @@
+#include "io/convert/convert.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "io/hdf5.hpp"
+#include "support/clouds.hpp"
+#include "support/store_order.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// One LAS file and the conversion of it.
+struct Scan {
+  explicit Scan(std::vector<Quantum> cloud, std::uint32_t cell_points = 64)
+      : points(std::move(cloud)) {
+    write_las(folder / "a.las", points);
+    options = conversion_of({folder / "a.las"}, folder / "a.h5", cell_points);
+  }
+
+  ConversionReport convert() const { return convert_quietly(options); }
+  std::string converted_bytes() const {
+    convert();
+    return bytes_of(options.output);
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "")) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  ScratchFolder folder;
+  std::vector<Quantum> points;
+  ConversionOptions options;
+};
+
+std::array<std::int64_t, 3> cube_of(const Quantum& q, std::int64_t quanta) {
+  std::array<std::int64_t, 3> cube{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    cube[k] = (std::int64_t{q[k]} + 1'000'000 * quanta) / quanta;  // rounded down
+  }
+  return cube;
+}
+
+/// A cell's points, and a bucket's, lie in one cube.
+void check_cubes(const Store& store, std::int64_t quanta) {
+  for (const TopNode& node : store.top_tree()) {
+    if (node.right != 0) continue;
+    const auto points = points_of_cells(store, node.first_cell, node.cell_count);
+    for (const StoredPoint& p : points) {
+      REQUIRE(cube_of(p.q, quanta) == cube_of(points[0].q, quanta));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the store is the same whatever threads, memory and repetition") {
+  Scan scan(hard_clouds(70000, 5)[6].points, 1000);
+  const std::string bytes = scan.converted_bytes();
+  CHECK(scan.converted_bytes() == bytes);
+  for (const auto [threads, mebibytes] : {std::pair{1, 224}, {2, 512}, {4, 4096}, {3, 224}}) {
+    scan.options.threads = threads;
+    scan.options.memory_bytes = std::uint64_t(mebibytes) << 20;
+    CHECK(scan.converted_bytes() == bytes);
+  }
+  CHECK(scan.files() == std::vector<std::string>{"a.h5", "a.las"});
+}
+
+TEST_CASE("a store says what it holds") {
+  const Scan scan(cube_cloud(777, -5000, 5000, 1), 100);
+  const ConversionReport report = scan.convert();
+  CHECK(report.cells == 8);
+  CHECK(report.largest_change == 0);
+  CHECK(report.non_finite_points == 0);
+  CHECK(report.temporary_bytes == 777 * 20);
+  CHECK(report.output_bytes == std::filesystem::file_size(scan.options.output));
+  CHECK(report.remarks.empty());
+  const Store store(scan.options.output);
+  const StoreMetadata& metadata = store.metadata();
+  CHECK(metadata.point_count == 777);
+  CHECK(metadata.input_points == 777);
+  CHECK(metadata.cell_points == 100);
+  CHECK(metadata.quantisation == kMillimetres);
+  CHECK(metadata.layout == "adaptive");
+  REQUIRE(metadata.sources.size() == 1);
+  CHECK(metadata.sources[0].name == "a.las");
+  CHECK(metadata.sources[0].bytes == std::filesystem::file_size(scan.folder / "a.las"));
+  CHECK(points_by_source(store) == scan.points);
+}
+
+TEST_CASE("no points make an empty store") {
+  const Scan scan({});
+  scan.convert();
+  const Store store(scan.options.output);
+  CHECK(store.point_count() == 0);
+  CHECK(store.cells().empty());
+  CHECK(store.tree().empty());
+  CHECK(faults_of(store).empty());
+}
+
+TEST_CASE("regular layouts keep to their cubes on both sides of the origin") {
+  Scan scan(cube_cloud(20000, -3000, 3000, 8));
+  const std::string adaptive_hash = [&] {
+    scan.convert();
+    return std::to_string(Store(scan.options.output).metadata().points_hash);
+  }();
+  for (const std::int64_t quanta : {16, 17, 1000, 1024, 3001, 10000}) {
+    CAPTURE(quanta);
+    scan.options.regular_size = static_cast<double>(quanta) * 0.001;
+    scan.convert();
+    const Store store(scan.options.output);
+    check_cubes(store, quanta);
+    CHECK(points_by_source(store) == scan.points);
+    CHECK(structure_faults(store).empty());
+    CHECK(faults_of(store).empty());
+    CHECK(std::to_string(store.metadata().points_hash) == adaptive_hash);
+    CHECK_THAT(store.metadata().layout, Catch::StartsWith("regular:"));
+  }
+}
+
+TEST_CASE("a regular layout over the whole range of the integers") {
+  Scan scan(cube_cloud(5000, -2147483648LL, 2147483647LL, 8));
+  scan.points.push_back({2147483647, 2147483647, 2147483647});
+  scan.points.push_back({-2147483647 - 1, -2147483647 - 1, -2147483647 - 1});
+  write_las(scan.folder / "a.las", scan.points);
+  for (const double size : {200000.0, 2147483.648, 2147483.649, 4294967.296}) {
+    CAPTURE(size);
+    scan.options.regular_size = size;
+    scan.convert();
+    const Store store(scan.options.output);
+    check_cubes(store, static_cast<std::int64_t>(std::nearbyint(size * 1000)));
+    CHECK(points_by_source(store) == scan.points);
+  }
+}
+
+TEST_CASE("sizes of cubes that cannot be are refused") {
+  Scan scan(cube_cloud(200'000, -2147483648LL, 2147483647LL, 1));
+  for (const double size : {0.0, -1.0, 0.015, 1e300, std::nan("")}) {
+    scan.options.regular_size = size;
+    CAPTURE(size);
+    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("regular:SIZE"));
+  }
+  scan.options.regular_size = 1.0;
+  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("expected a larger SIZE"));
+  CHECK(scan.files() == std::vector<std::string>{"a.las"});
+}
+
+TEST_CASE("sizes of cells out of range are refused") {
+  Scan scan(cube_cloud(100, -50, 50, 1));
+  for (const std::uint32_t cell_points : {0u, 63u, (1u << 20) + 1}) {
+    scan.options.cell_points = cell_points;
+    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("64 to 1048576"));
+  }
+}
+
+TEST_CASE("too little memory is refused with the least that will do") {
+  Scan scan(cube_cloud(100, -50, 50, 1));
+  scan.options.memory_bytes = kLeastConversionMemory - 1;
+  CHECK_THAT(conversion_refusal<ResourceError>(scan.options), Contains("224M"));
+  scan.options.memory_bytes = kLeastConversionMemory;
+  CHECK(conversion_refusal(scan.options).empty());
+}
+
+TEST_CASE("an existing output stays as it is unless it may be overwritten") {
+  Scan scan(cube_cloud(100, -50, 50, 1));
+  put_bytes(scan.options.output, "mine");
+  scan.options.overwrite = false;
+  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("--force"));
+  CHECK(bytes_of(scan.options.output) == "mine");
+  scan.options.overwrite = true;
+  scan.convert();
+  CHECK(points_by_source(Store(scan.options.output)) == scan.points);
+}
+
+TEST_CASE("an input is never overwritten by the output") {
+  Scan scan(cube_cloud(100, -50, 50, 1));
+  const std::string before = bytes_of(scan.folder / "a.las");
+  for (const auto& input : {scan.folder / "a.las", scan.folder / ""}) {
+    scan.options.inputs = {input};
+    scan.options.output = scan.folder / "a.las";
+    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("is also an input"));
+    CHECK(bytes_of(scan.folder / "a.las") == before);
+  }
+}
+
+TEST_CASE("a failing conversion leaves nothing behind") {
+  Scan scan(cube_cloud(1000, -50, 50, 1));
+  const std::string las = bytes_of(scan.folder / "a.las");
+  put_bytes(scan.folder / "a.las", las.substr(0, las.size() - 10));
+  CHECK_THAT(conversion_refusal<InputError>(scan.options), Contains("a.las"));
+  CHECK(scan.files() == std::vector<std::string>{"a.las"});
+  put_bytes(scan.options.output, "mine");
+  CHECK_FALSE(conversion_refusal<InputError>(scan.options).empty());
+  CHECK(bytes_of(scan.options.output) == "mine");
+}
