@@ -260,7 +260,7 @@ void EnvironmentSource::append_rounded(const PointBatch& batch, const Input& inp
     if (!is_finite(p)) {
       drop_non_finite(file_points_ - batch.size() + i);
       if (out.offsets.empty()) {
-        for (std::uint32_t j = 0; j < i; ++j) out.offsets.push_back(j);
+        for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
         out.offsets.reserve(batch.size());
       }
       continue;
