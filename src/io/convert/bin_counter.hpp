@@ -20,7 +20,7 @@ inline constexpr std::uint64_t kAllSources = ~std::uint64_t{0};
 /// occupied, every 2 x 2 x 2 bins become one. The outcome is a function of the points alone.
 class BinCounter {
  public:
-  /// least_shift >= 2: log2 of the finest bin's side.
+  /// least_shift: log2 of the finest bin's side. most_bins > 0.
   BinCounter(unsigned least_shift, std::size_t most_bins);
 
   void add(const LatticePoint& point, std::uint64_t count = 1);
@@ -31,19 +31,21 @@ class BinCounter {
   std::vector<Bin> bins() const;
 
  private:
+  using Key = std::array<std::uint64_t, 3>;  // a regular lattice has up to 62 bits an axis
+
   struct Slot {
-    std::array<std::uint32_t, 3> key;
+    Key key;
     std::uint64_t count;  // 0: free
   };
 
-  Slot& find(const std::array<std::uint32_t, 3>& key);
-  void add_key(const std::array<std::uint32_t, 3>& key, std::uint64_t count);
+  Slot& find(const Key& key);
+  void add_key(const Key& key, std::uint64_t count);
   void coarsen();
 
   unsigned shift_;
   std::size_t most_bins_;
   std::size_t occupied_ = 0;
-  std::vector<Slot> slots_;  // open addressing, at most half full
+  std::vector<Slot> slots_;  // open addressing, half full with most_bins
 };
 
 }  // namespace clearway
