@@ -156,6 +156,13 @@ PendingFile::~PendingFile() {
   if (!published_) ::unlink(partial_.c_str());
 }
 
+void PendingFile::refuse_input(const std::filesystem::path& input) const {
+  std::error_code missing;
+  if (std::filesystem::equivalent(input, final_, missing)) {
+    throw UsageError(final_.string() + ": is also an input, expected another name for the output");
+  }
+}
+
 void PendingFile::publish() {
   File::open_for_reading(partial_).sync();
   const unsigned flags = overwrite_ ? 0 : RENAME_NOREPLACE;

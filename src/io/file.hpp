@@ -59,6 +59,9 @@ class PendingFile {
   PendingFile& operator=(const PendingFile&) = delete;
   ~PendingFile();
 
+  /// Throws UsageError when `input` is the file that publish() would replace.
+  void refuse_input(const std::filesystem::path& input) const;
+
   /// Where to write: the final name with ".partial" appended.
   const std::filesystem::path& partial() const { return partial_; }
 

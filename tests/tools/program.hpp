@@ -15,10 +15,13 @@ struct Outcome {
   std::string out, err;
 };
 
-/// Runs the built program with `arguments` (shell words), its output into files of `folder`.
-inline Outcome run_program(const ScratchFolder& folder, const std::string& arguments) {
+/// Runs the built program with `arguments` (shell words), its output into files of `folder`;
+/// `pipe`, where given, is a file whose bytes come through a pipe to standard input.
+inline Outcome run_program(const ScratchFolder& folder, const std::string& arguments,
+                           const std::filesystem::path& pipe = {}) {
   const auto out = folder / "stdout.txt", err = folder / "stderr.txt";
-  const std::string command = std::string("'") + CLEARWAY_PROGRAM + "' " + arguments + " >'" +
+  const std::string before = pipe.empty() ? "" : "cat '" + pipe.string() + "' | ";
+  const std::string command = before + "'" + CLEARWAY_PROGRAM + "' " + arguments + " >'" +
                               out.string() + "' 2>'" + err.string() + "'";
   const int status = std::system(command.c_str());
   if (status == -1 || !WIFEXITED(status)) throw std::runtime_error("did not exit: " + command);

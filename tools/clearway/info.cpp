@@ -8,6 +8,7 @@
 #include "clearway/commands.hpp"
 #include "clearway/options.hpp"
 #include "clearway/standard_output.hpp"
+#include "io/file.hpp"
 #include "io/hdf5.hpp"
 #include "io/result.hpp"
 #include "io/store.hpp"
@@ -94,6 +95,7 @@ struct Options {
 };
 
 void run_info(const Options& options) {
+  File::open_for_reading(options.file);  // a missing file is no malformed one
   const bool result = hdf5::holds(options.file, "collisions");
   const ordered_json description =
       result ? describe(ResultReader(options.file)) : describe(Store(options.file));

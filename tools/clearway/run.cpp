@@ -2,6 +2,7 @@
 #include <tbb/task_arena.h>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -127,7 +128,11 @@ void warn_of(const Inputs& inputs) {
 
 void run_run(const Options& options) {
   const Stopwatch total;
+  if (!std::isfinite(options.radius)) throw UsageError("--radius: expected a finite length");
   PendingFile output(options.output, options.force);
+  for (const auto& input : {options.environment, options.model, options.trajectory}) {
+    output.refuse_input(input);
+  }
   ConsoleProgress progress;
   Seconds seconds;
   const Inputs inputs(options);

@@ -8,6 +8,7 @@
 #include "clearway/options.hpp"
 #include "clearway/standard_output.hpp"
 #include "core/error.hpp"
+#include "io/file.hpp"
 #include "io/hdf5.hpp"
 #include "io/verify_result.hpp"
 #include "io/verify_store.hpp"
@@ -16,6 +17,7 @@ namespace clearway::tool {
 namespace {
 
 std::vector<std::string> faults_of(const std::filesystem::path& file) {
+  File::open_for_reading(file);  // a missing file is no damaged one
   ConsoleProgress progress;
   try {
     if (hdf5::holds(file, "collisions")) return verify_result(ResultReader(file), progress);

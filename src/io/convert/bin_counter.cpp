@@ -6,7 +6,7 @@
 namespace clearway {
 namespace {
 
-std::uint64_t hash_of(const std::array<std::uint32_t, 3>& key) {
+std::uint64_t hash_of(const std::array<std::uint64_t, 3>& key) {
   std::uint64_t h = key[0] * 0x9E3779B97F4A7C15U;
   h = (h ^ (h >> 32) ^ key[1]) * 0xD6E8FEB86659FD93U;
   h = (h ^ (h >> 32) ^ key[2]) * 0x9E3779B97F4A7C15U;
@@ -16,16 +16,18 @@ std::uint64_t hash_of(const std::array<std::uint32_t, 3>& key) {
 }  // namespace
 
 BinCounter::BinCounter(unsigned least_shift, std::size_t most_bins)
-    : shift_(least_shift), most_bins_(most_bins), slots_(std::bit_ceil(2 * (most_bins + 1))) {}
+    : shift_(least_shift),
+      most_bins_(most_bins),
+      slots_(std::bit_ceil(2 * std::max<std::size_t>(most_bins, 2))) {}
 
-BinCounter::Slot& BinCounter::find(const std::array<std::uint32_t, 3>& key) {
+BinCounter::Slot& BinCounter::find(const Key& key) {
   const std::size_t mask = slots_.size() - 1;
   std::size_t at = hash_of(key) & mask;
   while (slots_[at].count != 0 && slots_[at].key != key) at = (at + 1) & mask;
   return slots_[at];
 }
 
-void BinCounter::add_key(const std::array<std::uint32_t, 3>& key, std::uint64_t count) {
+void BinCounter::add_key(const Key& key, std::uint64_t count) {
   Slot& slot = find(key);
   if (slot.count == 0) {
     slot.key = key;
@@ -35,8 +37,8 @@ void BinCounter::add_key(const std::array<std::uint32_t, 3>& key, std::uint64_t 
 }
 
 void BinCounter::add(const LatticePoint& point, std::uint64_t count) {
-  std::array<std::uint32_t, 3> key;
-  for (std::size_t k = 0; k < 3; ++k) key[k] = static_cast<std::uint32_t>(point[k] >> shift_);
+  Key key;
+  for (std::size_t k = 0; k < 3; ++k) key[k] = point[k] >> shift_;
   add_key(key, count);
   while (occupied_ > most_bins_) coarsen();
 }
@@ -57,7 +59,7 @@ void BinCounter::merge(const BinCounter& other) {
   for (const Slot& slot : other.slots_) {
     if (slot.count == 0) continue;
     LatticePoint corner{};
-    for (std::size_t k = 0; k < 3; ++k) corner[k] = std::uint64_t{slot.key[k]} << other.shift_;
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = slot.key[k] << other.shift_;
     add(corner, slot.count);
   }
 }
@@ -68,7 +70,7 @@ std::vector<Bin> BinCounter::bins() const {
     if (slot.count == 0) continue;
     Bin bin{{}, {}, slot.count};
     for (std::size_t k = 0; k < 3; ++k) {
-      bin.lo[k] = std::uint64_t{slot.key[k]} << shift_;
+      bin.lo[k] = slot.key[k] << shift_;
       bin.hi[k] = bin.lo[k] + (std::uint64_t{1} << shift_);
     }
     bin.lo[3] = 0;

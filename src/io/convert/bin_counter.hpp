@@ -31,19 +31,20 @@ class BinCounter {
   std::vector<Bin> bins() const;
 
  private:
+  using Key = std::array<std::uint64_t, 3>;  // cubes of unlike axes take more than 32 bits
   struct Slot {
-    std::array<std::uint32_t, 3> key;
+    Key key;
     std::uint64_t count;  // 0: free
   };
 
-  Slot& find(const std::array<std::uint32_t, 3>& key);
-  void add_key(const std::array<std::uint32_t, 3>& key, std::uint64_t count);
+  Slot& find(const Key& key);
+  void add_key(const Key& key, std::uint64_t count);
   void coarsen();
 
   unsigned shift_;
   std::size_t most_bins_;
   std::size_t occupied_ = 0;
-  std::vector<Slot> slots_;  // open addressing, at most half full
+  std::vector<Slot> slots_;  // open addressing, about half full at most
 };
 
 }  // namespace clearway

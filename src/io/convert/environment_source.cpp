@@ -34,6 +34,14 @@ double fitting_scale(double length) {
   return found == std::end(kScales) ? *std::prev(found) : *found;
 }
 
+/// A pipe can be read only once.
+void refuse_pipe(const std::filesystem::path& file) {
+  if (std::filesystem::is_regular_file(file)) return;
+  throw InputError(file.string() +
+                   ": is a pipe or device, expected a file; LAS can be piped to standard input: "
+                   "clearway convert -");
+}
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
@@ -58,6 +66,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
                     options.temporary_folder);
   } else {
     files_ = list_point_files(inputs);
+    std::for_each(files_.begin(), files_.end(), refuse_pipe);
   }
   open_inputs();
   check_crs();
@@ -233,8 +242,8 @@ bool EnvironmentSource::read(QuantaBatch& batch) {
 
 void EnvironmentSource::append_kept(const PointBatch& batch, const Input& input, QuantaBatch& out) {
   out.quanta = batch.quanta;
-  if (input.shift == std::array<std::int64_t, 3>{}) return;
   const Quantisation& own = *input.info.quantisation;
+  if (own == quantisation_) return;
   for (auto& q : out.quanta) {
     for (std::size_t k = 0; k < 3; ++k) {
       const int axis = static_cast<int>(k);
@@ -260,7 +269,7 @@ void EnvironmentSource::append_rounded(const PointBatch& batch, const Input& inp
     if (!is_finite(p)) {
       drop_non_finite(file_points_ - batch.size() + i);
       if (out.offsets.empty()) {
-        for (std::uint32_t j = 0; j < i; ++j) out.offsets.push_back(j);
+        for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
         out.offsets.reserve(batch.size());
       }
       continue;
