@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/hit_set.hpp"
 #include "cpu/brute_force.hpp"
 #include "io/las_bytes.hpp"
 #include "io/model.hpp"
@@ -117,9 +118,10 @@ TEST_CASE("every subcommand explains itself with units and an example") {
 TEST_CASE("wrong usage exits with 2") {
   const Work work;
   check_refused(work.run(""), 2, "subcommand");
-  check_refused(work.run("fly"), 2, "fly");
+  check_refused(work.run("fly"), 2, "subcommand");
   check_refused(work.run("convert a.las"), 2, "--output");
-  const std::string convert = "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");
+  const std::string convert =
+      "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");
   check_refused(work.run(convert + " --cell-points 63"), 2, "--cell-points");
   check_refused(work.run(convert + " --memory much"), 2, "--memory");
   check_refused(work.run(convert + " --memory -1"), 2, "--memory");
@@ -154,14 +156,14 @@ TEST_CASE("bad input exits with 3 and names the file") {
                 "bad.las");
   check_refused(work.run_hall(work.path("bad.las"), "out.h5"), 3, "bad.las");
   check_refused(work.run("info " + work.path("bad.las")), 3, "bad.las");
-  check_refused(work.run("run --env " + work.hall / "site.h5" + " --model " +
-                         work.path("bad.las") + " --trajectory " + work.hall / "trajectory.txt" +
-                         " --radius 0.1 -o " + work.path("out.h5")),
+  check_refused(work.run("run --env " + work.hall / "site.h5" + " --model " + work.path("bad.las") +
+                         " --trajectory " + work.hall / "trajectory.txt" + " --radius 0.1 -o " +
+                         work.path("out.h5")),
                 3, "bad.las");
-  check_refused(work.run("run --env " + work.hall / "site.h5" + " --model " +
-                         work.hall / "model.ply" + " --trajectory " + work.path("bad.txt") +
-                         " --radius 0.1 -o " + work.path("out.h5")),
-                3, "bad.txt");
+  check_refused(
+      work.run("run --env " + work.hall / "site.h5" + " --model " + work.hall / "model.ply" +
+               " --trajectory " + work.path("bad.txt") + " --radius 0.1 -o " + work.path("out.h5")),
+      3, "bad.txt");
   REQUIRE(work.run_hall(work.hall / "site.h5", "result.h5").exit_code == 0);
   check_refused(work.run_hall(work.path("result.h5"), "out.h5"), 3, "not a store");
   check_refused(work.run("compare " + work.hall / "site.h5" + " " + work.path("result.h5")), 3,
@@ -175,14 +177,15 @@ TEST_CASE("a missing file or folder exits with 4 and is named") {
   check_refused(work.run("info " + none), 4, "none.h5");
   check_refused(work.run("verify " + none), 4, "none.h5");
   check_refused(work.run_hall(none, "out.h5"), 4, "none.h5");
-  check_refused(work.run("convert " + work.hall / "environment.las" + " -o " +
-                         work.path("nowhere/a.h5")),
-                4, "nowhere");
+  check_refused(
+      work.run("convert " + work.hall / "environment.las" + " -o " + work.path("nowhere/a.h5")), 4,
+      "nowhere");
 }
 
 TEST_CASE("too little memory exits with 4 and says what would do") {
   const Work work;
-  const std::string convert = "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");
+  const std::string convert =
+      "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");
   check_refused(work.run(convert + " --memory 223M"), 4, "at least 224M");
   CHECK(work.run(convert + " --memory 224M").exit_code == 0);
   check_refused(work.run_hall(work.hall / "site.h5", "out.h5", "--memory 1K"), 4, "needs");
@@ -254,8 +257,9 @@ TEST_CASE("the result is the same whatever threads, cells and layout") {
                 .exit_code == 0);
     CHECK(work.bytes("out.h5") == expected);
   }
-  for (const char* options : {"--cell-points 1000", "--cell-points 64", "--layout regular:5",
-                              "--layout regular:0.5 --cell-points 100"}) {
+  for (const char* options :
+       {"--cell-points 1000", "--cell-points 64", "--layout regular:5 --cell-points 1000",
+        "--layout regular:0.5 --cell-points 100"}) {
     CAPTURE(options);
     REQUIRE(work.run("convert --force " + work.hall / "environment.las" + " -o " +
                      work.path("site.h5") + " " + options)
@@ -296,7 +300,7 @@ TEST_CASE("standard input makes the store of the file but for the description of
   las.points = cube_cloud(5000, -3000, 3000, 1);
   las.evlrs = {{"LASF_Projection", 2112, R"(PROJCS["m",GEOGCS["g"],UNIT["metre",1]])"}};
   put_bytes(work.folder / "a.las", las.build());
-  for (const char* options : {"", " --scale 0.01", " --layout regular:1"}) {
+  for (const char* options : {"", " --scale 0.01", " --layout regular:5"}) {
     CAPTURE(options);
     const std::string end = std::string(" --cell-points 100 --force") + options + " -o ";
     REQUIRE(work.run("convert " + work.path("a.las") + end + work.path("file.h5")).exit_code == 0);

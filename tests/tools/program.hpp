@@ -15,8 +15,8 @@ struct Outcome {
   std::string out, err;
 };
 
-/// Runs the built program with `arguments` (shell words), its output into files of `folder`; `pipe`,
-/// where given, is a file whose bytes come through a pipe to standard input.
+/// Runs the built program with `arguments` (shell words), its output into files of `folder`;
+/// `pipe`, where given, is a file whose bytes come through a pipe to standard input.
 inline Outcome run_program(const ScratchFolder& folder, const std::string& arguments,
                            const std::filesystem::path& pipe = {}) {
   const auto out = folder / "stdout.txt", err = folder / "stderr.txt";

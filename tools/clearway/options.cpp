@@ -3,10 +3,20 @@
 #include <cstdio>
 
 namespace clearway::tool {
+namespace {
+
+/// Unsigned numbers would wrap round.
+std::string refuse_minus(const std::string& size) {
+  return size.find('-') == std::string::npos ? "" : size + " is not a size";
+}
+
+}  // namespace
+
 void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
   command.add_option("--memory", bytes, "Bound of the working memory, for example 512M or 4G")
       ->type_name("SIZE")
       ->transform(CLI::AsSizeValue(false))
+      ->transform(CLI::Validator(refuse_minus, ""))  // runs first
       ->default_str(format_size(bytes));
 }
 

@@ -99,8 +99,9 @@ std::vector<SourceFile> describe_all(const std::vector<std::filesystem::path>& f
   return sources;
 }
 
-void check_disk(const std::filesystem::path& folder, std::uint64_t points) {
-  const std::uint64_t needed = points * (sizeof(DistributedPoint) + kOutputBytesPerPoint);
+/// stored: points with the padding of cells that are not full.
+void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::uint64_t stored) {
+  const std::uint64_t needed = points * sizeof(DistributedPoint) + stored * kOutputBytesPerPoint;
   const std::uint64_t free = free_disk_bytes(folder);
   if (needed > free) {
     throw ResourceError(folder.string() + ": " + std::to_string(free / kMiB) +
@@ -160,14 +161,16 @@ class Conversion {
     EnvironmentSource environment(options_.inputs,
                                   {options_.scale, options_.ignore_crs, options_.strict, folder_});
     for (const auto& file : environment.files()) output_.refuse_input(file);
-    if (environment.declared_points()) check_disk(folder_, *environment.declared_points());
+    if (environment.declared_points()) {
+      check_disk(folder_, *environment.declared_points(), *environment.declared_points());
+    }
     auto sources = std::async(std::launch::async, describe_all, environment.files());
     const Lattice lattice = lattice_for(options_, environment.quantisation());
     CountedEnvironment counted = count_environment(environment, lattice, threads_, progress_);
     report_.non_finite_points = environment.non_finite_points();
     fill_metadata(environment, counted, sources.get());
-    check_disk(folder_, counted.points);
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
+    check_cells(tree, counted.points);
     report_.count_seconds = watch_.lap();
 
     const Distribution distribution =
@@ -192,6 +195,17 @@ class Conversion {
                         .points_hash = counted.points_hash,
                         .sources = std::move(sources)};
     report_.remarks = environment.remarks();
+  }
+
+  void check_cells(const SplitTree& tree, std::uint64_t points) {
+    const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
+    const std::uint64_t cells = top.empty() ? 0 : top[0].cell_count;
+    check_disk(folder_, points, cells * options_.cell_points);
+    if (cells > 1 && cells * options_.cell_points > 4 * points) {
+      report_.remarks.push_back("cells hold " + std::to_string(points / cells) + " points of " +
+                                std::to_string(options_.cell_points) +
+                                " on average: fewer --cell-points make a smaller store");
+    }
   }
 
   void write_store(const Distribution& distribution, const SplitTree& tree,

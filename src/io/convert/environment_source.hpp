@@ -12,9 +12,9 @@
 namespace clearway {
 
 struct EnvironmentOptions {
-  std::optional<double> scale;  ///< metres; wanted on all axes
-  bool ignore_crs = false;      ///< accept degrees and inputs of different units
-  bool strict = false;          ///< refuse non-finite points
+  std::optional<double> scale{};  ///< metres; wanted on all axes
+  bool ignore_crs = false;        ///< accept degrees and inputs of different units
+  bool strict = false;            ///< refuse non-finite points
   std::filesystem::path temporary_folder = ".";
 };
 

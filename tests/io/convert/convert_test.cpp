@@ -64,7 +64,7 @@ TEST_CASE("the store is the same whatever threads, memory and repetition") {
   Scan scan(hard_clouds(70000, 5)[6].points, 1000);
   const std::string bytes = scan.converted_bytes();
   CHECK(scan.converted_bytes() == bytes);
-  for (const auto [threads, mebibytes] : {std::pair{1, 224}, {2, 512}, {4, 4096}, {3, 224}}) {
+  for (const auto& [threads, mebibytes] : {std::pair{1, 224}, {2, 512}, {4, 4096}, {3, 224}}) {
     scan.options.threads = threads;
     scan.options.memory_bytes = std::uint64_t(mebibytes) << 20;
     CHECK(scan.converted_bytes() == bytes);
@@ -122,6 +122,30 @@ TEST_CASE("regular layouts keep to their cubes on both sides of the origin") {
     CHECK(std::to_string(store.metadata().points_hash) == adaptive_hash);
     CHECK_THAT(store.metadata().layout, Catch::StartsWith("regular:"));
   }
+}
+
+TEST_CASE("cubes of axes with very unlike scales") {
+  Scan scan(cube_cloud(5000, -3000, 3000, 8));
+  write_las(scan.folder / "a.las", scan.points, {{0.001, 0.01, 0.1}, {0, 0, 0}});
+  scan.options.regular_size = 1.6;
+  scan.convert();
+  const Store store(scan.options.output);
+  CHECK(points_by_source(store) == scan.points);
+  CHECK(structure_faults(store).empty());
+  for (const Cell& cell : store.cells()) {
+    const double quanta[] = {1600, 160, 16};
+    for (int k = 0; k < 3; ++k) {
+      CHECK(std::floor(cell.box.lo[k] / quanta[k]) == std::floor(cell.box.hi[k] / quanta[k]));
+    }
+  }
+}
+
+TEST_CASE("cubes too small for their cells are remarked on") {
+  Scan scan(cube_cloud(2000, -3000, 3000, 8), 1000);
+  scan.options.regular_size = 1.0;
+  const ConversionReport report = scan.convert();
+  REQUIRE(report.remarks.size() == 1);
+  CHECK_THAT(report.remarks[0], Contains("fewer --cell-points"));
 }
 
 TEST_CASE("a regular layout over the whole range of the integers") {

@@ -265,7 +265,7 @@ TEST_CASE("points of batches that start, end and consist of non-finite ones keep
     if (std::isnan(points[i].z)) continue;
     REQUIRE(next < environment.points.size());
     REQUIRE(environment.points[next].source == i);
-    REQUIRE(positions(environment)[0].x == points[environment.points[0].source].x);
+    REQUIRE(environment.points[next].q[0] == 1'000'000 * static_cast<std::int32_t>(points[i].x));
     ++next;
   }
   CHECK(next == environment.points.size());
