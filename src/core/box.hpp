@@ -10,6 +10,13 @@ struct Box {
   Vec3 lo, hi;
 };
 
+/// The largest |coordinate| of the box on each axis.
+CLEARWAY_HD inline Vec3 reach_of(const Box& box) {
+  Vec3 reach{};
+  for (int k = 0; k < 3; ++k) reach[k] = box.hi[k] > -box.lo[k] ? box.hi[k] : -box.lo[k];
+  return reach;
+}
+
 /// A value never above the predicate's d2 from m to any point e of the box, and equal to it for a
 /// one-point box. No slack: every operation is the predicate's own and rounds monotonically
 /// (docs/numerics.md, "Boxes").

@@ -19,12 +19,6 @@ Vec3 corner(const Box& box, int index) {
           index & 4 ? box.hi.z : box.lo.z};
 }
 
-Vec3 reach_of(const Box& box) {
-  Vec3 reach{};
-  for (int k = 0; k < 3; ++k) reach[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
-  return reach;
-}
-
 }  // namespace
 
 Stretch stretch_of(const Pose& pose) {

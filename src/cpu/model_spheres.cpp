@@ -26,15 +26,11 @@ std::uint64_t spread_bits(std::uint64_t value) {
   return out;
 }
 
-Box box_of(std::span<const Vec3> points) {
-  Box box{points[0], points[0]};
-  for (const Vec3& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
-    }
+void extend(Box& box, const Vec3& point) {
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(box.lo[k], point[k]);
+    box.hi[k] = std::max(box.hi[k], point[k]);
   }
-  return box;
 }
 
 std::uint64_t grid_key(const Box& box, double edge, const Vec3& point) {
@@ -63,7 +59,8 @@ ModelSpheres::ModelSpheres(std::span<const Vec3> model, double leaf_radius)
     throw InputError("a model of " + std::to_string(model.size()) +
                      " points, expected fewer than " + std::to_string(kMostPoints));
   }
-  box_ = box_of(model);
+  box_ = {model[0], model[0]};
+  for (const Vec3& m : model) extend(box_, m);
   const double edge =
       std::max({box_.hi.x - box_.lo.x, box_.hi.y - box_.lo.y, box_.hi.z - box_.lo.z});
   std::vector<Keyed> points;
@@ -111,12 +108,7 @@ ModelSphere ModelSpheres::make_sphere(std::span<const Keyed> points) const {
     return greatest;
   };
   Box box{points[0].point, points[0].point};
-  for (const Keyed& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p.point[k]);
-      box.hi[k] = std::max(box.hi[k], p.point[k]);
-    }
-  }
+  for (const Keyed& p : points) extend(box, p.point);
   const Vec3 middle{box.lo.x / 2 + box.hi.x / 2, box.lo.y / 2 + box.hi.y / 2,
                     box.lo.z / 2 + box.hi.z / 2};
   const auto nearest =

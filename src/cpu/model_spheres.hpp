@@ -39,7 +39,6 @@ class ModelSpheres {
   bool empty() const { return nodes_.empty(); }
   /// Node 0 is the root.
   const ModelSphere& node(std::uint32_t index) const { return nodes_[index]; }
-  std::span<const ModelSphere> nodes() const { return nodes_; }
   const Box& box() const { return box_; }
   /// Largest padded size of a leaf.
   std::uint32_t largest_leaf() const { return largest_leaf_; }

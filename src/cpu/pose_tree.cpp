@@ -6,15 +6,6 @@
 #include "core/rigid.hpp"
 
 namespace clearway {
-namespace {
-
-Vec3 reach_of(const Box& box) {
-  Vec3 reach{};
-  for (int k = 0; k < 3; ++k) reach[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
-  return reach;
-}
-
-}  // namespace
 
 PoseTree::PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
                    const Box& model) {

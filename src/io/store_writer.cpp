@@ -102,12 +102,18 @@ struct StoreWriter::State {
 
   /// Writes a packed chunk at the end of the file; gives its address.
   std::uint64_t write_chunk(int dataset, std::uint64_t cell, std::span<const std::byte> bytes) {
+    const hid_t id = points[static_cast<std::size_t>(dataset)].get();
     haddr_t address = 0;
     hdf5::check(H5Fget_eoa(file.get(), &address), path.string() + ": HDF5 end of file");
     const std::array<hsize_t, 2> at{cell, 0};
-    hdf5::check(H5Dwrite_chunk(points[static_cast<std::size_t>(dataset)].get(), H5P_DEFAULT, 0,
-                               at.data(), bytes.size(), bytes.data()),
+    hdf5::check(H5Dwrite_chunk(id, H5P_DEFAULT, 0, at.data(), bytes.size(), bytes.data()),
                 path.string() + ": cannot write");
+    if (cell == 0) {  // with it comes the index of chunks, which may lie before it
+      unsigned mask = 0;
+      hsize_t size = 0;
+      hdf5::check(H5Dget_chunk_info_by_coord(id, at.data(), &mask, &address, &size),
+                  path.string() + ": HDF5 address of a chunk");
+    }
     return address;
   }
 
