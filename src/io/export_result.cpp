@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/error.hpp"
-#include "io/file.hpp"
 #include "io/las_writer.hpp"
+#include "io/pending_file.hpp"
 #include "io/ply_writer.hpp"
 #include "io/recovered_quanta.hpp"
 #include "io/result_rows.hpp"
@@ -146,6 +146,7 @@ MakeSink sink_for(const std::filesystem::path& output) {
 void export_result(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
                    Progress& progress) {
   const MakeSink make = sink_for(output);
+  refuse_overwriting(output, {result.name()});
   PendingFile pending(output, overwrite);
   {
     const File file = File::create(pending.partial());

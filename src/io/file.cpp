@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -136,45 +135,6 @@ void File::reserve(std::uint64_t bytes) const {
 
 void File::sync() const {
   if (::fsync(descriptor_) != 0) fail(name_, "sync");
-}
-
-PendingFile::PendingFile(std::filesystem::path path, bool overwrite)
-    : final_(std::move(path)), partial_(final_), overwrite_(overwrite) {
-  partial_ += ".partial";
-  if (std::filesystem::is_directory(final_)) {
-    throw UsageError(final_.string() + ": is a directory, expected a file name for the output");
-  }
-  if (!overwrite && std::filesystem::exists(final_)) {
-    throw UsageError(final_.string() + ": exists already; --force overwrites it");
-  }
-  if (!std::filesystem::is_directory(folder_of(final_))) {
-    throw ResourceError(folder_of(final_).string() + ": no such folder for the output");
-  }
-}
-
-PendingFile::~PendingFile() {
-  if (!published_) ::unlink(partial_.c_str());
-}
-
-void PendingFile::refuse_input(const std::filesystem::path& input) const {
-  std::error_code missing;
-  if (std::filesystem::equivalent(input, final_, missing)) {
-    throw UsageError(final_.string() + ": is also an input, expected another name for the output");
-  }
-}
-
-void PendingFile::publish() {
-  File::open_for_reading(partial_).sync();
-  const unsigned flags = overwrite_ ? 0 : RENAME_NOREPLACE;
-  int failed = ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, final_.c_str(), flags);
-  if (failed != 0 && errno == EINVAL) {  // a file system without RENAME_NOREPLACE
-    failed = ::rename(partial_.c_str(), final_.c_str());
-  }
-  if (failed != 0) fail(final_.string(), "rename the finished file to it");
-  published_ = true;
-  const File folder = File::adopt(checked_open(folder_of(final_), O_RDONLY | O_DIRECTORY, "open"),
-                                  folder_of(final_).string());
-  folder.sync();
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {

@@ -48,33 +48,6 @@ class File {
   std::string name_;
 };
 
-/// The name a file has until it is complete, and its publication under the final one. The
-/// destructor removes an unpublished file.
-class PendingFile {
- public:
-  /// Throws UsageError when `path` exists and not `overwrite`, ResourceError when its folder does
-  /// not exist.
-  PendingFile(std::filesystem::path path, bool overwrite);
-  PendingFile(const PendingFile&) = delete;
-  PendingFile& operator=(const PendingFile&) = delete;
-  ~PendingFile();
-
-  /// Throws UsageError when `input` is the file that publish() would replace.
-  void refuse_input(const std::filesystem::path& input) const;
-
-  /// Where to write: the final name with ".partial" appended.
-  const std::filesystem::path& partial() const { return partial_; }
-
-  /// fsync, rename to the final name, fsync of the folder. The file must be closed.
-  void publish();
-
- private:
-  std::filesystem::path final_;
-  std::filesystem::path partial_;
-  bool overwrite_;
-  bool published_ = false;
-};
-
 /// The folder a path lies in; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 

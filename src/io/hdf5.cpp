@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "io/file.hpp"
 
 namespace clearway::hdf5 {
 namespace {
@@ -23,6 +24,12 @@ std::string reason() {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &text);
+  // Of a failed system call only the system's words, not HDF5's addresses and clock.
+  const std::string quote = "error message = '";
+  if (const auto begin = text.find(quote); begin != std::string::npos) {
+    const auto words = begin + quote.size();
+    return text.substr(words, text.find('\'', words) - words);
+  }
   return text.empty() ? "HDF5 gives no reason" : text;
 }
 
@@ -48,6 +55,8 @@ Id latest_format() {
   // Nothing else allocates from a shared block between two raw chunks, so that the end of the file
   // is where the next chunk goes.
   check(H5Pset_small_data_block_size(access.get(), 0), "HDF5 small data block size");
+  // PendingFile locks the file that is being written: HDF5's own lock would be in its way.
+  check(H5Pset_file_locking(access.get(), false, true), "HDF5 file locking");
   return access;
 }
 
@@ -148,6 +157,7 @@ Id create_file(const std::filesystem::path& path) {
 
 Id open_file(const std::filesystem::path& path) {
   silence();
+  File::open_for_reading(path);  // HDF5 does not say that a file is missing
   if (H5Fis_hdf5(path.c_str()) <= 0) {
     throw InputError(path.string() + ": not an HDF5 file, expected one that Clearway wrote");
   }

@@ -42,7 +42,9 @@ std::vector<fs::path> list_point_files(const std::vector<fs::path>& inputs) {
   for (const fs::path& input : inputs) {
     std::error_code error;
     const fs::file_status status = fs::status(input, error);
-    if (!fs::exists(status)) refuse(input.string(), "no such file or folder");
+    if (!fs::exists(status)) {
+      throw ResourceError(input.string() + ": no such file or folder");
+    }
     if (fs::is_directory(status)) {
       const auto found = files_of_folder(input);
       files.insert(files.end(), found.begin(), found.end());

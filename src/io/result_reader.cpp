@@ -24,13 +24,6 @@ Number read_number(const hdf5::Id& file, const std::string& attribute, const std
   return hdf5::read_attribute<Number>(file, attribute, 1, name).front();
 }
 
-void check_readable(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) {
-    throw InputError(path.string() + ": no such file, expected a result of clearway run");
-  }
-  File::open_for_reading(path);
-}
-
 /// HDF5 does not say whether the disk or the content failed: in a file that could be opened, it is
 /// taken for the content.
 template <typename Call>
@@ -124,7 +117,7 @@ struct ResultReader::State {
 };
 
 ResultReader::ResultReader(const std::filesystem::path& path) {
-  check_readable(path);
+  File::open_for_reading(path);
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
 }
 

@@ -51,7 +51,8 @@ auto naming(const std::string& file, Call call) {
   try {
     return call();
   } catch (const ResourceError& error) {
-    throw ResourceError(file + ": " + error.what());
+    const std::string what = error.what();
+    throw ResourceError(what.starts_with(file) ? what : file + ": " + what);
   }
 }
 

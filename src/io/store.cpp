@@ -217,18 +217,28 @@ std::span<const std::byte> Store::checked_chunk(std::uint32_t cell, int dataset)
   return bytes;
 }
 
+template <typename Number>
+PackedChunk<Number> Store::chunk(std::uint32_t cell, int dataset) const {
+  try {
+    return {checked_chunk(cell, dataset), cell_points()};
+  } catch (const InputError& error) {  // the hash was right once: written to while in use
+    const std::string what = error.what();
+    if (what.starts_with(name())) throw;
+    refuse(name(), "cell " + std::to_string(cell) + ": '" + kPointDatasets[dataset] + "': " + what);
+  }
+}
+
 std::array<PackedChunk<std::int32_t>, 3> Store::coordinates(std::uint32_t cell) const {
   std::array<PackedChunk<std::int32_t>, 3> chunks;
   for (int axis = 0; axis < 3; ++axis) {
-    chunks[static_cast<std::size_t>(axis)] =
-        PackedChunk<std::int32_t>(checked_chunk(cell, axis), cell_points());
+    chunks[static_cast<std::size_t>(axis)] = chunk<std::int32_t>(cell, axis);
   }
   std::atomic_ref(checked_[cell]).store(1, std::memory_order_release);
   return chunks;
 }
 
 PackedChunk<std::uint64_t> Store::sources(std::uint32_t cell) const {
-  return {checked_chunk(cell, 3), cell_points()};
+  return chunk<std::uint64_t>(cell, 3);
 }
 
 std::uint64_t Store::fingerprint() const {

@@ -55,6 +55,8 @@ class Store final : public PackedCloud {
 
  private:
   std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
+  template <typename Number>
+  PackedChunk<Number> chunk(std::uint32_t cell, int dataset) const;
   void check_index() const;
 
   MappedFile map_;

@@ -120,7 +120,7 @@ TEST_CASE("coordinates of the same point that differ are a difference") {
   CHECK(comparison.points[0].kind == Kind::kCoordinates);
 }
 
-TEST_CASE("every part of the question that differs is named; the sets decide") {
+TEST_CASE("every part of the question that differs is named, the sets decide") {
   const Side a = sample(5);
   Side b = a;
   b.header.model_hash ^= 1;

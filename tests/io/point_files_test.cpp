@@ -57,7 +57,7 @@ TEST_CASE("a folder's point files count in byte order of their names") {
 
 TEST_CASE("a missing input and a folder without points are refused") {
   ReaderScratch scratch;
-  CHECK_THROWS_AS(list_point_files({scratch.folder() / "missing.las"}), InputError);
+  CHECK_THROWS_AS(list_point_files({scratch.folder() / "missing.las"}), ResourceError);
   CHECK_THROWS_AS(list_point_files({scratch.folder()}), InputError);
   CHECK(list_point_files({}).empty());
 }

@@ -44,7 +44,7 @@ void replace_dataset(const std::filesystem::path& path, const std::string& name,
 
 TEST_CASE("what is not a result is refused") {
   const ScratchFolder folder;
-  CHECK_THROWS_WITH(ResultReader(folder / "missing.h5"), Contains("no such file"));
+  CHECK_THROWS_WITH(ResultReader(folder / "missing.h5"), Contains("No such file"));
   put_bytes(folder / "empty.h5", "");
   CHECK_THROWS_WITH(ResultReader(folder / "empty.h5"), Contains("not an HDF5 file"));
   put_bytes(folder / "text.h5", "x y z\n1 2 3\n");

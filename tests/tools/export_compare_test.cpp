@@ -92,7 +92,7 @@ TEST_CASE("compare refuses what cannot be compared") {
   CHECK(elsewhere.exit_code == 3);
   CHECK_THAT(elsewhere.err, Contains("different environments"));
   CHECK(elsewhere.out.empty());
-  CHECK(pair.run("compare " + pair.path("a.h5") + " " + pair.path("missing.h5")).exit_code == 3);
+  CHECK(pair.run("compare " + pair.path("a.h5") + " " + pair.path("missing.h5")).exit_code == 4);
   CHECK(pair.run("compare " + pair.path("a.h5")).exit_code == 2);
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("export says what is wrong with its arguments") {
   CHECK(ending.exit_code == 2);
   CHECK_THAT(ending.err, Contains(".las, .ply, .xyz or .csv"));
   CHECK(pair.run("export " + pair.path("a.h5")).exit_code == 2);
-  CHECK(pair.run("export " + pair.path("no.h5") + " -o " + pair.path("a.csv")).exit_code == 3);
+  CHECK(pair.run("export " + pair.path("no.h5") + " -o " + pair.path("a.csv")).exit_code == 4);
   CHECK(pair.run("export " + pair.path("a.h5") + " -o " + pair.path("no/a.csv")).exit_code == 4);
 }
 

@@ -79,7 +79,7 @@ void add_convert(CLI::App& program) {
                    "Step of the stored integers in metres (default: as the input has it, else "
                    "the finest power of ten from 1e-6 that fits)")
       ->type_name("METRES")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_length());
   command->add_option("--cell-points", conversion.cell_points, "Points a cell, 64 to 1048576")
       ->type_name("N")
       ->capture_default_str();

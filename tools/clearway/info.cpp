@@ -99,7 +99,9 @@ void run_info(const Options& options) {
   const bool result = hdf5::holds(options.file, "collisions");
   const ordered_json description =
       result ? describe(ResultReader(options.file)) : describe(Store(options.file));
-  print(options.json ? description.dump(2) + "\n" : text_of(description));
+  // Names of files need not be UTF-8.
+  constexpr auto kReplace = ordered_json::error_handler_t::replace;
+  print(options.json ? description.dump(2, ' ', false, kReplace) + "\n" : text_of(description));
 }
 
 }  // namespace

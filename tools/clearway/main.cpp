@@ -2,7 +2,9 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
+#include <iostream>
 #include <new>
+#include <string>
 
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
@@ -12,6 +14,25 @@
 namespace {
 
 enum ExitCode { kDone = 0, kWrongUsage = 2, kBadInput = 3, kResource = 4 };
+
+void check_command(const CLI::App& program, int argc, char** argv) {
+  const std::string name = argc > 1 ? argv[1] : "--help";
+  if (name == "-h" || name == "--help" || name == "--version") return;
+  std::string commands;
+  for (const CLI::App* command : program.get_subcommands({})) {
+    if (command->get_name() == name) return;
+    commands += (commands.empty() ? "" : ", ") + command->get_name();
+  }
+  throw clearway::UsageError(name + ": no such command; expected one of " + commands +
+                             " (clearway --help explains them)");
+}
+
+/// Help goes to standard output too: a disk that is full there is an error.
+int finish(const CLI::App& program, const CLI::ParseError& error) {
+  if (program.exit(error) != 0) return kWrongUsage;
+  if (!std::cout.flush()) throw clearway::ResourceError("standard output: cannot write");
+  return kDone;
+}
 
 int run(int argc, char** argv) {
   CLI::App program{
@@ -27,10 +48,11 @@ int run(int argc, char** argv) {
   clearway::tool::add_info(program);
   clearway::tool::add_verify(program, exit_code);
   clearway::tool::add_scene(program);
+  check_command(program, argc, argv);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? kDone : kWrongUsage;
+    return finish(program, error);
   }
   return exit_code;
 }

@@ -1,23 +1,49 @@
 #include "clearway/options.hpp"
 
+#include <cctype>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace clearway::tool {
-namespace {
 
-/// Unsigned numbers would wrap round.
-std::string refuse_minus(const std::string& size) {
-  return size.find('-') == std::string::npos ? "" : size + " is not a size";
+CLI::Validator positive_length() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    if (number && std::isfinite(value) && value > 0) return "";
+    return text + ": expected a finite number of metres above 0, for example 0.1";
+  };
+  return {check, ""};
 }
 
-}  // namespace
+std::uint64_t parse_size(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::string unit(end, text.data() + text.size());
+  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (unit.ends_with('b')) unit.pop_back();
+  if (unit.size() == 2 && unit[1] == 'i') unit.pop_back();
+  const std::string units = "kmgt";
+  const auto power = unit.empty() ? 0 : units.find(unit) + 1;
+  const double bytes = std::ldexp(value, static_cast<int>(10 * power));
+  const bool known = unit.empty() || (unit.size() == 1 && power != 0);
+  if (error != std::errc() || !known || !(bytes >= 0 && bytes < 0x1p60)) {
+    throw CLI::ValidationError("--memory",
+                               text +
+                                   ": expected a size in bytes, or with K, M, G or T (powers of "
+                                   "1024), for example 512M or 4G");
+  }
+  return static_cast<std::uint64_t>(bytes);
+}
 
 void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
-  command.add_option("--memory", bytes, "Bound of the working memory, for example 512M or 4G")
-      ->type_name("SIZE")
-      ->transform(CLI::AsSizeValue(false))
-      ->transform(CLI::Validator(refuse_minus, ""))  // runs first
-      ->default_str(format_size(bytes));
+  command
+      .add_option_function<std::string>(
+          "--memory", [&bytes](const std::string& text) { bytes = parse_size(text); },
+          "Bound of the working memory, for example 512M or 4G (default: " + format_size(bytes) +
+              ")")
+      ->type_name("SIZE");
 }
 
 void add_threads_option(CLI::App& command, int& threads) {

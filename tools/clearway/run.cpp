@@ -17,6 +17,7 @@
 #include "cpu/kdtree_engine.hpp"
 #include "io/content_hash.hpp"
 #include "io/model.hpp"
+#include "io/pending_file.hpp"
 #include "io/store.hpp"
 #include "io/trajectory.hpp"
 #include "stream/collect.hpp"
@@ -128,7 +129,7 @@ void warn_of(const Inputs& inputs) {
 
 void run_run(const Options& options) {
   const Stopwatch total;
-  if (!std::isfinite(options.radius)) throw UsageError("--radius: expected a finite length");
+  refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   PendingFile output(options.output, options.force);
   for (const auto& input : {options.environment, options.model, options.trajectory}) {
     output.refuse_input(input);
@@ -175,7 +176,7 @@ void add_inputs(CLI::App& command, Options& options) {
   command.add_option("--radius", options.radius, "Search radius in metres, for example 0.1")
       ->type_name("METRES")
       ->required()
-      ->check(CLI::PositiveNumber);
+      ->check(positive_length());
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
@@ -185,10 +186,14 @@ void add_inputs(CLI::App& command, Options& options) {
                                                         {"euroc", TrajectoryFormat::kEuroc},
                                                         {"csv", TrajectoryFormat::kCsv}};
   command
-      .add_option("--trajectory-format", options.trajectory_options.format,
-                  "Format of the trajectory where a guess could go wrong")
-      ->transform(CLI::CheckedTransformer(formats))
-      ->default_str("auto");
+      .add_option_function<std::string>(
+          "--trajectory-format",
+          [formats, &format = options.trajectory_options.format](const std::string& name) {
+            format = formats.at(name);
+          },
+          "Format of the trajectory where a guess could go wrong (default: auto)")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"auto", "matrix", "tum", "euroc", "csv"}));
   command.add_flag("--allow-non-rigid", options.trajectory_options.allow_non_rigid,
                    "Accept matrices that scale or shear");
 }

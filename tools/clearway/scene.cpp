@@ -13,7 +13,7 @@
 #include "clearway/console.hpp"
 #include "clearway/options.hpp"
 #include "core/error.hpp"
-#include "io/file.hpp"
+#include "io/pending_file.hpp"
 #include "scene/write.hpp"
 
 namespace clearway::tool {

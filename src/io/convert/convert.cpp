@@ -17,6 +17,7 @@
 #include "io/convert/environment_source.hpp"
 #include "io/convert/pack_unit.hpp"
 #include "io/file.hpp"
+#include "io/pending_file.hpp"
 #include "io/store_writer.hpp"
 #include "io/xxh64.hpp"
 
@@ -28,6 +29,7 @@ constexpr std::uint64_t kBaseBytes = 64 * kMiB;     // batches, index, libraries
 constexpr std::uint64_t kThreadBytes = 32 * kMiB;   // a counting grid and its refinement
 constexpr std::uint64_t kBufferBytes = 16 * kMiB;   // units' write buffers
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
+constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
 constexpr std::uint32_t kLeastCellPoints = 64;
 constexpr std::uint32_t kMostCellPoints = 1 << 20;
 
@@ -99,15 +101,19 @@ std::vector<SourceFile> describe_all(const std::vector<std::filesystem::path>& f
   return sources;
 }
 
-/// stored: points with the padding of cells that are not full.
-void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::uint64_t stored) {
-  const std::uint64_t needed = points * sizeof(DistributedPoint) + stored * kOutputBytesPerPoint;
+/// padded: points with the padding of cells that are not full, which packs to fewer bytes.
+void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::uint64_t padded) {
+  const std::uint64_t needed = points * (sizeof(DistributedPoint) + kOutputBytesPerPoint) +
+                               (padded - points) * kPaddingBytesPerPoint;
   const std::uint64_t free = free_disk_bytes(folder);
   if (needed > free) {
     throw ResourceError(folder.string() + ": " + std::to_string(free / kMiB) +
                         " MiB free, expected about " + std::to_string(needed / kMiB) +
                         " MiB for the temporary file and the store of " + std::to_string(points) +
-                        " points");
+                        " points" +
+                        (padded > 2 * points ? "; most of it pads cells that are not full: a "
+                                               "smaller --cell-points avoids that"
+                                             : ""));
   }
 }
 
@@ -118,33 +124,50 @@ std::string layout_name(const std::optional<double>& regular_size) {
   return "regular:" + std::string(text, end);
 }
 
+/// A unit on its way to the file: its first cells packed already, the rest to be packed when they
+/// are written.
+struct UnitInFlight {
+  std::vector<PackedCell> packed;
+  std::optional<OrderedUnit> rest;
+};
+
+void write_unit(UnitInFlight& unit, StoreWriter& writer, Progress& progress) {
+  while (!unit.packed.empty()) {
+    for (const PackedCell& cell : unit.packed) {
+      writer.append(cell);
+      progress.advance(cell.cell.count);
+    }
+    unit.packed.clear();
+    if (unit.rest) unit.packed = unit.rest->pack_next();
+  }
+}
+
 /// Partitions and packs the units, several at a time as memory allows, and writes them in order.
 void write_cells(const Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
                  Progress& progress) {
-  using Cells = std::shared_ptr<std::vector<PackedCell>>;
+  using Flying = std::shared_ptr<UnitInFlight>;
   std::size_t next = 0;
+  const auto number_of_next = [&](tbb::flow_control& flow) {
+    if (next == tree.units().size()) flow.stop();
+    return next++;
+  };
+  const auto order_and_pack = [&](std::size_t unit) {
+    auto flying = std::make_shared<UnitInFlight>();
+    flying->rest.emplace(distribution, unit, tree, lattice, metadata.quantisation,
+                         metadata.cell_points);
+    flying->packed = flying->rest->pack_next();
+    if (flying->rest->cells_left() == 0) flying->rest.reset();
+    return flying;
+  };
   progress.begin("partition", metadata.point_count, "points");
   tbb::parallel_pipeline(
       units_in_flight,
-      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
-                                          [&](tbb::flow_control& flow) {
-                                            if (next == tree.units().size()) flow.stop();
-                                            return next++;
-                                          }) &
-          tbb::make_filter<std::size_t, Cells>(tbb::filter_mode::parallel,
-                                               [&](std::size_t unit) {
-                                                 return std::make_shared<std::vector<PackedCell>>(
-                                                     pack_unit(distribution, unit, tree, lattice,
-                                                               metadata.quantisation,
-                                                               metadata.cell_points));
-                                               }) &
-          tbb::make_filter<Cells, void>(tbb::filter_mode::serial_in_order, [&](const Cells& cells) {
-            for (const PackedCell& cell : *cells) {
-              writer.append(cell);
-              progress.advance(cell.cell.count);
-            }
-          }));
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, number_of_next) &
+          tbb::make_filter<std::size_t, Flying>(tbb::filter_mode::parallel, order_and_pack) &
+          tbb::make_filter<Flying, void>(
+              tbb::filter_mode::serial_in_order,
+              [&](const Flying& unit) { write_unit(*unit, writer, progress); }));
   progress.end();
 }
 
@@ -160,7 +183,7 @@ class Conversion {
   ConversionReport run() {
     EnvironmentSource environment(options_.inputs,
                                   {options_.scale, options_.ignore_crs, options_.strict, folder_});
-    for (const auto& file : environment.files()) output_.refuse_input(file);
+    refuse_overwriting(options_.output, environment.files());
     if (environment.declared_points()) {
       check_disk(folder_, *environment.declared_points(), *environment.declared_points());
     }
@@ -170,7 +193,7 @@ class Conversion {
     report_.non_finite_points = environment.non_finite_points();
     fill_metadata(environment, counted, sources.get());
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
-    check_cells(tree, counted.points);
+    check_padding(tree, counted.points);
     report_.count_seconds = watch_.lap();
 
     const Distribution distribution =
@@ -197,14 +220,16 @@ class Conversion {
     report_.remarks = environment.remarks();
   }
 
-  void check_cells(const SplitTree& tree, std::uint64_t points) {
+  void check_padding(const SplitTree& tree, std::uint64_t points) {
     const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
     const std::uint64_t cells = top.empty() ? 0 : top[0].cell_count;
-    check_disk(folder_, points, cells * options_.cell_points);
-    if (cells > 1 && cells * options_.cell_points > 4 * points) {
-      report_.remarks.push_back("cells hold " + std::to_string(points / cells) + " points of " +
-                                std::to_string(options_.cell_points) +
-                                " on average: fewer --cell-points make a smaller store");
+    const std::uint64_t padded = std::max(points, cells * options_.cell_points);
+    check_disk(folder_, points, padded);
+    if (options_.regular_size && padded > 2 * points) {
+      report_.remarks.push_back(
+          std::to_string(cells) + " cells of " + std::to_string(options_.cell_points) +
+          " points for " + std::to_string(points) +
+          " points: the padding makes the store large; a smaller --cell-points fits the cubes");
     }
   }
 

@@ -146,6 +146,7 @@ bool EnvironmentSource::try_keeping_integers() {
     }
     if (!whole) {
       if (options_.scale) return false;
+      if (!input.info.quantisation) return false;  // refused with the right words
       throw InputError(files_[i].string() + ": its scale or offset does not agree with that of " +
                        files_[0].string() + "; --scale sets one for all, for example --scale " +
                        number(scale[0]));
@@ -161,8 +162,13 @@ void EnvironmentSource::choose_offset_and_scale() {
     const bool mixed =
         inputs_[i].info.quantisation.has_value() != inputs_[0].info.quantisation.has_value();
     if (mixed && !options_.scale) {
-      throw InputError(files_[i].string() + ": points in another form (integers or not) than in " +
-                       files_[0].string() + "; --scale sets one for all");
+      const bool integers = inputs_[0].info.quantisation.has_value();
+      throw InputError(files_[i].string() + ": its coordinates are " +
+                       (integers ? "floating-point numbers" : "integers times a scale") +
+                       ", expected " + (integers ? "integers" : "floating-point numbers") +
+                       " as in " + files_[0].string() +
+                       ". Does it belong to the environment (a model does not)? If so, --scale " +
+                       "METRES rounds all of them to one scale");
     }
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

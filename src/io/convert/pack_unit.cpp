@@ -109,23 +109,44 @@ class UnitBuckets {
 
 }  // namespace
 
-std::vector<PackedCell> pack_unit(const Distribution& distribution, std::size_t unit,
-                                  const SplitTree& tree, const Lattice& lattice,
-                                  const Quantisation& quantisation, std::uint32_t cell_points) {
-  Unit loaded(distribution, unit);
+struct OrderedUnit::State {
+  Unit unit;
+  std::uint32_t cell_points;
   std::vector<std::span<const BucketPoint>> cells;
+  std::size_t next = 0;
+};
+
+OrderedUnit::OrderedUnit(const Distribution& distribution, std::size_t unit, const SplitTree& tree,
+                         const Lattice& lattice, const Quantisation& quantisation,
+                         std::uint32_t cell_points)
+    : state_(new State{Unit(distribution, unit), cell_points, {}}) {
+  Unit& loaded = state_->unit;
   for (const std::span<BucketPoint> bucket :
        UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
     const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
     order_bucket(bucket, loaded.scratch().subspan(first, bucket.size()), cell_points,
                  quantisation.scale);
     for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
-      cells.push_back(bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
+      state_->cells.push_back(
+          bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
     }
   }
-  std::vector<PackedCell> packed(cells.size());
-  tbb::parallel_for(std::size_t{0}, cells.size(),
-                    [&](std::size_t i) { packed[i] = pack_cell(loaded, cells[i], cell_points); });
+}
+
+OrderedUnit::~OrderedUnit() = default;
+OrderedUnit::OrderedUnit(OrderedUnit&&) noexcept = default;
+
+std::size_t OrderedUnit::cells_left() const { return state_->cells.size() - state_->next; }
+
+std::vector<PackedCell> OrderedUnit::pack_next() {
+  State& state = *state_;
+  const std::size_t most = std::max<std::size_t>(1, kBucketPoints / state.cell_points);
+  const std::size_t first = state.next;
+  std::vector<PackedCell> packed(std::min(most, cells_left()));
+  tbb::parallel_for(std::size_t{0}, packed.size(), [&](std::size_t i) {
+    packed[i] = pack_cell(state.unit, state.cells[first + i], state.cell_points);
+  });
+  state.next += packed.size();
   return packed;
 }
 

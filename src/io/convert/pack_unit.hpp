@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "io/convert/distribute.hpp"
@@ -13,9 +14,24 @@ namespace clearway {
 /// 32 for ordering, 20 packed at the most.
 inline constexpr std::uint64_t kUnitBytes = kBucketPoints * 72;
 
-/// Loads unit `unit`, orders its buckets and packs their cells, in the store's order.
-std::vector<PackedCell> pack_unit(const Distribution& distribution, std::size_t unit,
-                                  const SplitTree& tree, const Lattice& lattice,
-                                  const Quantisation& quantisation, std::uint32_t cell_points);
+/// Loads a unit and orders its buckets; packs its cells in the store's order, piece by piece, as
+/// padded cells can be far larger than their points.
+class OrderedUnit {
+ public:
+  OrderedUnit(const Distribution& distribution, std::size_t unit, const SplitTree& tree,
+              const Lattice& lattice, const Quantisation& quantisation, std::uint32_t cell_points);
+  ~OrderedUnit();
+  OrderedUnit(OrderedUnit&&) noexcept;
+
+  /// The next cells, with padding at most kBucketPoints points but at least a cell; empty at the
+  /// end.
+  std::vector<PackedCell> pack_next();
+  /// Cells that pack_next() has not given yet.
+  std::size_t cells_left() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace clearway

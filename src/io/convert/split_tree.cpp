@@ -22,10 +22,10 @@ Bin united(const Bin* first, const Bin* last) {
   return box;
 }
 
-/// The plane across `axis` that cuts no bin and halves the points best. Sorts the bins along the
-/// axis.
-std::optional<std::uint64_t> best_cut(Bin* first, Bin* last, std::size_t axis,
-                                      std::uint64_t points) {
+/// The plane across `axis` that cuts no bin and halves the points best, between two multiples of
+/// 2^face_bits. Sorts the bins along the axis.
+std::optional<std::uint64_t> best_cut(Bin* first, Bin* last, std::size_t axis, std::uint64_t points,
+                                      unsigned face_bits) {
   std::sort(first, last, [axis](const Bin& a, const Bin& b) {
     return a.lo[axis] != b.lo[axis] ? a.lo[axis] < b.lo[axis] : a.lo < b.lo;
   });
@@ -36,7 +36,8 @@ std::optional<std::uint64_t> best_cut(Bin* first, Bin* last, std::size_t axis,
   for (const Bin* bin = first + 1; bin != last; ++bin) {
     const std::uint64_t right = points - left;
     const std::uint64_t imbalance = left > right ? left - right : right - left;
-    if (bin->lo[axis] >= reach && imbalance < least_imbalance) {
+    const bool between = bin->lo[axis] >> face_bits > (reach - 1) >> face_bits;
+    if (between && imbalance < least_imbalance) {
       least_imbalance = imbalance;
       best = bin->lo[axis];
     }
@@ -70,8 +71,10 @@ SplitTree::Plane SplitTree::best_plane(Bin* first, Bin* last) const {
   };
   std::stable_sort(axes.begin(), axes.end(),
                    [&](std::size_t a, std::size_t b) { return side(a) > side(b); });
+  // Whole cubes are told apart before anything within one is.
+  const unsigned face_bits = within_one_cube(first, last) ? 0 : lattice_.cube_bits();
   for (const std::size_t axis : {axes[0], axes[1], axes[2], std::size_t{3}}) {
-    if (const auto at = best_cut(first, last, axis, box.count)) {
+    if (const auto at = best_cut(first, last, axis, box.count, face_bits)) {
       return {static_cast<int>(axis), *at};
     }
   }

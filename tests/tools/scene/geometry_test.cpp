@@ -22,7 +22,7 @@ TEST_CASE("sine and cosine agree with the library's") {
   CHECK(worst < 2e-10);
 }
 
-TEST_CASE("random numbers fill [0, 1) evenly and differ by seed and stream") {
+TEST_CASE("random numbers fill 0 to 1 evenly and differ by seed and stream") {
   const Random random(1, 2);
   double sum = 0, square = 0, normal = 0, normal_square = 0;
   constexpr int kCount = 100000;

@@ -1,0 +1,108 @@
+#include "io/pending_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+#include "core/error.hpp"
+
+namespace clearway {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const char* what) {
+  throw ResourceError(path.string() + ": cannot " + what + ": " + std::strerror(errno));
+}
+
+void check_output_name(const fs::path& path, bool overwrite) {
+  if (path.empty()) throw UsageError("--output: expected the name of a file");
+  std::error_code unknown;
+  if (fs::is_directory(path, unknown)) {
+    throw UsageError(path.string() + ": is a directory, expected a file name for the output");
+  }
+  if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown)) {
+    throw UsageError(path.string() + ": is a device or pipe, expected a file name for the output");
+  }
+  if (!overwrite && fs::exists(fs::symlink_status(path, unknown))) {
+    throw UsageError(path.string() + ": exists already; --force overwrites it");
+  }
+  if (!fs::is_directory(folder_of(path), unknown)) {
+    throw ResourceError(folder_of(path).string() + ": no such folder for the output");
+  }
+}
+
+/// A lock of the open file, so that it holds against other opens of this process too. A file system
+/// without locks goes without.
+void lock(int descriptor, const fs::path& path) {
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  whole.l_whence = SEEK_SET;
+  if (::fcntl(descriptor, F_OFD_SETLK, &whole) == 0) return;
+  if (errno == EAGAIN || errno == EACCES) {
+    throw ResourceError(path.string() +
+                        ": another process is writing it; wait for it, or choose another output");
+  }
+}
+
+bool is_at(int descriptor, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+File create_locked(const fs::path& path) {
+  for (;;) {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno == EINTR) continue;
+    if (descriptor < 0) fail(path, "create");
+    File file = File::adopt(descriptor, path.string());
+    lock(descriptor, path);
+    // Between opening and locking its last owner may have renamed or removed it.
+    if (is_at(descriptor, path)) return file;
+  }
+}
+
+}  // namespace
+
+PendingFile::PendingFile(fs::path path, bool overwrite)
+    : final_((check_output_name(path, overwrite), std::move(path))),
+      partial_(final_.string() + ".partial"),
+      overwrite_(overwrite),
+      lock_(create_locked(partial_)) {}
+
+PendingFile::~PendingFile() {
+  if (!published_) ::unlink(partial_.c_str());
+}
+
+void PendingFile::publish() {
+  File::open_for_reading(partial_).sync();
+  const unsigned flags = overwrite_ ? 0 : RENAME_NOREPLACE;
+  int failed = ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, final_.c_str(), flags);
+  if (failed != 0 && errno == EINVAL) {  // a file system without RENAME_NOREPLACE
+    failed = ::rename(partial_.c_str(), final_.c_str());
+  }
+  if (failed != 0) fail(final_, "rename the finished file to it");
+  published_ = true;
+  const int folder = ::open(folder_of(final_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) fail(folder_of(final_), "open");
+  File::adopt(folder, folder_of(final_).string()).sync();
+}
+
+void refuse_overwriting(const fs::path& output, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code unknown;
+    if (fs::equivalent(output, input, unknown) && !unknown) {
+      throw UsageError(output.string() + ": is an input too; expected another name for the output");
+    }
+  }
+}
+
+}  // namespace clearway

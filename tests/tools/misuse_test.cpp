@@ -1,0 +1,159 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+#include "io/pending_file.hpp"
+#include "program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// A few points as text, a store of them and one pose.
+struct Site {
+  Site() {
+    std::string points;
+    for (int i = 0; i < 500; ++i) {
+      points += std::to_string(i % 25) + " " + std::to_string(i / 25) + " 0.5\n";
+    }
+    put_bytes(folder / "scan.xyz", points);
+    put_bytes(folder / "model.xyz", "1 1 0.5\n");
+    put_bytes(folder / "path.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+    REQUIRE(run("convert " + path("scan.xyz") + " -o " + path("site.h5")).exit_code == 0);
+  }
+
+  Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
+  std::string path(const std::string& name) const { return quoted(folder / name); }
+  Outcome search(const std::string& options) const {
+    return run("run --env " + path("site.h5") + " --model " + path("model.xyz") + " --trajectory " +
+               path("path.txt") + " " + options);
+  }
+
+  ScratchFolder folder;
+};
+
+}  // namespace
+
+TEST_CASE("a radius that is no finite length above 0 is refused") {
+  const Site site;
+  for (const char* radius : {"nan", "inf", "0", "-1", "0.1m", "0,1", "1e400"}) {
+    const Outcome outcome =
+        site.search(std::string("--radius ") + radius + " -o " + site.path("r.h5"));
+    INFO(radius);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("expected a finite number of metres above 0"));
+    CHECK_FALSE(std::filesystem::exists(site.folder / "r.h5"));
+  }
+}
+
+TEST_CASE("a memory bound takes sizes and nothing else") {
+  const Site site;
+  const std::string convert =
+      "convert " + site.path("scan.xyz") + " --force -o " + site.path("m.h5");
+  for (const char* size : {"-1", "G", "4X", "nan", "1 2", "99999999T", "4GG"}) {
+    INFO(size);
+    const Outcome outcome = site.run(convert + " --memory '" + size + "'");
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("expected a size in bytes"));
+  }
+  for (const char* size : {"224M", "0.5G", "1GiB", "1gb", "300000000"}) {
+    INFO(size);
+    CHECK(site.run(convert + " --memory " + size).exit_code == 0);
+  }
+}
+
+TEST_CASE("an unknown command is named") {
+  const Site site;
+  const Outcome outcome = site.run("covert scan.las");
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("covert: no such command") && Contains("convert, run"));
+}
+
+TEST_CASE("forcing does not overwrite an input") {
+  const Site site;
+  const std::string scan = bytes_of(site.folder / "scan.xyz");
+  const std::string store = bytes_of(site.folder / "site.h5");
+  CHECK(site.run("convert " + site.path("scan.xyz") + " --force -o " + site.path("scan.xyz"))
+            .exit_code == 2);
+  CHECK(site.search("--radius 1 --force -o " + site.path("site.h5")).exit_code == 2);
+  CHECK(site.search("--radius 1 --force -o " + site.path("model.xyz")).exit_code == 2);
+  REQUIRE(site.search("--radius 1 -o " + site.path("r.csv")).exit_code == 0);
+  const std::string result = bytes_of(site.folder / "r.csv");
+  CHECK(site.run("export " + site.path("r.csv") + " --force -o " + site.path("r.csv")).exit_code ==
+        2);
+  CHECK(bytes_of(site.folder / "scan.xyz") == scan);
+  CHECK(bytes_of(site.folder / "site.h5") == store);
+  CHECK(bytes_of(site.folder / "r.csv") == result);
+}
+
+TEST_CASE("an output that is a device, empty or a dangling link is refused") {
+  const Site site;
+  const std::string convert = "convert " + site.path("scan.xyz") + " -o ";
+  CHECK(site.run(convert + "/dev/full").exit_code == 2);
+  CHECK(site.run(convert + "''").exit_code == 2);
+  std::filesystem::create_symlink("nowhere", site.folder / "link.h5");
+  CHECK(site.run(convert + site.path("link.h5")).exit_code == 2);
+}
+
+TEST_CASE("two writers of one output: the second is refused and leaves the first alone") {
+  const Site site;
+  const std::string convert =
+      "convert " + site.path("scan.xyz") + " --force -o " + site.path("two.h5");
+  {
+    const PendingFile first(site.folder / "two.h5", true);
+    const Outcome second = site.run(convert);
+    CHECK(second.exit_code == 4);
+    CHECK_THAT(second.err, Contains("another process is writing it"));
+    CHECK(std::filesystem::exists(first.partial()));
+  }
+  CHECK_FALSE(std::filesystem::exists(site.folder / "two.h5.partial"));
+  put_bytes(site.folder / "two.h5.partial", "left by one that was killed");
+  CHECK(site.run(convert).exit_code == 0);
+  CHECK(bytes_of(site.folder / "two.h5") == bytes_of(site.folder / "site.h5"));
+}
+
+TEST_CASE("a missing file is exit code 4 for every command") {
+  const Site site;
+  REQUIRE(site.search("--radius 1 -o " + site.path("r.h5")).exit_code == 0);
+  const std::string missing = site.path("missing");
+  for (const std::string& arguments :
+       {"info " + missing, "verify " + missing, "export " + missing + " -o x.las",
+        "compare " + missing + " " + site.path("r.h5"),
+        "convert " + missing + " -o " + site.path("x.h5"), "info " + quoted(site.folder / "")}) {
+    INFO(arguments);
+    const Outcome outcome = site.run(arguments);
+    CHECK(outcome.exit_code == 4);
+    CHECK(outcome.out.empty());
+  }
+}
+
+TEST_CASE("info --json prints names that are not UTF-8") {
+  const Site site;
+  const std::string name = "scan\xff.xyz";
+  std::filesystem::copy_file(site.folder / "scan.xyz", site.folder / name);
+  REQUIRE(site.run("convert " + site.path(name) + " -o " + site.path("b.h5")).exit_code == 0);
+  const Outcome outcome = site.run("info --json " + site.path("b.h5"));
+  CHECK(outcome.exit_code == 0);
+  CHECK(nlohmann::json::parse(outcome.out)["points"] == 500);
+}
+
+TEST_CASE("a regular layout cuts at the faces of its cubes only") {
+  const Site site;  // 25 x 20 m: cubes of 10 m are 3 x 2
+  REQUIRE(site.run("convert " + site.path("scan.xyz") +
+                   " --layout regular:10 --cell-points 128 -o " + site.path("cubes.h5"))
+              .exit_code == 0);
+  const Outcome outcome = site.run("info --json " + site.path("cubes.h5"));
+  CHECK(nlohmann::json::parse(outcome.out)["cells"] == 6);
+  CHECK(site.run("verify " + site.path("cubes.h5")).exit_code == 0);
+}
+
+TEST_CASE("a model among the scans is asked about") {
+  const Site site;
+  REQUIRE(site.run("scene hall --points 500 --model-points 50 --poses 2 -o " + site.path("hall"))
+              .exit_code == 0);
+  const Outcome outcome = site.run("convert " + site.path("hall") + " -o " + site.path("h.h5"));
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, Contains("model.ply: its coordinates are floating-point numbers"));
+}
