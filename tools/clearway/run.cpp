@@ -131,9 +131,6 @@ void run_run(const Options& options) {
   const Stopwatch total;
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   PendingFile output(options.output, options.force);
-  for (const auto& input : {options.environment, options.model, options.trajectory}) {
-    output.refuse_input(input);
-  }
   ConsoleProgress progress;
   Seconds seconds;
   const Inputs inputs(options);
