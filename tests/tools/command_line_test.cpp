@@ -118,7 +118,7 @@ TEST_CASE("every subcommand explains itself with units and an example") {
 TEST_CASE("wrong usage exits with 2") {
   const Work work;
   check_refused(work.run(""), 2, "subcommand");
-  check_refused(work.run("fly"), 2, "subcommand");
+  check_refused(work.run("fly"), 2, "no such command");
   check_refused(work.run("convert a.las"), 2, "--output");
   const std::string convert =
       "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");
@@ -207,11 +207,11 @@ TEST_CASE("an input is not overwritten, --force or not") {
   const std::string las = bytes_of(work.hall.path("environment.las"));
   put_bytes(work.folder / "a.las", las);
   check_refused(work.run("convert --force " + work.path("a.las") + " -o " + work.path("a.las")), 2,
-                "also an input");
+                "an input too");
   CHECK(work.bytes("a.las") == las);
   const std::string site = bytes_of(work.hall.path("site.h5"));
   put_bytes(work.folder / "site.h5", site);
-  check_refused(work.run_hall(work.path("site.h5"), "site.h5", "--force"), 2, "also an input");
+  check_refused(work.run_hall(work.path("site.h5"), "site.h5", "--force"), 2, "an input too");
   CHECK(work.bytes("site.h5") == site);
 }
 

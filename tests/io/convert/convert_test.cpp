@@ -145,7 +145,7 @@ TEST_CASE("cubes too small for their cells are remarked on") {
   scan.options.regular_size = 1.0;
   const ConversionReport report = scan.convert();
   REQUIRE(report.remarks.size() == 1);
-  CHECK_THAT(report.remarks[0], Contains("fewer --cell-points"));
+  CHECK_THAT(report.remarks[0], Contains("smaller --cell-points"));
 }
 
 TEST_CASE("a regular layout over the whole range of the integers") {
@@ -208,7 +208,7 @@ TEST_CASE("an input is never overwritten by the output") {
   for (const auto& input : {scan.folder / "a.las", scan.folder / ""}) {
     scan.options.inputs = {input};
     scan.options.output = scan.folder / "a.las";
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("is also an input"));
+    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("is an input too"));
     CHECK(bytes_of(scan.folder / "a.las") == before);
   }
 }

@@ -168,7 +168,7 @@ TEST_CASE("a file too far from the first is refused, and fits a coarser scale") 
   CHECK(positions(environment)[1].x == 3e6);
 }
 
-TEST_CASE("--scale that the file has keeps its integers, another one rounds") {
+TEST_CASE("a --scale that the file has keeps its integers, another one rounds") {
   const ScratchFolder folder;
   const std::vector<Quantum> points{{15, 25, -35}, {0, 7, 4}};
   write_las(folder / "a.las", points, millimetres_from(1.5, 0, 0));
