@@ -14,8 +14,9 @@ struct PlannedCell {
 /// What an engine found in one cell.
 struct CellAnswer {
   std::uint32_t cell = 0;
-  std::vector<std::uint64_t> hits;         ///< a word a block
-  std::vector<std::uint32_t> first_poses;  ///< a pose a slot (HitSet::kNever: none), where asked for
+  std::vector<std::uint64_t> hits;  ///< a word a block
+  std::vector<std::uint32_t>
+      first_poses;  ///< a pose a slot (HitSet::kNever: none), where asked for
 };
 
 /// The one interface by which the pipeline knows an engine that works cell by cell. Thread safe.

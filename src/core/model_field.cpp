@@ -31,9 +31,7 @@ struct Place {
 /// sum w_k f_k over the corners of a cell, corner (0, 0, 0) first.
 template <typename At>
 double interpolated(const double (&f)[3], At at) {
-  const auto along_x = [&](int y, int z) {
-    return (1 - f[0]) * at(0, y, z) + f[0] * at(1, y, z);
-  };
+  const auto along_x = [&](int y, int z) { return (1 - f[0]) * at(0, y, z) + f[0] * at(1, y, z); };
   const auto along_y = [&](int z) { return (1 - f[1]) * along_x(0, z) + f[1] * along_x(1, z); };
   return (1 - f[2]) * along_y(0) + f[2] * along_y(1);
 }
@@ -84,8 +82,8 @@ void ModelField::lay_out(double margin) {
   const Box& box = tree_.box();
   for (int k = 0; k < 3; ++k) {
     origin_[k] = box.lo[k] - margin * coarse_;
-    size_[k] = static_cast<std::uint32_t>(
-                   std::ceil((box.hi[k] - box.lo[k]) / coarse_ + 2 * margin)) + 1;
+    size_[k] =
+        static_cast<std::uint32_t>(std::ceil((box.hi[k] - box.lo[k]) / coarse_ + 2 * margin)) + 1;
   }
 }
 
@@ -153,7 +151,10 @@ void ModelField::fill_bricks(int threads) {
       for (std::uint32_t y = 0; y <= kBrick; ++y) {
         for (std::uint32_t x = 0; x <= kBrick; ++x, ++at) {
           // The nearest of the node before, along x and at the start of a row along y or z.
-          const std::size_t back = x > 0 ? 1 : y > 0 ? kBrick + 1 : z > 0 ? (kBrick + 1) * (kBrick + 1) : 0;
+          const std::size_t back = x > 0   ? 1
+                                   : y > 0 ? kBrick + 1
+                                   : z > 0 ? (kBrick + 1) * (kBrick + 1)
+                                           : 0;
           const std::uint32_t near = back > 0 ? nearest_[at - back] : 0;
           const Vec3 node{corner.x + x * voxel_, corner.y + y * voxel_, corner.z + z * voxel_};
           const ModelTree::Nearest nearest = tree_.nearest(node, near);

@@ -14,9 +14,9 @@ struct ModelFieldOptions {
 
 /// Bounds of d_M, the distance from any position in the model's frame to the nearest model point.
 /// Lattice nodes hold exact squared distances, rounded down to float: a coarse lattice around the
-/// whole model, and bricks of a fine one (kBrick times finer), with the nearest point too, wherever a
-/// distance within the band can occur. No memory for empty space but the coarse lattice.
-/// Between nodes: docs/numerics.md, "Model field". Source of the idea: the inverted trajectory with a
+/// whole model, and bricks of a fine one (kBrick times finer), with the nearest point too, wherever
+/// a distance within the band can occur. No memory for empty space but the coarse lattice. Between
+/// nodes: docs/numerics.md, "Model field". Source of the idea: the inverted trajectory with a
 /// distance field of the tool (Sullivan et al. 2012).
 class ModelField {
  public:
@@ -49,14 +49,14 @@ class ModelField {
   Vec3 coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t iz) const;
 
   const ModelTree& tree_;
-  double voxel_ = 0;        // fine
-  double coarse_ = 0;       // kBrick * voxel_
-  Vec3 origin_{};           // of the coarse lattice
-  std::uint32_t size_[3]{}; // coarse nodes along each axis
-  std::vector<float> coarse_squared_;     // [z][y][x]
-  std::vector<std::uint32_t> brick_of_;   // per coarse cell, [z][y][x]
-  std::vector<float> distances_;          // squared, per brick [z][y][x]
-  std::vector<std::uint32_t> nearest_;    // likewise
+  double voxel_ = 0;                     // fine
+  double coarse_ = 0;                    // kBrick * voxel_
+  Vec3 origin_{};                        // of the coarse lattice
+  std::uint32_t size_[3]{};              // coarse nodes along each axis
+  std::vector<float> coarse_squared_;    // [z][y][x]
+  std::vector<std::uint32_t> brick_of_;  // per coarse cell, [z][y][x]
+  std::vector<float> distances_;         // squared, per brick [z][y][x]
+  std::vector<std::uint32_t> nearest_;   // likewise
 };
 
 }  // namespace clearway

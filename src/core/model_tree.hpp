@@ -14,7 +14,7 @@ namespace clearway {
 class ModelTree {
  public:
   struct Nearest {
-    std::uint32_t point;     ///< in the order of the tree
+    std::uint32_t point;  ///< in the order of the tree
     double squared_distance;
   };
 
@@ -29,7 +29,8 @@ class ModelTree {
   Nearest nearest(const Vec3& x, std::uint32_t guess = 0) const;
 
   /// Whether visit(point) is true for any point with a computed squared distance to x of at most
-  /// `squared_radius`, and some others; stops at the first. A radius that is not a number visits all.
+  /// `squared_radius`, and some others; stops at the first. A radius that is not a number visits
+  /// all.
   template <typename Visit>
   bool any_within(const Vec3& x, double squared_radius, Visit visit) const {
     return any_within(0, size(), 0, x, squared_radius, visit);

@@ -47,7 +47,8 @@ MotionTree::MotionTree(std::span<const Pose> poses, const Box& model) : poses_(p
   travelled_.resize(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     pull_backs_[i] = pull_back_of(poses[i]);
-    if (i > 0) travelled_[i] = travelled_[i - 1] + displacement_bound(model, poses[i - 1], poses[i]);
+    if (i > 0)
+      travelled_[i] = travelled_[i - 1] + displacement_bound(model, poses[i - 1], poses[i]);
     condition_ = std::max(condition_, pull_backs_[i].greatest / pull_backs_[i].least);
     for (const double p : poses[i].translation) magnitude_ = std::max(magnitude_, std::abs(p));
   }

@@ -15,9 +15,6 @@ constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 /// A node of the motion tree is split for a box while it moves more than this many times the box's
 /// half diagonal.
 constexpr double kMotionPerBox = 1.0;
-/// A range of poses that moves less than this many voxels is worth an exact distance.
-constexpr double kExactVoxels = 0.5;
-
 double largest_coordinate(const PackedCloud& cloud) {
   if (cloud.tree().empty()) return 0;
   const Box box = position_box(cloud.quantisation(), cloud.tree()[0].box);
@@ -44,7 +41,6 @@ bool farther(double sigma, double squared_lower, double reach) {
 }  // namespace
 
 void SweepStatistics::add(const SweepStatistics& other) {
-  searches += other.searches;
   node_tests += other.node_tests;
   point_tests += other.point_tests;
   exact_tests += other.exact_tests;
@@ -84,12 +80,13 @@ void SweepFilter::narrow_node(const Vec3& centre, double rho, std::uint32_t inde
 }
 
 SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
-                                       SweepStatistics& statistics) const {
+                                       SweepStatistics& statistics, double& squared_lower) const {
   ++statistics.point_tests;
   const Vec3 x = motion_.pulled_back(node.mid, e);
   const double least = motion_.pull_back(node.mid).least;
   const double reach = question_.radius + node.delta + rounding_;
   const ModelField::Bounds bounds = field_.bounds(x);
+  squared_lower = bounds.squared_lower;
   if (farther(least, bounds.squared_lower, reach)) return Verdict::kDismissed;
   const Pose& pose = question_.poses[node.mid];
   const auto hits = [&](const Vec3& m) {
@@ -101,17 +98,8 @@ SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
   if (node.count == 1) {
     ++statistics.exact_tests;
     const double ball = (question_.radius + rounding_) / least * (1 + 16 * kUnitRoundoff);
-    return model_.any_within(x, ball * ball * (1 + 16 * kUnitRoundoff), hits)
-               ? Verdict::kHitAtMid
-               : Verdict::kDismissed;
-  }
-  if (node.delta < kExactVoxels * field_.voxel() && bounds.near != ModelField::kNone) {
-    ++statistics.exact_tests;
-    const ModelTree::Nearest nearest = model_.nearest(x, bounds.near);
-    if (hits(model_.point(nearest.point))) return Verdict::kHitAtMid;
-    if (farther(least, nearest.squared_distance * (1 - 16 * kUnitRoundoff), reach)) {
-      return Verdict::kDismissed;
-    }
+    return model_.any_within(x, ball * ball * (1 + 16 * kUnitRoundoff), hits) ? Verdict::kHitAtMid
+                                                                              : Verdict::kDismissed;
   }
   return Verdict::kOpen;
 }
@@ -119,17 +107,29 @@ SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
 bool SweepFilter::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
                           SweepStatistics& statistics) const {
   ++statistics.points_tested;
+  double squared_lower = 0;
   return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
-    return touches_below(e, node, statistics);
+    const Verdict verdict = test(e, motion_.nodes()[node], statistics, squared_lower);
+    return verdict == Verdict::kHitAtMid ||
+           (verdict == Verdict::kOpen && touches_below(e, node, statistics));
   });
 }
 
+/// Tests both halves of an open node, then goes into the nearer one first.
 bool SweepFilter::touches_below(const Vec3& e, std::uint32_t index,
                                 SweepStatistics& statistics) const {
-  const MotionNode& node = motion_.nodes()[index];
-  const Verdict verdict = test(e, node, statistics);
-  if (verdict != Verdict::kOpen) return verdict == Verdict::kHitAtMid;
-  return touches_below(e, index + 1, statistics) || touches_below(e, node.later, statistics);
+  const MotionNode* nodes = motion_.nodes().data();
+  std::uint32_t half[2] = {index + 1, nodes[index].later};
+  double squared[2];
+  bool open[2];
+  for (int i = 0; i < 2; ++i) {
+    const Verdict verdict = test(e, nodes[half[i]], statistics, squared[i]);
+    if (verdict == Verdict::kHitAtMid) return true;
+    open[i] = verdict == Verdict::kOpen;
+  }
+  const int nearer = squared[1] < squared[0] ? 1 : 0;
+  return (open[nearer] && touches_below(e, half[nearer], statistics)) ||
+         (open[1 - nearer] && touches_below(e, half[1 - nearer], statistics));
 }
 
 std::uint32_t SweepFilter::first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
@@ -148,7 +148,8 @@ void SweepFilter::first_pose_below(const Vec3& e, std::uint32_t index, std::uint
                                    SweepStatistics& statistics) const {
   const MotionNode& node = motion_.nodes()[index];
   if (node.first >= best) return;
-  const Verdict verdict = test(e, node, statistics);
+  double squared_lower = 0;
+  const Verdict verdict = test(e, node, statistics, squared_lower);
   if (verdict == Verdict::kDismissed) return;
   if (verdict == Verdict::kHitAtMid) best = std::min(best, node.mid);
   if (node.count == 1) return;

@@ -14,11 +14,10 @@ namespace clearway {
 
 /// How often the steps of a descent were taken.
 struct SweepStatistics {
-  std::uint64_t searches = 0;      ///< pairs of pose and model point
-  std::uint64_t node_tests = 0;    ///< field look-ups for cells, runs of blocks and blocks
-  std::uint64_t point_tests = 0;   ///< field look-ups for points
-  std::uint64_t exact_tests = 0;   ///< nearest-neighbour and ball searches in the model
-  std::uint64_t points_tested = 0; ///< points that no block dismissed
+  std::uint64_t node_tests = 0;     ///< field look-ups for cells, runs of blocks and blocks
+  std::uint64_t point_tests = 0;    ///< field look-ups for points
+  std::uint64_t exact_tests = 0;    ///< ball searches in the model
+  std::uint64_t points_tested = 0;  ///< points that no block dismissed
   void add(const SweepStatistics& other);
 };
 
@@ -33,10 +32,10 @@ class SweepFilter {
 
   const Question& question() const { return question_; }
 
-  /// Of `nodes` and the nodes below them those that may touch a point of the box, as fine as the box
-  /// is small; replaces `out`. In the order of the poses when `nodes` are.
-  void narrow(const Box& box, std::span<const std::uint32_t> nodes,
-              std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
+  /// Of `nodes` and the nodes below them those that may touch a point of the box, as fine as the
+  /// box is small; replaces `out`. In the order of the poses when `nodes` are.
+  void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
+              SweepStatistics& statistics) const;
 
   /// Whether the model touches e at a pose of `nodes`.
   bool touches(const Vec3& e, std::span<const std::uint32_t> nodes,
@@ -52,7 +51,8 @@ class SweepFilter {
 
   void narrow_node(const Vec3& centre, double rho, std::uint32_t node,
                    std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
-  Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics) const;
+  Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
+               double& squared_lower) const;
   bool touches_below(const Vec3& e, std::uint32_t node, SweepStatistics& statistics) const;
   void first_pose_below(const Vec3& e, std::uint32_t node, std::uint32_t& best,
                         SweepStatistics& statistics) const;

@@ -20,7 +20,8 @@ class CellSearch {
         chunks_(cloud.coordinates(cell)) {
     answer_.cell = cell;
     answer_.hits.resize(cloud.blocks_per_cell());
-    if (filter.question().first_pose) answer_.first_poses.resize(cloud.cell_slots(), HitSet::kNever);
+    if (filter.question().first_pose)
+      answer_.first_poses.resize(cloud.cell_slots(), HitSet::kNever);
   }
 
   CellAnswer run(std::span<const std::uint32_t> nodes) {

@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// The sweep engine on the CPU: descends a cell's implicit tree and the motion tree together, down to
-/// points, each decoded once. The cloud and the filter outlive it.
+/// The sweep engine on the CPU: descends a cell's implicit tree and the motion tree together, down
+/// to points, each decoded once. The cloud and the filter outlive it.
 class SweepEngine final : public CellEngine {
  public:
   SweepEngine(const PackedCloud& cloud, const SweepFilter& filter)

@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// Hands the planned cells to the engine, `threads` (0: all) at a time and in their order, and collects the
-/// answers. Progress counts points. Throws what the engine throws.
+/// Hands the planned cells to the engine, `threads` (0: all) at a time and in their order, and
+/// collects the answers. Progress counts points. Throws what the engine throws.
 HitSet run_cells(const PackedCloud& cloud, const std::vector<PlannedCell>& cells,
                  CellEngine& engine, bool first_pose, int threads, Progress& progress);
 

@@ -28,8 +28,8 @@ void check_memory(std::uint64_t needed, std::uint64_t allowed) {
   }
 }
 
-HitSet run_kdtree_engine(const Store& store, const Question& question,
-                         const EngineOptions& options, Progress& progress, EngineReport& report) {
+HitSet run_kdtree_engine(const Store& store, const Question& question, const EngineOptions& options,
+                         Progress& progress, EngineReport& report) {
   report.needed_bytes =
       input_bytes(store, question) + kdtree_memory_bytes(store, question, options.threads);
   check_memory(report.needed_bytes, options.memory_bytes);
@@ -39,8 +39,8 @@ HitSet run_kdtree_engine(const Store& store, const Question& question,
   return hits;
 }
 
-HitSet run_sweep_engine(const Store& store, const Question& question,
-                        const EngineOptions& options, Progress& progress, EngineReport& report) {
+HitSet run_sweep_engine(const Store& store, const Question& question, const EngineOptions& options,
+                        Progress& progress, EngineReport& report) {
   const Stopwatch field_time;
   const ModelTree model(question.model);
   const ModelField field(model, question.radius, {.voxel = options.field_voxel}, options.threads);
@@ -57,9 +57,11 @@ HitSet run_sweep_engine(const Store& store, const Question& question,
   HitSet hits = run_cells(store, cells, engine, question.first_pose, options.threads, progress);
   report.compute_seconds = compute.seconds();
   const SweepStatistics& s = engine.statistics();
-  spdlog::info("sweep: voxel {:.4g}, {} bricks, field {}; field {:.2f} s, plan {:.2f} s ({} cells), compute {:.2f} s; node tests {}, points {}, point tests {}, exact {}",
-               field.voxel(), field.bricks(), format_size(field.allocated_bytes()), report.field_seconds, report.plan_seconds, cells.size(), report.compute_seconds,
-               format_count(s.node_tests), format_count(s.points_tested), format_count(s.point_tests), format_count(s.exact_tests));
+  spdlog::info("model field: voxel {:.4g} m, {} bricks, {}", field.voxel(),
+               format_count(field.bricks()), format_size(field.allocated_bytes()));
+  spdlog::info("tests: {} of boxes, {} of points ({} points), {} exact", format_count(s.node_tests),
+               format_count(s.point_tests), format_count(s.points_tested),
+               format_count(s.exact_tests));
   return hits;
 }
 
@@ -71,9 +73,8 @@ HitSet run_engine(const Store& store, const Question& question, const EngineOpti
   if (options.threads == 0) resolved.threads = tbb::this_task_arena::max_concurrency();
   report.engine = options.engine == "kdtree" ? "kdtree" : "sweep";
   report.searches = std::uint64_t{question.poses.size()} * question.model.size();
-  return report.engine == "kdtree"
-             ? run_kdtree_engine(store, question, resolved, progress, report)
-             : run_sweep_engine(store, question, resolved, progress, report);
+  return report.engine == "kdtree" ? run_kdtree_engine(store, question, resolved, progress, report)
+                                   : run_sweep_engine(store, question, resolved, progress, report);
 }
 
 }  // namespace clearway::tool

@@ -171,8 +171,9 @@ void add_run(CLI::App& program) {
       ->capture_default_str();
   add_threads_option(*command, options->engine.threads);
   add_memory_option(*command, options->engine.memory_bytes);
-  command->add_option("--field-voxel", options->engine.field_voxel,
-                      "Voxel of the sweep engine's model field in metres (default: chosen)")
+  command
+      ->add_option("--field-voxel", options->engine.field_voxel,
+                   "Voxel of the sweep engine's model field in metres (default: chosen)")
       ->type_name("METRES")
       ->check(CLI::PositiveNumber);
   command->add_flag("--force", options->force, "Overwrite an existing result");
