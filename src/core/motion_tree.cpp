@@ -25,9 +25,11 @@ PullBack pull_back_of(const Pose& pose) {
   PullBack out{};
   std::copy(inverse.data(), inverse.data() + 9, out.inverse);
   out.greatest = greatest_stretch_bound(pose);
-  // Singular values of the inverse are the reciprocals; its rounding is far below 1e-9 unless the
-  // matrix is nearly singular, and then `condition_` makes every bound useless but safe.
-  out.least = 1 / (greatest_stretch_bound(inverse_pose) * (1 + 1e-9));
+  // Singular values of the inverse are the reciprocals; the inverse by cofactors errs by less than
+  // 20 u condition^2 (docs/numerics.md, "Sweep").
+  const double inverse_greatest = greatest_stretch_bound(inverse_pose);
+  const double condition = out.greatest * inverse_greatest;
+  out.least = 1 / (inverse_greatest * (1 + 64 * kUnitRoundoff * (1 + condition * condition)));
   return out;
 }
 

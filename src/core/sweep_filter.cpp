@@ -53,7 +53,9 @@ SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, con
       motion_(motion),
       model_(model),
       field_(field),
-      rounding_(motion.rounding(largest_coordinate(cloud) + question.radius) + 1e-150) {}
+      rounding_(motion.rounding(largest_coordinate(cloud) + question.radius +
+                                32 * field.voxel()) +
+                1e-150) {}
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
