@@ -12,8 +12,10 @@ namespace clearway {
 struct Question {
   std::span<const Vec3> model;  ///< in the model's own frame, metres
   std::span<const Pose> poses;
-  double radius = 0;        ///< metres, > 0
-  bool first_pose = false;  ///< also the smallest pose index that touches each colliding point
+  double radius = 0;           ///< metres, > 0
+  bool first_pose = false;     ///< also the smallest pose index that touches each colliding point
+  bool between_poses = false;  ///< model points move on straight segments from pose to pose
+  double clearance = 0;        ///< metres: distances below it are asked for too; 0: none
 };
 
 }  // namespace clearway

@@ -7,7 +7,8 @@
 
 namespace clearway {
 
-/// Owner of `count` uninitialised values in device memory. Throws ResourceError where there is none.
+/// Owner of `count` uninitialised values in device memory. Throws ResourceError where there is
+/// none.
 template <typename Value>
 class DeviceBuffer {
  public:

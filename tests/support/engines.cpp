@@ -5,6 +5,9 @@
 
 #include "cpu/brute_force.hpp"
 #include "cpu/kdtree_engine.hpp"
+#include "cpu/sweep_engine.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_cells.hpp"
 
 namespace clearway {
 namespace {
@@ -14,7 +17,19 @@ HitSet kdtree(const PackedCloud& cloud, const Question& question, int threads) {
   return run_kdtree(cloud, question, {threads}, progress);
 }
 
-const std::array kEngines{Engine{"kdtree", kdtree}};
+HitSet sweep(const PackedCloud& cloud, const Question& question, int threads) {
+  NoProgress progress;
+  if (question.model.empty()) return HitSet(cloud.slot_count(), question.first_pose);
+  const ModelTree model(question.model);
+  const ModelField field(model, question.radius, {}, threads);
+  const MotionTree motion(question.poses, model.box());
+  const SweepFilter filter(question, motion, model, field, cloud);
+  SweepEngine engine(cloud, filter);
+  return run_cells(cloud, plan(cloud, motion, filter), engine, question.first_pose, threads,
+                   progress);
+}
+
+const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep}};
 
 constexpr int kThreads = 3;
 

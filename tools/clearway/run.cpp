@@ -1,20 +1,17 @@
 #include <spdlog/spdlog.h>
-#include <tbb/task_arena.h>
 
-#include <chrono>
-#include <cmath>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
+#include "clearway/engines.hpp"
 #include "clearway/memory_use.hpp"
 #include "clearway/options.hpp"
 #include "clearway/standard_output.hpp"
+#include "clearway/stopwatch.hpp"
 #include "core/error.hpp"
-#include "cpu/kdtree_engine.hpp"
 #include "io/content_hash.hpp"
 #include "io/model.hpp"
 #include "io/pending_file.hpp"
@@ -28,9 +25,8 @@ namespace {
 struct Options {
   std::filesystem::path environment, model, trajectory, output;
   double radius = 0;
-  std::string engine = "auto", device = "auto";
-  int threads = 0;
-  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  EngineOptions engine;
+  std::string device = "auto";
   bool first_pose = false;
   TrajectoryOptions trajectory_options;
   bool force = false;
@@ -39,17 +35,7 @@ struct Options {
 
 /// Wall clock of the stages, seconds.
 struct Seconds {
-  double read = 0, compute = 0, write = 0, total = 0;
-};
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double read = 0, write = 0, total = 0;
 };
 
 struct Inputs {
@@ -77,32 +63,16 @@ ResultHeader header_of(const Inputs& inputs, const Options& options) {
           .crs_wkt = metadata.crs_wkt};
 }
 
-/// Bytes that the engine and the inputs need; refused before anything starts where --memory is
-/// less.
-std::uint64_t check_memory(const Inputs& inputs, const Question& question, const Options& options) {
-  const int threads =
-      options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
-  const std::uint64_t needed =
-      inputs.store.allocated_bytes() + inputs.model.capacity() * sizeof(Vec3) +
-      inputs.poses.capacity() * sizeof(Pose) + kdtree_memory_bytes(inputs.store, question, threads);
-  if (needed > options.memory_bytes) {
-    throw ResourceError("--memory " + format_size(options.memory_bytes) +
-                        " is too little: this run needs " + format_size(needed) +
-                        " beside the mapped store");
-  }
-  return needed;
-}
-
 nlohmann::ordered_json report_of(const Inputs& inputs, const HitSet& hits,
-                                 const KdTreeStatistics& statistics, const Seconds& seconds) {
+                                 const EngineReport& engine, const Seconds& seconds) {
   const Store::Touched touched = inputs.store.touched();
   return {{"environment_points", inputs.store.point_count()},
           {"model_points", inputs.model.size()},
           {"poses", inputs.poses.size()},
           {"colliding_points", hits.count()},
-          {"engine", "kdtree"},
+          {"engine", engine.engine},
           {"device", "cpu"},
-          {"searches", statistics.searches},
+          {"searches", engine.searches},
           {"cells_total", inputs.store.cells().size()},
           {"cells_read", touched.cells},
           {"bytes_read", touched.bytes},
@@ -111,11 +81,11 @@ nlohmann::ordered_json report_of(const Inputs& inputs, const HitSet& hits,
           {"seconds",
            {{"total", seconds.total},
             {"context", 0.0},
-            {"plan", 0.0},
-            {"field", 0.0},
+            {"plan", engine.plan_seconds},
+            {"field", engine.field_seconds},
             {"read", seconds.read},
             {"upload", 0.0},
-            {"compute", seconds.compute},
+            {"compute", engine.compute_seconds},
             {"write", seconds.write}}}};
 }
 
@@ -136,26 +106,21 @@ void run_run(const Options& options) {
   const Inputs inputs(options);
   warn_of(inputs);
   const Question question{inputs.model, inputs.poses, options.radius, options.first_pose};
-  const std::uint64_t needed = check_memory(inputs, question, options);
   seconds.read = total.seconds();
-
-  const Stopwatch compute;
-  KdTreeStatistics statistics;
-  const HitSet hits =
-      run_kdtree(inputs.store, question, {.threads = options.threads}, progress, &statistics);
-  seconds.compute = compute.seconds();
+  EngineReport engine;
+  const HitSet hits = run_engine(inputs.store, question, options.engine, progress, engine);
   peak_anonymous_bytes();
 
   const Stopwatch write;
   write_collisions(inputs.store, hits, header_of(inputs, options), output.partial(),
-                   options.memory_bytes - needed, progress);
+                   options.engine.memory_bytes - engine.needed_bytes, progress);
   output.publish();
   seconds.write = write.seconds();
   seconds.total = total.seconds();
-  spdlog::info("{}: {} of {} environment points collide; engine kdtree on the CPU, {:.2f} s",
+  spdlog::info("{}: {} of {} environment points collide; engine {} on the CPU, {:.2f} s",
                options.output.string(), format_count(hits.count()),
-               format_count(inputs.store.point_count()), seconds.total);
-  if (options.json) print(report_of(inputs, hits, statistics, seconds).dump(2) + "\n");
+               format_count(inputs.store.point_count()), engine.engine, seconds.total);
+  if (options.json) print(report_of(inputs, hits, engine, seconds).dump(2) + "\n");
 }
 
 void add_inputs(CLI::App& command, Options& options) {
@@ -204,14 +169,19 @@ void add_run(CLI::App& program) {
   add_inputs(*command, *options);
   command->add_flag("--first-pose", options->first_pose,
                     "Also the first pose (0-based) that touches each colliding point");
-  command->add_option("--engine", options->engine, "kdtree; auto takes it")
-      ->check(CLI::IsMember({"auto", "kdtree"}))
+  command->add_option("--engine", options->engine.engine, "sweep or kdtree; auto takes sweep")
+      ->check(CLI::IsMember({"auto", "sweep", "kdtree"}))
       ->capture_default_str();
   command->add_option("--device", options->device, "cpu; auto takes it")
       ->check(CLI::IsMember({"auto", "cpu"}))
       ->capture_default_str();
-  add_threads_option(*command, options->threads);
-  add_memory_option(*command, options->memory_bytes);
+  add_threads_option(*command, options->engine.threads);
+  add_memory_option(*command, options->engine.memory_bytes);
+  command
+      ->add_option("--field-voxel", options->engine.field_voxel,
+                   "Voxel of the sweep engine's model field in metres (default: chosen)")
+      ->type_name("METRES")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--force", options->force, "Overwrite an existing result");
   command->add_flag("--json", options->json, "Print one JSON object about the run");
   command->footer(

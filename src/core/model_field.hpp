@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/model_tree.hpp"
+
+namespace clearway {
+
+struct ModelFieldOptions {
+  double voxel = 0;  ///< metres; 0: chosen from the radius, within `most_bytes`
+  std::uint64_t most_bytes = std::uint64_t{256} << 20;
+};
+
+/// Bounds of d_M, the distance from any position in the model's frame to the nearest model point.
+/// Lattice nodes hold exact squared distances, rounded down to float: a coarse lattice around the
+/// whole model, and bricks of a fine one (kBrick times finer), with the nearest point too, wherever
+/// a distance within the band can occur. No memory for empty space but the coarse lattice. Between
+/// nodes: docs/numerics.md, "Model field". Source of the idea: the inverted trajectory with a
+/// distance field of the tool (Sullivan et al. 2012).
+class ModelField {
+ public:
+  /// Exact for lattice nodes by nearest-neighbour search in `tree`, which must outlive the field.
+  /// radius: the band around the model in which the descent ends. Uses OpenMP with `threads`.
+  ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options, int threads);
+
+  struct Bounds {
+    double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
+    std::uint32_t near;    ///< a model point near x, or kNone
+  };
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  Bounds bounds(const Vec3& x) const;
+
+  double voxel() const { return voxel_; }
+  std::uint64_t bricks() const { return distances_.size() / kBrickNodes; }
+  std::uint64_t allocated_bytes() const;
+
+ private:
+  static constexpr std::uint32_t kBrick = 8;  // fine voxels along a coarse one
+  static constexpr std::uint32_t kBrickNodes = (kBrick + 1) * (kBrick + 1) * (kBrick + 1);
+  static constexpr std::uint32_t kNoBrick = 0xffffffff;
+
+  void choose_voxel(double radius, const ModelFieldOptions& options);
+  void lay_out(double margin);
+  void fill_coarse(int threads);
+  std::uint64_t mark_bricks(double band, int threads);
+  void fill_bricks(int threads);
+  Vec3 coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t iz) const;
+
+  const ModelTree& tree_;
+  double voxel_ = 0;                     // fine
+  double coarse_ = 0;                    // kBrick * voxel_
+  Vec3 origin_{};                        // of the coarse lattice
+  std::uint32_t size_[3]{};              // coarse nodes along each axis
+  std::vector<float> coarse_squared_;    // [z][y][x]
+  std::vector<std::uint32_t> brick_of_;  // per coarse cell, [z][y][x]
+  std::vector<float> distances_;         // squared, per brick [z][y][x]
+  std::vector<std::uint32_t> nearest_;   // likewise
+};
+
+}  // namespace clearway

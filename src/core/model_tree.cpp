@@ -1,0 +1,81 @@
+#include "core/model_tree.hpp"
+
+#include <algorithm>
+
+namespace clearway {
+namespace {
+
+Box box_of(std::span<const Vec3> points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], p[k]);
+      box.hi[k] = std::max(box.hi[k], p[k]);
+    }
+  }
+  return box;
+}
+
+int longest_side(const Box& box) {
+  int longest = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (box.hi[k] - box.lo[k] > box.hi[longest] - box.lo[longest]) longest = k;
+  }
+  return longest;
+}
+
+}  // namespace
+
+ModelTree::ModelTree(std::span<const Vec3> model) : points_(model.begin(), model.end()) {
+  if (points_.empty()) return;
+  box_ = box_of(points_);
+  build(0, size(), 0);
+}
+
+void ModelTree::build(std::uint32_t begin, std::uint32_t end, std::size_t node) {
+  const std::span<const Vec3> part(points_.data() + begin, end - begin);
+  if (node >= boxes_.size()) boxes_.resize(node + 1);
+  boxes_[node] = box_of(part);
+  if (end - begin <= kLeafPoints) return;
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  const int axis = longest_side(boxes_[node]);
+  std::nth_element(points_.begin() + begin, points_.begin() + middle, points_.begin() + end,
+                   [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+  build(begin, middle, 2 * node + 1);
+  build(middle, end, 2 * node + 2);
+}
+
+ModelTree::Nearest ModelTree::nearest(const Vec3& x, std::uint32_t guess) const {
+  Nearest best{guess, squared_distance(points_[guess], x)};
+  search(0, size(), 0, x, best);
+  return best;
+}
+
+void ModelTree::search(std::uint32_t begin, std::uint32_t end, std::size_t node, const Vec3& x,
+                       Nearest& best) const {
+  if (end - begin <= kLeafPoints) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const double squared = squared_distance(points_[i], x);
+      if (squared < best.squared_distance) best = {i, squared};
+    }
+    return;
+  }
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  const double left = least_squared_distance(boxes_[2 * node + 1], x);
+  const double right = least_squared_distance(boxes_[2 * node + 2], x);
+  const auto visit_left = [&] {
+    if (left < best.squared_distance) search(begin, middle, 2 * node + 1, x, best);
+  };
+  const auto visit_right = [&] {
+    if (right < best.squared_distance) search(middle, end, 2 * node + 2, x, best);
+  };
+  if (left <= right) {
+    visit_left();
+    visit_right();
+  } else {
+    visit_right();
+    visit_left();
+  }
+}
+
+}  // namespace clearway

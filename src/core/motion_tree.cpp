@@ -1,0 +1,123 @@
+#include "core/motion_tree.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/rigid.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+/// Ranges up to this long get their delta pose by pose, longer ones from nodes kLevels below.
+constexpr std::uint32_t kExactPoses = 8;
+constexpr int kLevels = 4;
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+PullBack pull_back_of(const Pose& pose) {
+  const RowMajor inverse = Eigen::Map<const RowMajor>(pose.rotation).inverse();
+  Pose inverse_pose{};
+  std::copy(inverse.data(), inverse.data() + 9, inverse_pose.rotation);
+  PullBack out{};
+  std::copy(inverse.data(), inverse.data() + 9, out.inverse);
+  out.greatest = greatest_stretch_bound(pose);
+  // Singular values of the inverse are the reciprocals; the inverse by cofactors errs by less than
+  // 20 u condition^2 (docs/numerics.md, "Sweep").
+  const double inverse_greatest = greatest_stretch_bound(inverse_pose);
+  const double condition = out.greatest * inverse_greatest;
+  out.least = 1 / (inverse_greatest * (1 + 64 * kUnitRoundoff * (1 + condition * condition)));
+  return out;
+}
+
+double reach_of(const Box& box) {
+  double reach = 0;
+  for (int k = 0; k < 3; ++k) {
+    reach = std::max({reach, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  }
+  return reach;
+}
+
+}  // namespace
+
+MotionTree::MotionTree(std::span<const Pose> poses, const Box& model) : poses_(poses) {
+  if (poses.empty()) return;
+  pull_backs_.resize(poses.size());
+  travelled_.resize(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    pull_backs_[i] = pull_back_of(poses[i]);
+    if (i > 0)
+      travelled_[i] = travelled_[i - 1] + displacement_bound(model, poses[i - 1], poses[i]);
+    condition_ = std::max(condition_, pull_backs_[i].greatest / pull_backs_[i].least);
+    for (const double p : poses[i].translation) magnitude_ = std::max(magnitude_, std::abs(p));
+  }
+  double greatest = 1;
+  for (const PullBack& p : pull_backs_) greatest = std::max(greatest, p.greatest);
+  magnitude_ += 2 * greatest * reach_of(model);
+  nodes_.reserve(2 * poses.size());
+  add(0, static_cast<std::uint32_t>(poses.size()));
+  for (auto node = static_cast<std::uint32_t>(nodes_.size()); node-- > 0;) {
+    nodes_[node].delta = delta_of(node, model);
+  }
+  travelled_ = {};
+}
+
+void MotionTree::add(std::uint32_t first, std::uint32_t count) {
+  const std::size_t self = nodes_.size();
+  const auto begin = travelled_.begin() + first;
+  const double half = (*begin + *(begin + count - 1)) / 2;
+  const auto at = std::lower_bound(begin, begin + count, half);
+  auto mid = static_cast<std::uint32_t>(at - begin);
+  if (!(travelled_[first] < travelled_[first + count - 1])) mid = count / 2;  // a stop
+  mid = std::min(mid, count - 1);
+  nodes_.push_back({first, count, first + mid, 0, 0});
+  if (count == 1) return;
+  const std::uint32_t split = std::clamp(mid, 1U, count - 1);
+  add(first, split);
+  nodes_[self].later = static_cast<std::uint32_t>(nodes_.size());
+  add(first + split, count - split);
+}
+
+double MotionTree::delta_of(std::uint32_t node, const Box& model) const {
+  const MotionNode& n = nodes_[node];
+  if (n.count == 1) return 0;
+  if (n.count > kExactPoses) return delta_below(node, n.mid, kLevels, model);
+  double delta = 0;
+  for (std::uint32_t i = n.first; i < n.first + n.count; ++i) {
+    if (i != n.mid) delta = std::max(delta, displacement_bound(model, poses_[n.mid], poses_[i]));
+  }
+  return delta;
+}
+
+/// From the nodes `levels` below, whose own delta is known: how far their poses are from `mid`.
+double MotionTree::delta_below(std::uint32_t node, std::uint32_t mid, int levels,
+                               const Box& model) const {
+  const MotionNode& n = nodes_[node];
+  if (levels > 0 && n.count > 1) {
+    return std::max(delta_below(node + 1, mid, levels - 1, model),
+                    delta_below(n.later, mid, levels - 1, model));
+  }
+  const double between = n.mid == mid ? 0 : displacement_bound(model, poses_[mid], poses_[n.mid]);
+  return (n.delta + between) * (1 + 4 * kUnitRoundoff);
+}
+
+Vec3 MotionTree::pulled_back(std::uint32_t pose, const Vec3& e) const {
+  const double* p = poses_[pose].translation;
+  const double* m = pull_backs_[pose].inverse;
+  const double x = e.x - p[0], y = e.y - p[1], z = e.z - p[2];
+  return {m[0] * x + m[1] * y + m[2] * z, m[3] * x + m[4] * y + m[5] * z,
+          m[6] * x + m[7] * y + m[8] * z};
+}
+
+double MotionTree::rounding(double reach) const {
+  return 256 * kUnitRoundoff * (reach + magnitude_) * (1 + condition_) * (1 + condition_);
+}
+
+std::uint64_t MotionTree::allocated_bytes() const {
+  return nodes_.capacity() * sizeof(MotionNode) + pull_backs_.capacity() * sizeof(PullBack);
+}
+
+}  // namespace clearway

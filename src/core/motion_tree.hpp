@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/box.hpp"
+#include "core/pose.hpp"
+
+namespace clearway {
+
+/// A range of consecutive poses around one of them. Preorder: the earlier half is the next node.
+struct MotionNode {
+  std::uint32_t first;
+  std::uint32_t count;
+  std::uint32_t mid;    ///< a pose of the range
+  std::uint32_t later;  ///< node of the later half, 0 where count is 1
+  double delta;  ///< no model point is farther at any pose of the range from where it is at mid
+};
+
+/// The true inverse of a pose's rotation, never its transpose: poses read from text are not quite
+/// rigid.
+struct PullBack {
+  double inverse[9];  ///< row-major
+  double least;       ///< at most the least singular value of the rotation
+  double greatest;    ///< at least the greatest
+};
+
+/// A binary tree over a trajectory, split where half of the motion is done, so that a jump or a
+/// long stop costs nothing. Prior art: the inverted trajectory of NC milling simulation (Sullivan
+/// et al. 2012), conservative advancement (Mirtich).
+class MotionTree {
+ public:
+  /// `model` holds every model point; both must be finite.
+  MotionTree(std::span<const Pose> poses, const Box& model);
+
+  std::span<const MotionNode> nodes() const { return nodes_; }
+  std::span<const Pose> poses() const { return poses_; }
+  const PullBack& pull_back(std::uint32_t pose) const { return pull_backs_[pose]; }
+
+  /// x with transform(pose, x) = e, up to a rounding of at most rounding() metres times `greatest`.
+  Vec3 pulled_back(std::uint32_t pose, const Vec3& e) const;
+
+  /// What all roundings of a test at a node, predicate and pull-back, amount to at the most in
+  /// metres, for environment points with coordinates of at most `reach` (docs/numerics.md).
+  double rounding(double reach) const;
+
+  std::uint64_t allocated_bytes() const;
+
+ private:
+  void add(std::uint32_t first, std::uint32_t count);
+  double delta_of(std::uint32_t node, const Box& model) const;
+  double delta_below(std::uint32_t node, std::uint32_t mid, int levels, const Box& model) const;
+
+  std::span<const Pose> poses_;
+  std::vector<double> travelled_;  ///< up to each pose, metres; only while building
+  std::vector<MotionNode> nodes_;
+  std::vector<PullBack> pull_backs_;
+  double condition_ = 1;  ///< greatest of all poses
+  double magnitude_ = 0;  ///< of translations and moved model points
+};
+
+}  // namespace clearway

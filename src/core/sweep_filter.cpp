@@ -1,0 +1,162 @@
+#include "core/sweep_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/hit_set.hpp"
+#include "core/predicate.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+/// A node of the motion tree is split for a box while it moves more than this many times the box's
+/// half diagonal.
+constexpr double kMotionPerBox = 1.0;
+double largest_coordinate(const PackedCloud& cloud) {
+  if (cloud.tree().empty()) return 0;
+  const Box box = position_box(cloud.quantisation(), cloud.tree()[0].box);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  }
+  return largest;
+}
+
+double half_diagonal(const Box& box) {
+  const double x = box.hi.x - box.lo.x, y = box.hi.y - box.lo.y, z = box.hi.z - box.lo.z;
+  return 0.5 * std::sqrt(squared_length(x, y, z)) * (1 + 16 * kUnitRoundoff);
+}
+
+/// True only when sigma * sqrt(squared_lower) >= reach, rounding included; false for NaN and where
+/// the reach overflows.
+bool farther(double sigma, double squared_lower, double reach) {
+  const double squared_reach = reach * reach * (1 + 16 * kUnitRoundoff);
+  return squared_reach <= std::numeric_limits<double>::max() &&
+         sigma * sigma * squared_lower >= squared_reach;
+}
+
+}  // namespace
+
+void SweepStatistics::add(const SweepStatistics& other) {
+  node_tests += other.node_tests;
+  point_tests += other.point_tests;
+  exact_tests += other.exact_tests;
+  points_tested += other.points_tested;
+}
+
+SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, const ModelTree& model,
+                         const ModelField& field, const PackedCloud& cloud)
+    : question_(question),
+      motion_(motion),
+      model_(model),
+      field_(field),
+      rounding_(motion.rounding(largest_coordinate(cloud) + question.radius +
+                                32 * field.voxel()) +
+                1e-150) {}
+
+void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
+                         std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+  out.clear();
+  const Vec3 centre{box.lo.x + 0.5 * (box.hi.x - box.lo.x), box.lo.y + 0.5 * (box.hi.y - box.lo.y),
+                    box.lo.z + 0.5 * (box.hi.z - box.lo.z)};
+  const double rho = half_diagonal(box);
+  for (const std::uint32_t node : nodes) narrow_node(centre, rho, node, out, statistics);
+}
+
+void SweepFilter::narrow_node(const Vec3& centre, double rho, std::uint32_t index,
+                              std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+  const MotionNode& node = motion_.nodes()[index];
+  ++statistics.node_tests;
+  const Vec3 x = motion_.pulled_back(node.mid, centre);
+  const double reach = question_.radius + node.delta + rho + rounding_;
+  if (farther(motion_.pull_back(node.mid).least, field_.bounds(x).squared_lower, reach)) return;
+  if (node.count > 1 && !(node.delta <= kMotionPerBox * rho)) {
+    narrow_node(centre, rho, index + 1, out, statistics);
+    narrow_node(centre, rho, node.later, out, statistics);
+  } else {
+    out.push_back(index);
+  }
+}
+
+SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
+                                       SweepStatistics& statistics, double& squared_lower) const {
+  ++statistics.point_tests;
+  const Vec3 x = motion_.pulled_back(node.mid, e);
+  const double least = motion_.pull_back(node.mid).least;
+  const double reach = question_.radius + node.delta + rounding_;
+  const ModelField::Bounds bounds = field_.bounds(x);
+  squared_lower = bounds.squared_lower;
+  if (farther(least, bounds.squared_lower, reach)) return Verdict::kDismissed;
+  const Pose& pose = question_.poses[node.mid];
+  const auto hits = [&](const Vec3& m) {
+    return collides(e, transform(pose, m), question_.radius);
+  };
+  if (bounds.near != ModelField::kNone && hits(model_.point(bounds.near))) {
+    return Verdict::kHitAtMid;
+  }
+  if (node.count == 1) {
+    ++statistics.exact_tests;
+    const double ball = (question_.radius + rounding_) / least * (1 + 16 * kUnitRoundoff);
+    return model_.any_within(x, ball * ball * (1 + 16 * kUnitRoundoff), hits) ? Verdict::kHitAtMid
+                                                                              : Verdict::kDismissed;
+  }
+  return Verdict::kOpen;
+}
+
+bool SweepFilter::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
+                          SweepStatistics& statistics) const {
+  ++statistics.points_tested;
+  double squared_lower = 0;
+  return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
+    const Verdict verdict = test(e, motion_.nodes()[node], statistics, squared_lower);
+    return verdict == Verdict::kHitAtMid ||
+           (verdict == Verdict::kOpen && touches_below(e, node, statistics));
+  });
+}
+
+/// Tests both halves of an open node, then goes into the nearer one first.
+bool SweepFilter::touches_below(const Vec3& e, std::uint32_t index,
+                                SweepStatistics& statistics) const {
+  const MotionNode* nodes = motion_.nodes().data();
+  std::uint32_t half[2] = {index + 1, nodes[index].later};
+  double squared[2];
+  bool open[2];
+  for (int i = 0; i < 2; ++i) {
+    const Verdict verdict = test(e, nodes[half[i]], statistics, squared[i]);
+    if (verdict == Verdict::kHitAtMid) return true;
+    open[i] = verdict == Verdict::kOpen;
+  }
+  const int nearer = squared[1] < squared[0] ? 1 : 0;
+  return (open[nearer] && touches_below(e, half[nearer], statistics)) ||
+         (open[1 - nearer] && touches_below(e, half[1 - nearer], statistics));
+}
+
+std::uint32_t SweepFilter::first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
+                                      SweepStatistics& statistics) const {
+  ++statistics.points_tested;
+  std::uint32_t best = HitSet::kNever;
+  for (const std::uint32_t node : nodes) {
+    if (motion_.nodes()[node].first >= best) break;
+    first_pose_below(e, node, best, statistics);
+  }
+  return best;
+}
+
+/// Lowers `best` to the smallest touching pose of the node's that is below it.
+void SweepFilter::first_pose_below(const Vec3& e, std::uint32_t index, std::uint32_t& best,
+                                   SweepStatistics& statistics) const {
+  const MotionNode& node = motion_.nodes()[index];
+  if (node.first >= best) return;
+  double squared_lower = 0;
+  const Verdict verdict = test(e, node, statistics, squared_lower);
+  if (verdict == Verdict::kDismissed) return;
+  if (verdict == Verdict::kHitAtMid) best = std::min(best, node.mid);
+  if (node.count == 1) return;
+  first_pose_below(e, index + 1, best, statistics);
+  first_pose_below(e, node.later, best, statistics);
+}
+
+}  // namespace clearway
