@@ -15,6 +15,11 @@ constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kMarginSteps = 3;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
 
+/// For a reach the coarse lattice is wider, up to this many nodes. Coarse bounds are close from
+/// kCloseSteps coarse steps on: at a distance d they miss at most 3/8 step^2 / d.
+constexpr double kMostWideNodes = 1 << 18;
+constexpr double kCloseSteps = 2;
+
 /// Not above the true square: one rounding to float and a few in double are taken off.
 float rounded_down(double squared) {
   return std::nextafterf(static_cast<float>(squared * (1 - 1e-12)), 0.0F);
@@ -52,9 +57,9 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
   if (threads == 0) threads = omp_get_max_threads();
   choose_voxel(radius, options);
   for (;; voxel_ *= 2) {
-    lay_out(kMarginSteps);
-    fill_coarse(threads);
-    const double band = radius + 2 * voxel_;
+    lay_out(margin_steps(options.reach));
+    fill_coarse(options.reach > 0, threads);
+    const double band = this->band(radius, options.reach);
     const std::uint64_t bytes = mark_bricks(band, threads) * kBrickNodes * 8;
     if (options.voxel > 0 || bytes <= options.most_bytes) break;
   }
@@ -77,6 +82,24 @@ void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
   while (coarse_bytes() > static_cast<double>(options.most_bytes) / 4) voxel_ *= 2;
 }
 
+/// How far from the model bricks are needed.
+double ModelField::band(double radius, double reach) const {
+  return std::max(radius, std::min(reach, kCloseSteps * coarse_)) + 2 * voxel_;
+}
+
+double ModelField::margin_steps(double reach) const {
+  const Box& box = tree_.box();
+  const double step = kBrick * voxel_;
+  const auto nodes = [&](double margin) {
+    double product = 1;
+    for (int k = 0; k < 3; ++k) product *= (box.hi[k] - box.lo[k]) / step + 2 * margin + 2;
+    return product;
+  };
+  double margin = kMarginSteps;
+  while (margin * step < reach && nodes(margin + 1) <= kMostWideNodes) ++margin;
+  return margin;
+}
+
 void ModelField::lay_out(double margin) {
   coarse_ = kBrick * voxel_;
   const Box& box = tree_.box();
@@ -91,8 +114,9 @@ Vec3 ModelField::coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t i
   return {origin_.x + ix * coarse_, origin_.y + iy * coarse_, origin_.z + iz * coarse_};
 }
 
-void ModelField::fill_coarse(int threads) {
+void ModelField::fill_coarse(bool with_nearest, int threads) {
   coarse_squared_.assign(std::size_t{size_[0]} * size_[1] * size_[2], 0);
+  coarse_nearest_.assign(with_nearest ? coarse_squared_.size() : 0, 0);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (std::uint32_t iz = 0; iz < size_[2]; ++iz) {
     std::uint32_t near = 0;
@@ -101,6 +125,7 @@ void ModelField::fill_coarse(int threads) {
       for (std::uint32_t ix = 0; ix < size_[0]; ++ix) {
         const ModelTree::Nearest nearest = tree_.nearest(coarse_node(ix, iy, iz), near);
         near = nearest.point;
+        if (with_nearest) coarse_nearest_[at] = near;
         coarse_squared_[at++] = rounded_down(nearest.squared_distance);
       }
     }
@@ -166,14 +191,29 @@ void ModelField::fill_bricks(int threads) {
   }
 }
 
+/// place: in coarse steps from the origin, anywhere.
+std::uint32_t ModelField::near_coarse_node(const double (&place)[3]) const {
+  if (coarse_nearest_.empty()) return kNone;
+  std::size_t at = 0;
+  for (int k = 2; k >= 0; --k) {
+    const double last = size_[k] - 1;
+    const double node = place[k] > 0 ? std::min(place[k] + 0.5, last) : 0;
+    at = at * size_[k] + static_cast<std::size_t>(node);
+  }
+  return coarse_nearest_[at];
+}
+
 ModelField::Bounds ModelField::bounds(const Vec3& x) const {
   double place[3];
   std::uint32_t cell[3];
+  for (int k = 0; k < 3; ++k) place[k] = (x[k] - origin_[k]) / coarse_;
   for (int k = 0; k < 3; ++k) {
-    place[k] = (x[k] - origin_[k]) / coarse_;
     if (!(place[k] >= 0 && place[k] < size_[k] - 1)) {
-      return {least_squared_distance(tree_.box(), x), kNone};
+      return {least_squared_distance(tree_.box(), x), near_coarse_node(place)};
     }
+  }
+  const double whole[3] = {place[0], place[1], place[2]};
+  for (int k = 0; k < 3; ++k) {
     cell[k] = static_cast<std::uint32_t>(place[k]);
     place[k] -= cell[k];
   }
@@ -185,7 +225,7 @@ ModelField::Bounds ModelField::bounds(const Vec3& x) const {
     const double mean = interpolated(place, [&](int i, int j, int k) {
       return static_cast<double>(corner[i + j * row + k * layer]);
     });
-    return {concave_bound(mean, place, coarse_), kNone};
+    return {concave_bound(mean, place, coarse_), near_coarse_node(whole)};
   }
   std::uint32_t fine[3], round[3];
   for (int k = 0; k < 3; ++k) {
@@ -205,8 +245,9 @@ ModelField::Bounds ModelField::bounds(const Vec3& x) const {
 }
 
 std::uint64_t ModelField::allocated_bytes() const {
-  return coarse_squared_.capacity() * sizeof(float) + distances_.capacity() * sizeof(float) +
-         (brick_of_.capacity() + nearest_.capacity()) * sizeof(std::uint32_t);
+  return (coarse_squared_.capacity() + distances_.capacity()) * sizeof(float) +
+         (coarse_nearest_.capacity() + brick_of_.capacity() + nearest_.capacity()) *
+             sizeof(std::uint32_t);
 }
 
 }  // namespace clearway

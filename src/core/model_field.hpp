@@ -9,13 +9,15 @@ namespace clearway {
 
 struct ModelFieldOptions {
   double voxel = 0;  ///< metres; 0: chosen from the radius, within `most_bytes`
+  double reach = 0;  ///< metres: good bounds and near points out to here; 0: to the radius only
   std::uint64_t most_bytes = std::uint64_t{256} << 20;
 };
 
 /// Bounds of d_M, the distance from any position in the model's frame to the nearest model point.
 /// Lattice nodes hold exact squared distances, rounded down to float: a coarse lattice around the
 /// whole model, and bricks of a fine one (kBrick times finer), with the nearest point too, wherever
-/// a distance within the band can occur. No memory for empty space but the coarse lattice. Between
+/// a distance within the band can occur. No memory for empty space but the coarse lattice. With a
+/// reach, coarse nodes keep their nearest point too, and every position has one near it. Between
 /// nodes: docs/numerics.md, "Model field". Source of the idea: the inverted trajectory with a
 /// distance field of the tool (Sullivan et al. 2012).
 class ModelField {
@@ -26,7 +28,7 @@ class ModelField {
 
   struct Bounds {
     double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
-    std::uint32_t near;    ///< a model point near x, or kNone
+    std::uint32_t near;    ///< a model point near x, or kNone; never kNone with a reach
   };
   static constexpr std::uint32_t kNone = 0xffffffff;
 
@@ -42,21 +44,25 @@ class ModelField {
   static constexpr std::uint32_t kNoBrick = 0xffffffff;
 
   void choose_voxel(double radius, const ModelFieldOptions& options);
+  double band(double radius, double reach) const;
+  double margin_steps(double reach) const;
   void lay_out(double margin);
-  void fill_coarse(int threads);
+  void fill_coarse(bool with_nearest, int threads);
   std::uint64_t mark_bricks(double band, int threads);
   void fill_bricks(int threads);
+  std::uint32_t near_coarse_node(const double (&place)[3]) const;
   Vec3 coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t iz) const;
 
   const ModelTree& tree_;
-  double voxel_ = 0;                     // fine
-  double coarse_ = 0;                    // kBrick * voxel_
-  Vec3 origin_{};                        // of the coarse lattice
-  std::uint32_t size_[3]{};              // coarse nodes along each axis
-  std::vector<float> coarse_squared_;    // [z][y][x]
-  std::vector<std::uint32_t> brick_of_;  // per coarse cell, [z][y][x]
-  std::vector<float> distances_;         // squared, per brick [z][y][x]
-  std::vector<std::uint32_t> nearest_;   // likewise
+  double voxel_ = 0;                           // fine
+  double coarse_ = 0;                          // kBrick * voxel_
+  Vec3 origin_{};                              // of the coarse lattice
+  std::uint32_t size_[3]{};                    // coarse nodes along each axis
+  std::vector<float> coarse_squared_;          // [z][y][x]
+  std::vector<std::uint32_t> coarse_nearest_;  // likewise, with a reach
+  std::vector<std::uint32_t> brick_of_;        // per coarse cell, [z][y][x]
+  std::vector<float> distances_;               // squared, per brick [z][y][x]
+  std::vector<std::uint32_t> nearest_;         // likewise
 };
 
 }  // namespace clearway

@@ -6,11 +6,10 @@
 
 #include "core/hit_set.hpp"
 #include "core/predicate.hpp"
+#include "core/sweep_bounds.hpp"
 
 namespace clearway {
 namespace {
-
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 /// A node of the motion tree is split for a box while it moves more than this many times the box's
 /// half diagonal.
@@ -30,12 +29,13 @@ double half_diagonal(const Box& box) {
   return 0.5 * std::sqrt(squared_length(x, y, z)) * (1 + 16 * kUnitRoundoff);
 }
 
-/// True only when sigma * sqrt(squared_lower) >= reach, rounding included; false for NaN and where
-/// the reach overflows.
-bool farther(double sigma, double squared_lower, double reach) {
-  const double squared_reach = reach * reach * (1 + 16 * kUnitRoundoff);
-  return squared_reach <= std::numeric_limits<double>::max() &&
-         sigma * sigma * squared_lower >= squared_reach;
+/// Per pose the first of the equal ones that it follows without a break.
+std::vector<std::uint32_t> first_equal_poses(std::span<const Pose> poses) {
+  std::vector<std::uint32_t> first(poses.size());
+  for (std::uint32_t i = 0; i < first.size(); ++i) {
+    first[i] = i > 0 && poses[i] == poses[i - 1] ? first[i - 1] : i;
+  }
+  return first;
 }
 
 }  // namespace
@@ -53,9 +53,12 @@ SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, con
       motion_(motion),
       model_(model),
       field_(field),
-      rounding_(motion.rounding(largest_coordinate(cloud) + question.radius +
+      rounding_(motion.rounding(largest_coordinate(cloud) +
+                                std::max(question.radius, question.clearance) +
                                 32 * field.voxel()) +
-                1e-150) {}
+                1e-150) {
+  if (question.clearance > 0) first_equal_pose_ = first_equal_poses(question.poses);
+}
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
@@ -63,19 +66,40 @@ void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
   const Vec3 centre{box.lo.x + 0.5 * (box.hi.x - box.lo.x), box.lo.y + 0.5 * (box.hi.y - box.lo.y),
                     box.lo.z + 0.5 * (box.hi.z - box.lo.z)};
   const double rho = half_diagonal(box);
-  for (const std::uint32_t node : nodes) narrow_node(centre, rho, node, out, statistics);
+  const double limit =
+      question_.clearance > 0 ? clearance_limit(centre, rho, nodes, statistics) : question_.radius;
+  for (const std::uint32_t node : nodes) narrow_node(centre, rho, limit, node, out, statistics);
 }
 
-void SweepFilter::narrow_node(const Vec3& centre, double rho, std::uint32_t index,
+/// A distance beyond which nothing matters to any point of the box: the clearance asked for, or
+/// what a pair found at a mid keeps them all below; never less than a radius still to be searched.
+double SweepFilter::clearance_limit(const Vec3& centre, double rho,
+                                    std::span<const std::uint32_t> nodes,
+                                    SweepStatistics& statistics) const {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t index : nodes) {
+    ++statistics.node_tests;
+    const std::uint32_t mid = motion_.nodes()[index].mid;
+    const std::uint32_t near = field_.bounds(motion_.pulled_back(mid, centre)).near;
+    if (near == ModelField::kNone) continue;
+    const Vec3 moved = transform(question_.poses[mid], model_.point(near));
+    squared = std::min(squared, squared_distance(centre, moved));
+  }
+  const double upper = std::sqrt(squared) * kRoundedUp + rho + rounding_;
+  const double limit = std::min(question_.clearance * kRoundedUp, upper);
+  return hits_follow_from_clearance(question_) ? limit : std::max(limit, question_.radius);
+}
+
+void SweepFilter::narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t index,
                               std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
   const MotionNode& node = motion_.nodes()[index];
   ++statistics.node_tests;
   const Vec3 x = motion_.pulled_back(node.mid, centre);
-  const double reach = question_.radius + node.delta + rho + rounding_;
+  const double reach = limit + node.delta + rho + rounding_;
   if (farther(motion_.pull_back(node.mid).least, field_.bounds(x).squared_lower, reach)) return;
   if (node.count > 1 && !(node.delta <= kMotionPerBox * rho)) {
-    narrow_node(centre, rho, index + 1, out, statistics);
-    narrow_node(centre, rho, node.later, out, statistics);
+    narrow_node(centre, rho, limit, index + 1, out, statistics);
+    narrow_node(centre, rho, limit, node.later, out, statistics);
   } else {
     out.push_back(index);
   }

@@ -21,6 +21,11 @@ struct SweepStatistics {
   void add(const SweepStatistics& other);
 };
 
+/// Whether the least d2 below the clearance alone says which points collide.
+inline bool hits_follow_from_clearance(const Question& question) {
+  return question.clearance >= question.radius && !question.first_pose;
+}
+
 /// The inverse question: e collides with pose i exactly when the model is closer than the radius to
 /// e pulled back by pose i. Answers it for ranges of poses and boxes of environment points at once,
 /// with the bounds of docs/numerics.md ("Sweep"); what they leave open goes to the predicate.
@@ -31,9 +36,17 @@ class SweepFilter {
               const ModelField& field, const PackedCloud& cloud);
 
   const Question& question() const { return question_; }
+  const MotionTree& motion() const { return motion_; }
+  const ModelTree& model() const { return model_; }
+  const ModelField& field() const { return field_; }
+  double rounding() const { return rounding_; }  ///< metres, of a test of one point at one pose
 
-  /// Of `nodes` and the nodes below them those that may touch a point of the box, as fine as the
-  /// box is small; replaces `out`. In the order of the poses when `nodes` are.
+  /// The first pose equal to `pose` without another in between. Only with a clearance.
+  std::uint32_t first_equal_pose(std::uint32_t pose) const { return first_equal_pose_[pose]; }
+
+  /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
+  /// clearance be the nearest to one, as fine as the box is small; replaces `out`. In the order of
+  /// the poses when `nodes` are.
   void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
 
@@ -49,7 +62,9 @@ class SweepFilter {
  private:
   enum class Verdict { kDismissed, kHitAtMid, kOpen };
 
-  void narrow_node(const Vec3& centre, double rho, std::uint32_t node,
+  double clearance_limit(const Vec3& centre, double rho, std::span<const std::uint32_t> nodes,
+                         SweepStatistics& statistics) const;
+  void narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t node,
                    std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
   Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                double& squared_lower) const;
@@ -62,6 +77,7 @@ class SweepFilter {
   const ModelTree& model_;
   const ModelField& field_;
   double rounding_;
+  std::vector<std::uint32_t> first_equal_pose_;
 };
 
 }  // namespace clearway

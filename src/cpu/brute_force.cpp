@@ -32,4 +32,19 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
   return first;
 }
 
+std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
+                                              const Question& question) {
+  std::vector<Clearance> least(environment.size());
+  for (std::uint32_t i = 0; i < question.poses.size(); ++i) {
+    for (const Vec3& model_point : question.model) {
+      const Vec3 m = transform(question.poses[i], model_point);
+      for (std::size_t e = 0; e < environment.size(); ++e) {
+        const double squared = squared_distance(environment[e], m);
+        if (squared < least[e].squared) least[e] = {squared, i};
+      }
+    }
+  }
+  return least;
+}
+
 }  // namespace clearway

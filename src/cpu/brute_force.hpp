@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/clearance_set.hpp"
 #include "core/question.hpp"
 #include "core/vec3.hpp"
 
@@ -14,5 +15,10 @@ namespace clearway {
 /// with the engines. O(|E| |M| |T|), on all cores.
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
                                                    const Question& question);
+
+/// For every environment point the least d2 over every pair, however large, and the lowest pose
+/// that has it; not found where no d2 is finite. Likewise an oracle.
+std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
+                                              const Question& question);
 
 }  // namespace clearway

@@ -1,9 +1,12 @@
 #include "cpu/sweep_engine.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "core/clearance_search.hpp"
 #include "core/hit_set.hpp"
 #include "core/kd_order.hpp"
+#include "core/predicate.hpp"
 
 namespace clearway {
 namespace {
@@ -22,6 +25,10 @@ class CellSearch {
     answer_.hits.resize(cloud.blocks_per_cell());
     if (filter.question().first_pose)
       answer_.first_poses.resize(cloud.cell_slots(), HitSet::kNever);
+    if (filter.question().clearance > 0) {
+      answer_.clearances.resize(cloud.cell_slots());
+      clearance_search_.emplace(filter);
+    }
   }
 
   CellAnswer run(std::span<const std::uint32_t> nodes) {
@@ -65,16 +72,37 @@ class CellSearch {
     for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
     for (std::uint32_t i = 0; i < count; ++i) {
       const Vec3 e = position(cloud_.quantisation(), q[0][i], q[1][i], q[2][i]);
-      bool hit;
-      if (filter_.question().first_pose) {
-        const std::uint32_t pose = filter_.first_pose(e, nodes, statistics_);
-        answer_.first_poses[begin + i] = pose;
-        hit = pose != HitSet::kNever;
-      } else {
-        hit = filter_.touches(e, nodes, statistics_);
-      }
+      const bool hit = clearance_search_ && hits_follow_from_clearance(filter_.question())
+                           ? search_clearance(e, begin + i, nodes)
+                           : search_hit(e, begin + i, nodes);
       answer_.hits[block] |= std::uint64_t{hit} << i;
     }
+  }
+
+  /// Whether the point collides.
+  bool search_hit(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes) {
+    const Question& question = filter_.question();
+    bool hit = false;
+    if (question.first_pose) {
+      const std::uint32_t pose = filter_.first_pose(e, nodes, statistics_);
+      answer_.first_poses[index] = pose;
+      hit = pose != HitSet::kNever;
+    } else {
+      hit = filter_.touches(e, nodes, statistics_);
+    }
+    // No point is within a clearance of at most the radius that does not collide.
+    if (clearance_search_ && (hit || question.clearance > question.radius)) {
+      search_clearance(e, index, nodes);
+    }
+    return hit;
+  }
+
+  /// Whether its least d2 makes the point collide.
+  bool search_clearance(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes) {
+    const Clearance clearance = clearance_search_->nearest(e, nodes, statistics_);
+    answer_.clearances[index] = clearance;
+    const double radius = filter_.question().radius;
+    return clearance.squared < rounded_product(radius, radius);
   }
 
   const PackedCloud& cloud_;
@@ -83,6 +111,7 @@ class CellSearch {
   std::span<const BlockBox> blocks_;
   std::array<PackedChunk<std::int32_t>, 3> chunks_;
   std::vector<std::vector<std::uint32_t>> lists_;  ///< of open motion nodes, one a depth
+  std::optional<ClearanceSearch> clearance_search_;
   CellAnswer answer_;
   SweepStatistics statistics_;
 };

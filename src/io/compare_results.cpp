@@ -38,6 +38,10 @@ std::string quantisation_text(const Quantisation& quantisation) {
   return text;
 }
 
+std::string clearance_text(const ResultHeader& header) {
+  return header.clearance > 0 ? number_text(header.clearance) + " m" : "not asked for";
+}
+
 std::vector<QuestionDifference> question_differences(const ResultHeader& a, const ResultHeader& b) {
   std::vector<QuestionDifference> out;
   const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
@@ -50,33 +54,64 @@ std::vector<QuestionDifference> question_differences(const ResultHeader& a, cons
   differ("radius", number_text(a.radius) + " m", number_text(b.radius) + " m");
   differ("first poses", a.first_pose ? "asked for" : "not asked for",
          b.first_pose ? "asked for" : "not asked for");
+  differ("clearance", clearance_text(a), clearance_text(b));
   differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
   differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
   return out;
 }
 
 /// One row after the other.
-class RowCursor {
+template <typename Stream, typename Rows>
+class Cursor {
  public:
-  explicit RowCursor(const ResultReader& reader) : stream_(reader) { stream_.read(rows_); }
+  explicit Cursor(const ResultReader& reader) : stream_(reader) { stream_.read(rows_); }
 
   bool at_end() const { return rows_.size() == 0; }
   std::uint64_t source() const { return rows_.source[at_]; }
-  Vec3 xyz() const { return rows_.xyz[at_]; }
-  std::optional<std::uint32_t> first_pose() const {
-    return rows_.first_pose.empty() ? std::nullopt : std::optional(rows_.first_pose[at_]);
-  }
   void advance() {
     if (++at_ < rows_.size()) return;
     at_ = 0;
     stream_.read(rows_);
   }
 
- private:
-  ResultRowStream stream_;
-  ResultRows rows_;
+ protected:
+  Stream stream_;
+  Rows rows_;
   std::size_t at_ = 0;
 };
+
+class RowCursor : public Cursor<ResultRowStream, ResultRows> {
+ public:
+  using Cursor::Cursor;
+  Vec3 xyz() const { return rows_.xyz[at_]; }
+  std::optional<std::uint32_t> first_pose() const {
+    return rows_.first_pose.empty() ? std::nullopt : std::optional(rows_.first_pose[at_]);
+  }
+};
+
+class ClearanceCursor : public Cursor<ClearanceRowStream, ClearanceRows> {
+ public:
+  using Cursor::Cursor;
+  std::pair<double, std::uint32_t> value() const { return {rows_.distance[at_], rows_.pose[at_]}; }
+};
+
+/// Advances two cursors together, calling for each source index what applies.
+template <typename Cursor, typename OnlyA, typename OnlyB, typename Both>
+void merge(Cursor& a, Cursor& b, OnlyA only_in_a, OnlyB only_in_b, Both in_both) {
+  while (!a.at_end() || !b.at_end()) {
+    if (b.at_end() || (!a.at_end() && a.source() < b.source())) {
+      only_in_a();
+      a.advance();
+    } else if (a.at_end() || b.source() < a.source()) {
+      only_in_b();
+      b.advance();
+    } else {
+      in_both();
+      a.advance();
+      b.advance();
+    }
+  }
+}
 
 class Merge {
  public:
@@ -89,21 +124,17 @@ class Merge {
   }
 
   Comparison run() {
-    while (!a_.at_end() || !b_.at_end()) {
-      if (b_.at_end() || (!a_.at_end() && a_.source() < b_.source())) {
-        ++out_.only_in_a;
-        keep({Kind::kOnlyInA, a_.source(), a_.xyz(), a_.first_pose(), std::nullopt});
-        a_.advance();
-      } else if (a_.at_end() || b_.source() < a_.source()) {
-        ++out_.only_in_b;
-        keep({Kind::kOnlyInB, b_.source(), b_.xyz(), std::nullopt, b_.first_pose()});
-        b_.advance();
-      } else {
-        common();
-        a_.advance();
-        b_.advance();
-      }
-    }
+    merge(
+        a_, b_,
+        [&] {
+          ++out_.only_in_a;
+          keep({Kind::kOnlyInA, a_.source(), a_.xyz(), a_.first_pose(), std::nullopt});
+        },
+        [&] {
+          ++out_.only_in_b;
+          keep({Kind::kOnlyInB, b_.source(), b_.xyz(), std::nullopt, b_.first_pose()});
+        },
+        [&] { common(); });
     return std::move(out_);
   }
 
@@ -133,6 +164,20 @@ class Merge {
   Comparison out_;
 };
 
+ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader& b) {
+  ClearanceComparison out;
+  out.in_a = a.clearances();
+  out.in_b = b.clearances();
+  ClearanceCursor from_a(a), from_b(b);
+  merge(
+      from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
+      [&] {
+        ++out.common;
+        if (from_a.value() != from_b.value()) ++out.differing;
+      });
+  return out;
+}
+
 }  // namespace
 
 Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept) {
@@ -142,7 +187,11 @@ Comparison compare_results(const ResultReader& a, const ResultReader& b, std::si
                      environment_text(a.header()) + "; " + environment_text(b.header()) +
                      "), whose point indices cannot be compared");
   }
-  return Merge(a, b, kept).run();
+  Comparison out = Merge(a, b, kept).run();
+  if (a.header().clearance > 0 && b.header().clearance > 0) {
+    out.clearances = compare_clearances(a, b);
+  }
+  return out;
 }
 
 }  // namespace clearway

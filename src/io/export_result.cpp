@@ -129,10 +129,15 @@ std::unique_ptr<RowSink> make_sink(const ResultReader& result, const File& file)
   return std::make_unique<Sink>(result, file);
 }
 
-MakeSink sink_for(const std::filesystem::path& output) {
+std::string ending_of(const std::filesystem::path& output) {
   std::string ending = output.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+MakeSink sink_for(const std::filesystem::path& output) {
+  const std::string ending = ending_of(output);
   if (ending == ".las") return make_sink<LasSink>;
   if (ending == ".ply") return make_sink<PlySink>;
   if (ending == ".xyz") return make_sink<XyzSink>;
@@ -158,6 +163,33 @@ void export_result(const ResultReader& result, const std::filesystem::path& outp
       progress.advance(rows.size());
     }
     sink->finish();
+    progress.end();
+  }
+  pending.publish();
+}
+
+void export_clearances(const ResultReader& result, const std::filesystem::path& output,
+                       bool overwrite, Progress& progress) {
+  if (!(result.header().clearance > 0)) {
+    throw UsageError(result.name() + ": has no clearances; run with --clearance");
+  }
+  if (ending_of(output) != ".csv") {
+    throw UsageError(output.string() + ": clearances are exported as .csv only");
+  }
+  PendingFile pending(output, overwrite);
+  {
+    const File file = File::create(pending.partial());
+    TextWriter out(file);
+    out << "source,distance,pose\n";
+    progress.begin("export", result.clearances(), "points");
+    ClearanceRowStream stream(result);
+    for (ClearanceRows rows; stream.read(rows);) {
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        out << rows.source[i] << "," << rows.distance[i] << "," << rows.pose[i] << "\n";
+      }
+      progress.advance(rows.size());
+    }
+    out.flush();
     progress.end();
   }
   pending.publish();

@@ -19,4 +19,10 @@ namespace clearway {
 void export_result(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
                    Progress& progress);
 
+/// Writes the clearances of `result` as text with a header, source,distance,pose, ascending by
+/// source; distance in metres. The name must end in .csv, and the result must have clearances: if
+/// not, UsageError. Otherwise like export_result.
+void export_clearances(const ResultReader& result, const std::filesystem::path& output,
+                       bool overwrite, Progress& progress);
+
 }  // namespace clearway

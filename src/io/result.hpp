@@ -22,25 +22,31 @@ struct ResultHeader {
   std::uint64_t trajectory_hash = 0;
   double radius = 0;
   bool first_pose = false;
+  double clearance = 0;  ///< metres, 0: not asked for
   Quantisation quantisation{};
   std::string crs_wkt;
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
 };
 
 /// Writes `/collisions/source` (uint64, ascending), `/collisions/xyz` (float64, n x 3) and, where
-/// the header asks, `/collisions/first_pose` (uint32) to a file of its own; the caller publishes
-/// it. Its bytes depend on header and rows alone. A failing disk throws ResourceError.
+/// the header asks, `/collisions/first_pose` (uint32) and `/clearance/source` (uint64, ascending),
+/// `distance` (float64) and `pose` (uint32) to a file of its own; the caller publishes it. Its
+/// bytes depend on header and rows alone. A failing disk throws ResourceError.
 /// docs/result-format.md has the layout.
 class ResultWriter {
  public:
   ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
-               std::uint64_t collisions);
+               std::uint64_t collisions, std::uint64_t clearances = 0);
   ~ResultWriter();
 
   /// The next rows, ascending by source. first_pose: empty unless the header has it. Throws
   /// std::logic_error for rows out of order, more than promised, or spans of unequal lengths.
   void append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
               std::span<const std::uint32_t> first_pose);
+  /// The next clearances, ascending by source; distance in metres. After every collision, and only
+  /// where the header asks for them. Throws like append.
+  void append_clearances(std::span<const std::uint64_t> source, std::span<const double> distance,
+                         std::span<const std::uint32_t> pose);
   /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
   void finish();
 
@@ -65,6 +71,13 @@ class ResultReader {
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
   /// Below header().poses. Only where the header has first poses.
   void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
+
+  /// Rows of the clearances, 0 where the header has none.
+  std::uint64_t clearances() const;
+  /// source as read_source, distance from 0 to header().clearance, pose as read_first_pose. Only
+  /// where the header has clearances.
+  void read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
+                       std::span<double> distance, std::span<std::uint32_t> pose) const;
 
  private:
   struct State;

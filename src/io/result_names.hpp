@@ -13,4 +13,8 @@ inline constexpr const char* kSource = "source";
 inline constexpr const char* kXyz = "xyz";
 inline constexpr const char* kFirstPose = "first_pose";
 
+inline constexpr const char* kClearanceGroup = "clearance";
+inline constexpr const char* kDistance = "distance";
+inline constexpr const char* kPose = "pose";
+
 }  // namespace clearway::result_names

@@ -69,6 +69,7 @@ ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
   header.trajectory_hash = read_number<std::uint64_t>(file, "trajectory_hash", name);
   header.radius = read_number<double>(file, "radius", name);
   header.first_pose = read_number<std::uint8_t>(file, "first_pose", name) != 0;
+  header.clearance = read_number<double>(file, "clearance", name);
   read_axes(file, "scale", name, header.quantisation.scale);
   read_axes(file, "offset", name, header.quantisation.offset);
   header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
@@ -82,31 +83,82 @@ struct ResultReader::State {
       : name(path.string()),
         file(hdf5::open_file(path)),
         header(read_header(file, name)),
-        source(open<std::uint64_t>(names::kSource, 0)),
-        xyz(open<double>(names::kXyz, 3)) {
-    if (header.first_pose) first_pose.emplace(open<std::uint32_t>(names::kFirstPose, 0));
-    if (xyz.rows() != source.rows() || (first_pose && first_pose->rows() != source.rows())) {
-      throw InputError(name + ": the datasets of /" + names::kGroup + " differ in their rows");
+        source(open<std::uint64_t>(names::kGroup, names::kSource, 0)),
+        xyz(open<double>(names::kGroup, names::kXyz, 3)) {
+    if (header.first_pose) {
+      first_pose.emplace(open<std::uint32_t>(names::kGroup, names::kFirstPose, 0));
     }
+    if (header.clearance > 0) {
+      clearance.emplace(
+          ClearanceDatasets{open<std::uint64_t>(names::kClearanceGroup, names::kSource, 0),
+                            open<double>(names::kClearanceGroup, names::kDistance, 0),
+                            open<std::uint32_t>(names::kClearanceGroup, names::kPose, 0)});
+    }
+    check_lengths();
   }
 
   template <typename Number>
-  hdf5::Rows<Number> open(const char* dataset, std::uint64_t columns) const {
-    const std::string path = std::string(names::kGroup) + "/" + dataset;
+  hdf5::Rows<Number> open(const char* group, const char* dataset, std::uint64_t columns) const {
+    const std::string path = std::string(group) + "/" + dataset;
     return hdf5::Rows<Number>::open(file, path, columns, name);
   }
 
-  [[noreturn]] void malformed_row(const char* dataset, std::uint64_t row,
+  void check_lengths() const {
+    const auto check = [&](const char* group, bool equal) {
+      if (!equal) throw InputError(name + ": the datasets of /" + group + " differ in their rows");
+    };
+    check(names::kGroup,
+          xyz.rows() == source.rows() && (!first_pose || first_pose->rows() == source.rows()));
+    if (clearance) {
+      const std::uint64_t rows = clearance->source.rows();
+      check(names::kClearanceGroup,
+            clearance->distance.rows() == rows && clearance->pose.rows() == rows);
+    }
+  }
+
+  [[noreturn]] void malformed_row(const char* group, const char* dataset, std::uint64_t row,
                                   const std::string& expected) const {
-    throw InputError(name + ": /" + names::kGroup + "/" + dataset + ", row " + std::to_string(row) +
+    throw InputError(name + ": /" + group + "/" + dataset + ", row " + std::to_string(row) +
                      ": expected " + expected);
   }
 
-  void check_range(std::uint64_t first, std::size_t count) const {
-    if (first > source.rows() || count > source.rows() - first) {
+  void check_sources(const char* group, std::uint64_t first,
+                     std::span<const std::uint64_t> out) const {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (out[i] >= header.environment_points || (i > 0 && out[i] <= out[i - 1])) {
+        malformed_row(group, names::kSource, first + i,
+                      "an index above the row before and below environment_points");
+      }
+    }
+  }
+
+  void check_poses(const char* group, const char* dataset, std::uint64_t first,
+                   std::span<const std::uint32_t> out) const {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (out[i] >= header.poses) malformed_row(group, dataset, first + i, "a pose below poses");
+    }
+  }
+
+  void check_distances(std::uint64_t first, std::span<const double> out) const {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (!(out[i] >= 0 && out[i] <= header.clearance)) {
+        malformed_row(names::kClearanceGroup, names::kDistance, first + i,
+                      "a distance from 0 to the clearance");
+      }
+    }
+  }
+
+  static void check_range(std::uint64_t first, std::size_t count, std::uint64_t rows) {
+    if (first > rows || count > rows - first) {
       throw std::logic_error("ResultReader: rows past the end");
     }
   }
+
+  struct ClearanceDatasets {
+    hdf5::Rows<std::uint64_t> source;
+    hdf5::Rows<double> distance;
+    hdf5::Rows<std::uint32_t> pose;
+  };
 
   std::string name;
   hdf5::Id file;
@@ -114,6 +166,7 @@ struct ResultReader::State {
   hdf5::Rows<std::uint64_t> source;
   hdf5::Rows<double> xyz;
   std::optional<hdf5::Rows<std::uint32_t>> first_pose;
+  std::optional<ClearanceDatasets> clearance;
 };
 
 ResultReader::ResultReader(const std::filesystem::path& path) {
@@ -129,37 +182,50 @@ const ResultHeader& ResultReader::header() const { return state_->header; }
 std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
 
 void ResultReader::read_source(std::uint64_t first, std::span<std::uint64_t> out) const {
-  state_->check_range(first, out.size());
+  state_->check_range(first, out.size(), collisions());
   as_input(state_->name, [&] { state_->source.read(first, out); });
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out[i] >= state_->header.environment_points || (i > 0 && out[i] <= out[i - 1])) {
-      state_->malformed_row(names::kSource, first + i,
-                            "an index above the row before and below environment_points");
-    }
-  }
+  state_->check_sources(names::kGroup, first, out);
 }
 
 void ResultReader::read_xyz(std::uint64_t first, std::span<Vec3> out) const {
-  state_->check_range(first, out.size());
+  state_->check_range(first, out.size(), collisions());
   as_input(state_->name, [&] { state_->xyz.read(first, as_numbers(out)); });
   for (std::size_t i = 0; i < out.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       if (!std::isfinite(out[i][k])) {
-        state_->malformed_row(names::kXyz, first + i, "finite coordinates");
+        state_->malformed_row(names::kGroup, names::kXyz, first + i, "finite coordinates");
       }
     }
   }
 }
 
 void ResultReader::read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const {
-  state_->check_range(first, out.size());
+  state_->check_range(first, out.size(), collisions());
   if (!state_->first_pose) throw std::logic_error("ResultReader: no first poses");
   as_input(state_->name, [&] { state_->first_pose->read(first, out); });
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out[i] >= state_->header.poses) {
-      state_->malformed_row(names::kFirstPose, first + i, "a pose below poses");
-    }
+  state_->check_poses(names::kGroup, names::kFirstPose, first, out);
+}
+
+std::uint64_t ResultReader::clearances() const {
+  return state_->clearance ? state_->clearance->source.rows() : 0;
+}
+
+void ResultReader::read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
+                                   std::span<double> distance,
+                                   std::span<std::uint32_t> pose) const {
+  if (!state_->clearance) throw std::logic_error("ResultReader: no clearances");
+  if (distance.size() != source.size() || pose.size() != source.size()) {
+    throw std::logic_error("ResultReader: rows of unequal lengths");
   }
+  state_->check_range(first, source.size(), clearances());
+  as_input(state_->name, [&] {
+    state_->clearance->source.read(first, source);
+    state_->clearance->distance.read(first, distance);
+    state_->clearance->pose.read(first, pose);
+  });
+  state_->check_sources(names::kClearanceGroup, first, source);
+  state_->check_distances(first, distance);
+  state_->check_poses(names::kClearanceGroup, names::kPose, first, pose);
 }
 
 }  // namespace clearway

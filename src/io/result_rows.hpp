@@ -17,6 +17,15 @@ struct ResultRows {
   std::size_t size() const { return source.size(); }
 };
 
+/// Consecutive rows of a result's clearances.
+struct ClearanceRows {
+  std::vector<std::uint64_t> source;
+  std::vector<double> distance;
+  std::vector<std::uint32_t> pose;
+
+  std::size_t size() const { return source.size(); }
+};
+
 /// A result's rows front to back in constant memory. The reader outlives the stream.
 class ResultRowStream {
  public:
@@ -27,6 +36,20 @@ class ResultRowStream {
   /// Fills `rows` with up to kBatchRows rows; false, and no rows, at the end. Throws InputError as
   /// the reader does, also where sources do not ascend from one batch to the next.
   bool read(ResultRows& rows);
+
+ private:
+  const ResultReader& reader_;
+  std::uint64_t next_ = 0;
+  std::uint64_t last_source_ = 0;
+};
+
+/// The same for its clearances; no rows where it has none.
+class ClearanceRowStream {
+ public:
+  explicit ClearanceRowStream(const ResultReader& reader) : reader_(reader) {}
+
+  /// As ResultRowStream's.
+  bool read(ClearanceRows& rows);
 
  private:
   const ResultReader& reader_;

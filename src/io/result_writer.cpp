@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "core/error.hpp"
@@ -40,6 +40,7 @@ void write_header(const hdf5::Id& file, const ResultHeader& header) {
   write_number(file, "trajectory_hash", header.trajectory_hash);
   write_number(file, "radius", header.radius);
   write_number(file, "first_pose", static_cast<std::uint8_t>(header.first_pose));
+  write_number(file, "clearance", header.clearance);
   hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
   hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
@@ -56,72 +57,168 @@ auto naming(const std::string& file, Call call) {
   }
 }
 
+/// The piece of a column; a column that the result does not have stays empty.
 template <typename Value>
-void add(std::vector<Value>& buffer, std::span<const Value> values) {
-  buffer.insert(buffer.end(), values.begin(), values.end());
+std::span<const Value> piece(std::span<const Value> values, std::size_t from, std::size_t count) {
+  return values.empty() ? values : values.subspan(from, count);
 }
 
-/// The rows not yet written, at most kBufferRows.
-struct Buffer {
-  std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;
-  std::vector<std::uint32_t> first_pose;
-};
+/// Rows promised and delivered, ascending by source.
+class RowCount {
+ public:
+  explicit RowCount(std::uint64_t promised) : promised_(promised) {}
 
-struct Datasets {
-  Datasets(const hdf5::Id& group, bool with_first_pose, std::uint64_t rows)
-      : source(group, names::kSource, rows, 0), xyz(group, names::kXyz, rows, 3) {
-    if (with_first_pose) first_pose.emplace(group, names::kFirstPose, rows, 0);
+  void add(std::span<const std::uint64_t> source) {
+    if (source.size() > promised_ - rows_) {
+      throw std::logic_error("ResultWriter: more rows than promised");
+    }
+    for (const std::uint64_t index : source) {
+      if (last_source_ && index <= *last_source_) {
+        throw std::logic_error("ResultWriter: rows not ascending by source");
+      }
+      last_source_ = index;
+    }
+    rows_ += source.size();
   }
 
-  void write(std::uint64_t first, const Buffer& buffer) {
-    source.write(first, buffer.source);
-    xyz.write(first, as_numbers(buffer.xyz));
-    if (first_pose) first_pose->write(first, buffer.first_pose);
+  void check_complete() const {
+    if (rows_ == promised_) return;
+    throw std::logic_error("ResultWriter: " + std::to_string(rows_) + " rows written, " +
+                           std::to_string(promised_) + " promised");
   }
 
-  hdf5::Rows<std::uint64_t> source;
-  hdf5::Rows<double> xyz;
-  std::optional<hdf5::Rows<std::uint32_t>> first_pose;
+ private:
+  std::uint64_t promised_;
+  std::uint64_t rows_ = 0;
+  std::optional<std::uint64_t> last_source_;
 };
+
+/// A dataset and its rows not yet written, at most kBufferRows.
+template <typename Number, typename Value = Number>
+struct Column {
+  Column(const hdf5::Id& group, const char* name, std::uint64_t rows)
+      : dataset(group, name, rows, std::is_same_v<Value, Vec3> ? 3 : 0) {}
+
+  void append(std::span<const Value> values) {
+    buffer.insert(buffer.end(), values.begin(), values.end());
+  }
+
+  void flush(std::uint64_t first_row) {
+    if constexpr (std::is_same_v<Value, Vec3>) {
+      dataset.write(first_row, as_numbers(buffer));
+    } else {
+      dataset.write(first_row, buffer);
+    }
+    buffer.clear();
+  }
+
+  hdf5::Rows<Number> dataset;
+  std::vector<Value> buffer;
+};
+
+struct CollisionTable {
+  CollisionTable(const hdf5::Id& file, bool with_first_pose, std::uint64_t rows)
+      : group(hdf5::create_group(file, names::kGroup)),
+        count(rows),
+        source(group, names::kSource, rows),
+        xyz(group, names::kXyz, rows) {
+    if (with_first_pose) first_pose.emplace(group, names::kFirstPose, rows);
+  }
+
+  void append(std::span<const std::uint64_t> sources, std::span<const Vec3> points,
+              std::span<const std::uint32_t> poses) {
+    source.append(sources);
+    xyz.append(points);
+    if (first_pose) first_pose->append(poses);
+  }
+
+  void flush() {
+    const std::size_t rows = source.buffer.size();
+    source.flush(written);
+    xyz.flush(written);
+    if (first_pose) first_pose->flush(written);
+    written += rows;
+  }
+
+  hdf5::Id group;
+  RowCount count;
+  Column<std::uint64_t> source;
+  Column<double, Vec3> xyz;
+  std::optional<Column<std::uint32_t>> first_pose;
+  std::uint64_t written = 0;
+};
+
+struct ClearanceTable {
+  ClearanceTable(const hdf5::Id& file, std::uint64_t rows)
+      : group(hdf5::create_group(file, names::kClearanceGroup)),
+        count(rows),
+        source(group, names::kSource, rows),
+        distance(group, names::kDistance, rows),
+        pose(group, names::kPose, rows) {}
+
+  void append(std::span<const std::uint64_t> sources, std::span<const double> distances,
+              std::span<const std::uint32_t> poses) {
+    source.append(sources);
+    distance.append(distances);
+    pose.append(poses);
+  }
+
+  void flush() {
+    const std::size_t rows = source.buffer.size();
+    source.flush(written);
+    distance.flush(written);
+    pose.flush(written);
+    written += rows;
+  }
+
+  hdf5::Id group;
+  RowCount count;
+  Column<std::uint64_t> source;
+  Column<double> distance;
+  Column<std::uint32_t> pose;
+  std::uint64_t written = 0;
+};
+
+/// Appends rows to a table's buffers and writes these whenever they are full.
+template <typename Table, typename Value>
+void append_rows(Table& table, const std::string& file, std::span<const std::uint64_t> source,
+                 std::span<const Value> values, std::span<const std::uint32_t> poses) {
+  table.count.add(source);
+  for (std::size_t from = 0; from < source.size();) {
+    const std::size_t count =
+        std::min(source.size() - from, kBufferRows - table.source.buffer.size());
+    table.append(source.subspan(from, count), values.subspan(from, count),
+                 piece(poses, from, count));
+    from += count;
+    if (table.source.buffer.size() == kBufferRows) naming(file, [&] { table.flush(); });
+  }
+}
 
 }  // namespace
 
 struct ResultWriter::State {
-  State(const std::filesystem::path& path, const ResultHeader& header, std::uint64_t collisions)
+  State(const std::filesystem::path& path, const ResultHeader& header, std::uint64_t rows,
+        std::uint64_t clearance_rows)
       : name(path.string()),
         has_first_pose(header.first_pose),
-        promised(collisions),
         file(hdf5::create_file(path)),
-        group(hdf5::create_group(file, names::kGroup)),
-        datasets(std::in_place, group, header.first_pose, collisions) {
+        collisions(std::in_place, file, header.first_pose, rows) {
+    if (header.clearance > 0) clearances.emplace(file, clearance_rows);
     write_header(file, header);
-  }
-
-  std::uint64_t rows() const { return written + buffer.source.size(); }
-
-  void flush() {
-    datasets->write(written, buffer);
-    written = rows();
-    buffer.source.clear();
-    buffer.xyz.clear();
-    buffer.first_pose.clear();
   }
 
   std::string name;
   bool has_first_pose;
-  std::uint64_t promised;
-  hdf5::Id file, group;
-  std::optional<Datasets> datasets;
-  Buffer buffer;
-  std::uint64_t written = 0;
-  std::optional<std::uint64_t> last_source;
+  hdf5::Id file;
+  std::optional<CollisionTable> collisions;
+  std::optional<ClearanceTable> clearances;
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
-                           std::uint64_t collisions)
-    : state_(naming(path.string(),
-                    [&] { return std::make_unique<State>(path, header, collisions); })) {}
+                           std::uint64_t collisions, std::uint64_t clearances)
+    : state_(naming(path.string(), [&] {
+        return std::make_unique<State>(path, header, collisions, clearances);
+      })) {}
 
 ResultWriter::~ResultWriter() = default;
 
@@ -131,37 +228,34 @@ void ResultWriter::append(std::span<const std::uint64_t> source, std::span<const
   if (xyz.size() != source.size() || first_pose.size() != (s.has_first_pose ? source.size() : 0)) {
     throw std::logic_error("ResultWriter: rows of unequal lengths");
   }
-  if (source.size() > s.promised - s.rows()) {
-    throw std::logic_error("ResultWriter: more rows than promised");
+  append_rows(*s.collisions, s.name, source, xyz, first_pose);
+}
+
+void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
+                                     std::span<const double> distance,
+                                     std::span<const std::uint32_t> pose) {
+  State& s = *state_;
+  if (!s.clearances) throw std::logic_error("ResultWriter: no clearances");
+  if (distance.size() != source.size() || pose.size() != source.size()) {
+    throw std::logic_error("ResultWriter: rows of unequal lengths");
   }
-  for (const std::uint64_t index : source) {
-    if (s.last_source && index <= *s.last_source) {
-      throw std::logic_error("ResultWriter: rows not ascending by source");
-    }
-    s.last_source = index;
-  }
-  for (std::size_t from = 0; from < source.size();) {
-    const std::size_t count = std::min(source.size() - from, kBufferRows - s.buffer.source.size());
-    add(s.buffer.source, source.subspan(from, count));
-    add(s.buffer.xyz, xyz.subspan(from, count));
-    if (s.has_first_pose) add(s.buffer.first_pose, first_pose.subspan(from, count));
-    from += count;
-    if (s.buffer.source.size() == kBufferRows) naming(s.name, [&] { s.flush(); });
-  }
+  s.collisions->count.check_complete();
+  if (!s.collisions->source.buffer.empty()) naming(s.name, [&] { s.collisions->flush(); });
+  append_rows(*s.clearances, s.name, source, distance, pose);
 }
 
 void ResultWriter::finish() {
   State& s = *state_;
-  if (s.rows() != s.promised) {
-    throw std::logic_error("ResultWriter: " + std::to_string(s.rows()) + " rows written, " +
-                           std::to_string(s.promised) + " promised");
-  }
+  s.collisions->count.check_complete();
+  if (s.clearances) s.clearances->count.check_complete();
   naming(s.name, [&] {
-    s.flush();
+    s.collisions->flush();
+    if (s.clearances) s.clearances->flush();
     write_number(s.file, "complete", std::uint8_t{1});
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
-    s.datasets.reset();  // after the flush nothing is left that their closing could fail to write
-    s.group.close("close the result's group");
+    // After the flush nothing is left that closing could fail to write.
+    s.clearances.reset();
+    s.collisions.reset();
     s.file.close("close the result");
   });
 }

@@ -23,12 +23,14 @@ void check_rows(const ResultReader& result, const ResultRows& rows) {
 std::vector<std::string> verify_result(const ResultReader& result, Progress& progress) {
   ResultRowStream stream(result);
   ResultRows rows;
-  progress.begin("verify", result.collisions(), "points");
+  progress.begin("verify", result.collisions() + result.clearances(), "points");
   try {
     while (stream.read(rows)) {
       check_rows(result, rows);
       progress.advance(rows.size());
     }
+    ClearanceRowStream clearances(result);
+    for (ClearanceRows read; clearances.read(read);) progress.advance(read.size());
   } catch (const InputError& fault) {
     return {fault.what()};
   }

@@ -9,8 +9,8 @@
 namespace clearway {
 
 /// Re-reads a result and checks it: rows intact, source indices ascending and below the number of
-/// environment points, coordinates finite and on the result's scale, first poses below the number
-/// of poses. Gives the first fault found, if any.
+/// environment points, coordinates finite and on the result's scale, poses below their number,
+/// clearances within what was asked for. Gives the first fault found, if any.
 std::vector<std::string> verify_result(const ResultReader& result, Progress& progress);
 
 }  // namespace clearway

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -16,58 +17,66 @@ struct Collision {
   std::uint32_t first_pose;
 };
 
+struct ClearanceRow {
+  std::uint64_t source;
+  double distance;
+  std::uint32_t pose;
+};
+
 /// Sorted and written in pieces of this many rows.
 constexpr std::size_t kRows = 1 << 16;
 
-/// Calls visit(slot, index in the cell) for every hit of a cell.
-template <typename Visit>
-void for_each_hit(const Store& store, const HitSet& hits, std::uint32_t cell, Visit visit) {
+/// Calls visit(slot, index in the cell) for every slot of a cell that is in the set.
+template <typename Set, typename Visit>
+void for_each_slot(const Store& store, const Set& set, std::uint32_t cell, Visit visit) {
   const std::uint64_t first_word = std::uint64_t{cell} * store.blocks_per_cell();
   const auto blocks =
       static_cast<std::uint32_t>(divide_up(store.cells()[cell].count, kBlockPoints));
   for (std::uint32_t block = 0; block < blocks; ++block) {
-    for (std::uint64_t bits = hits.word(first_word + block); bits != 0; bits &= bits - 1) {
+    for (std::uint64_t bits = set.word(first_word + block); bits != 0; bits &= bits - 1) {
       const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
       visit((first_word + block) * kBlockPoints + bit, block * kBlockPoints + bit);
     }
   }
 }
 
-bool has_hits(const Store& store, const HitSet& hits, std::uint32_t cell) {
+template <typename Set>
+bool has_slots(const Store& store, const Set& set, std::uint32_t cell) {
   const std::uint64_t first = std::uint64_t{cell} * store.blocks_per_cell();
   for (std::uint64_t word = first; word < first + store.blocks_per_cell(); ++word) {
-    if (hits.word(word) != 0) return true;
+    if (set.word(word) != 0) return true;
   }
   return false;
 }
 
-/// The colliding points with the smallest source indices >= `from`, at most `most` of them, sorted.
+/// The rows with the smallest source indices >= `from`, at most `most` of them, sorted.
+template <typename Row>
 class RangePass {
  public:
   RangePass(std::uint64_t from, std::size_t most) : from_(from), most_(most) {}
 
-  void add_cell(const Store& store, const HitSet& hits, std::uint32_t cell) {
+  /// rows_of(cell) gives what makes a row of (source, slot, index in the cell).
+  template <typename Set, typename RowsOf>
+  void add_cell(const Store& store, const Set& set, std::uint32_t cell, RowsOf rows_of) {
     const PackedChunk<std::uint64_t> sources = store.sources(cell);
     if (sources.minimum() >= below_) return;
-    const auto coordinates = store.coordinates(cell);
-    for_each_hit(store, hits, cell, [&](std::uint64_t slot, std::uint32_t i) {
+    const auto row_of = rows_of(cell);
+    for_each_slot(store, set, cell, [&](std::uint64_t slot, std::uint32_t i) {
       const std::uint64_t source = sources[i];
       if (source < from_ || source >= below_) return;
-      rows_.push_back({source,
-                       {coordinates[0][i], coordinates[1][i], coordinates[2][i]},
-                       hits.has_first_pose() ? hits.first_pose(slot) : 0});
+      rows_.push_back(row_of(source, slot, i));
       if (rows_.size() >= 2 * most_) keep_smallest();
     });
   }
 
-  std::vector<Collision> take() {
+  std::vector<Row> take() {
     if (rows_.size() > most_) keep_smallest();
     std::sort(rows_.begin(), rows_.end(), by_source);
     return std::move(rows_);
   }
 
  private:
-  static bool by_source(const Collision& a, const Collision& b) { return a.source < b.source; }
+  static bool by_source(const Row& a, const Row& b) { return a.source < b.source; }
 
   void keep_smallest() {
     const auto end = rows_.begin() + static_cast<std::ptrdiff_t>(most_);
@@ -79,7 +88,7 @@ class RangePass {
   std::uint64_t from_;
   std::uint64_t below_ = std::numeric_limits<std::uint64_t>::max();
   std::size_t most_;
-  std::vector<Collision> rows_;
+  std::vector<Row> rows_;
 };
 
 void append_rows(ResultWriter& writer, const std::vector<Collision>& rows,
@@ -101,30 +110,79 @@ void append_rows(ResultWriter& writer, const std::vector<Collision>& rows,
   }
 }
 
-}  // namespace
+void append_rows(ResultWriter& writer, const std::vector<ClearanceRow>& rows) {
+  std::vector<std::uint64_t> source;
+  std::vector<double> distance;
+  std::vector<std::uint32_t> pose;
+  for (std::size_t first = 0; first < rows.size(); first += kRows) {
+    source.clear();
+    distance.clear();
+    pose.clear();
+    for (std::size_t i = first; i < std::min(rows.size(), first + kRows); ++i) {
+      source.push_back(rows[i].source);
+      distance.push_back(rows[i].distance);
+      pose.push_back(rows[i].pose);
+    }
+    writer.append_clearances(source, distance, pose);
+  }
+}
 
-void write_collisions(const Store& store, const HitSet& hits, const ResultHeader& header,
-                      const std::filesystem::path& path, std::uint64_t memory_bytes,
-                      Progress& progress) {
-  const std::uint64_t collisions = hits.count();
-  const std::size_t most =
-      std::max<std::uint64_t>(kRows, memory_bytes / (2 * sizeof(Collision) + sizeof(Collision)));
+/// Writes a set of `count` slots in passes, by append(rows).
+template <typename Row, typename Set, typename RowsOf, typename Append>
+void write_set(const Store& store, const Set& set, std::uint64_t count, std::uint64_t memory_bytes,
+               Progress& progress, RowsOf rows_of, Append append) {
+  const std::size_t most = std::max<std::uint64_t>(kRows, memory_bytes / (3 * sizeof(Row)));
   std::vector<std::uint32_t> cells;
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-    if (has_hits(store, hits, cell)) cells.push_back(cell);
+    if (has_slots(store, set, cell)) cells.push_back(cell);
   }
-  ResultWriter writer(path, header, collisions);
-  progress.begin("write", collisions, "points");
   std::uint64_t from = 0;
-  for (std::uint64_t written = 0; written < collisions;) {
-    RangePass pass(from, most);
-    for (const std::uint32_t cell : cells) pass.add_cell(store, hits, cell);
-    const std::vector<Collision> rows = pass.take();
+  for (std::uint64_t written = 0; written < count;) {
+    RangePass<Row> pass(from, most);
+    for (const std::uint32_t cell : cells) pass.add_cell(store, set, cell, rows_of);
+    const std::vector<Row> rows = pass.take();
     if (rows.empty()) break;  // finish() reports what is missing
-    append_rows(writer, rows, store.quantisation(), header.first_pose);
+    append(rows);
     written += rows.size();
     from = rows.back().source + 1;
     progress.advance(rows.size());
+  }
+}
+
+}  // namespace
+
+void write_answer(const Store& store, const Answer& answer, const ResultHeader& header,
+                  const std::filesystem::path& path, std::uint64_t memory_bytes,
+                  Progress& progress) {
+  const HitSet& hits = answer.hits;
+  const ClearanceSet& clearances = answer.clearances;
+  const std::uint64_t collisions = hits.count();
+  const std::uint64_t distances = clearances.count();
+  ResultWriter writer(path, header, collisions, distances);
+  progress.begin("write", collisions + distances, "points");
+  write_set<Collision>(
+      store, hits, collisions, memory_bytes, progress,
+      [&](std::uint32_t cell) {
+        return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t slot,
+                                                std::uint32_t i) {
+          return Collision{source,
+                           {q[0][i], q[1][i], q[2][i]},
+                           hits.has_first_pose() ? hits.first_pose(slot) : 0};
+        };
+      },
+      [&](const std::vector<Collision>& rows) {
+        append_rows(writer, rows, store.quantisation(), header.first_pose);
+      });
+  if (header.clearance > 0) {
+    write_set<ClearanceRow>(
+        store, clearances, distances, memory_bytes, progress,
+        [&](std::uint32_t) {
+          return [&](std::uint64_t source, std::uint64_t slot, std::uint32_t) {
+            const Clearance clearance = clearances.at(slot);
+            return ClearanceRow{source, std::sqrt(clearance.squared), clearance.pose};
+          };
+        },
+        [&](const std::vector<ClearanceRow>& rows) { append_rows(writer, rows); });
   }
   writer.finish();
   progress.end();

@@ -3,18 +3,19 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "core/hit_set.hpp"
+#include "core/answer.hpp"
 #include "core/progress.hpp"
 #include "io/result.hpp"
 #include "io/store.hpp"
 
 namespace clearway {
 
-/// Writes the colliding points to a result file at `path`, ascending by source index. Where they
-/// exceed `memory_bytes`, in several passes over the cells with hits, each for the next range of
-/// source indices. Throws InputError for a damaged cell, ResourceError for a full disk.
-void write_collisions(const Store& store, const HitSet& hits, const ResultHeader& header,
-                      const std::filesystem::path& path, std::uint64_t memory_bytes,
-                      Progress& progress);
+/// Writes the colliding points, and the clearances where the header asks for them, to a result file
+/// at `path`, ascending by source index. Where they exceed `memory_bytes`, in several passes over
+/// the cells that have some, each for the next range of source indices. Throws InputError for a
+/// damaged cell, ResourceError for a full disk.
+void write_answer(const Store& store, const Answer& answer, const ResultHeader& header,
+                  const std::filesystem::path& path, std::uint64_t memory_bytes,
+                  Progress& progress);
 
 }  // namespace clearway

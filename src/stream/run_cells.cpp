@@ -8,24 +8,29 @@ namespace clearway {
 namespace {
 
 /// Cells are disjoint and a block is a word, so collecting needs no order.
-void collect(const CellAnswer& answer, const PackedCloud& cloud, HitSet& hits) {
+void collect(const CellAnswer& answer, const PackedCloud& cloud, Answer& all) {
   const std::uint64_t first_word = std::uint64_t{answer.cell} * cloud.blocks_per_cell();
   for (std::size_t block = 0; block < answer.hits.size(); ++block) {
-    if (answer.hits[block] != 0) hits.mark_word(first_word + block, answer.hits[block]);
+    if (answer.hits[block] != 0) all.hits.mark_word(first_word + block, answer.hits[block]);
   }
   const std::uint64_t first_slot = std::uint64_t{answer.cell} * cloud.cell_slots();
   for (std::size_t slot = 0; slot < answer.first_poses.size(); ++slot) {
     if (answer.first_poses[slot] != HitSet::kNever) {
-      hits.mark(first_slot + slot, answer.first_poses[slot]);
+      all.hits.mark(first_slot + slot, answer.first_poses[slot]);
     }
+  }
+  for (std::size_t slot = 0; slot < answer.clearances.size(); ++slot) {
+    const Clearance& clearance = answer.clearances[slot];
+    if (clearance.found()) all.clearances.set(first_slot + slot, clearance);
   }
 }
 
 }  // namespace
 
-HitSet run_cells(const PackedCloud& cloud, const std::vector<PlannedCell>& cells,
-                 CellEngine& engine, bool first_pose, int threads, Progress& progress) {
-  HitSet hits(cloud.slot_count(), first_pose);
+Answer run_cells(const PackedCloud& cloud, const std::vector<PlannedCell>& cells,
+                 CellEngine& engine, const Question& question, int threads, Progress& progress) {
+  Answer answer{HitSet(cloud.slot_count(), question.first_pose),
+                ClearanceSet(question.clearance > 0 ? cloud.slot_count() : 0)};
   std::uint64_t points = 0;
   for (const PlannedCell& cell : cells) points += cloud.cells()[cell.cell].count;
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
@@ -41,11 +46,11 @@ HitSet run_cells(const PackedCloud& cloud, const std::vector<PlannedCell>& cells
                                             return next++;
                                           }) &
           tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, [&](std::size_t i) {
-            collect(engine.search(cells[i]), cloud, hits);
+            collect(engine.search(cells[i]), cloud, answer);
             progress.advance(cloud.cells()[cells[i].cell].count);
           }));
   progress.end();
-  return hits;
+  return answer;
 }
 
 }  // namespace clearway

@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 
+#include "core/answer.hpp"
 #include "cpu/brute_force.hpp"
 #include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
@@ -17,16 +18,21 @@ HitSet kdtree(const PackedCloud& cloud, const Question& question, int threads) {
   return run_kdtree(cloud, question, {threads}, progress);
 }
 
-HitSet sweep(const PackedCloud& cloud, const Question& question, int threads) {
+Answer sweep_with_clearances(const PackedCloud& cloud, const Question& question, int threads) {
   NoProgress progress;
-  if (question.model.empty()) return HitSet(cloud.slot_count(), question.first_pose);
+  if (question.model.empty()) {
+    return {HitSet(cloud.slot_count(), question.first_pose), ClearanceSet(cloud.slot_count())};
+  }
   const ModelTree model(question.model);
-  const ModelField field(model, question.radius, {}, threads);
+  const ModelField field(model, question.radius, {.reach = question.clearance}, threads);
   const MotionTree motion(question.poses, model.box());
   const SweepFilter filter(question, motion, model, field, cloud);
   SweepEngine engine(cloud, filter);
-  return run_cells(cloud, plan(cloud, motion, filter), engine, question.first_pose, threads,
-                   progress);
+  return run_cells(cloud, plan(cloud, motion, filter), engine, question, threads, progress);
+}
+
+HitSet sweep(const PackedCloud& cloud, const Question& question, int threads) {
+  return sweep_with_clearances(cloud, question, threads).hits;
 }
 
 const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep}};
@@ -59,26 +65,82 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const std::vector<std::uint
   return colliding;
 }
 
+using Oracle = std::vector<Clearance>;
+
+/// Every clearance and every hit, a set or with first poses.
+std::uint64_t check_clearances(const MemoryCloud& cloud, const Oracle& least,
+                               const std::vector<std::uint32_t>& first_poses,
+                               const Question& question) {
+  const double limit = question.clearance * question.clearance;
+  const Answer answer = sweep_with_clearances(cloud, question, kThreads);
+  CAPTURE(question.clearance, question.radius, question.first_pose, cloud.cell_points());
+  std::uint64_t wrong = 0, wrong_hits = 0, found = 0;
+  for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
+    Clearance expected;
+    std::uint32_t pose = HitSet::kNever;
+    if (cloud.is_used(slot)) {
+      const Clearance& oracle = least[cloud.source(slot)];
+      if (oracle.squared < limit) expected = oracle;
+      pose = first_poses[cloud.source(slot)];
+    }
+    found += expected.found();
+    wrong += answer.clearances.at(slot) != expected;
+    wrong_hits += answer.hits.contains(slot) != (pose != HitSet::kNever);
+    if (question.first_pose) wrong_hits += answer.hits.first_pose(slot) != pose;
+  }
+  CHECK(wrong == 0);
+  CHECK(wrong_hits == 0);
+  CHECK(answer.clearances.count() == found);
+  return found;
+}
+
+Question with_clearance(Question question, double clearance, bool first_pose) {
+  question.clearance = clearance;
+  question.first_pose = first_pose;
+  return question;
+}
+
 }  // namespace
 
 std::span<const Engine> engines() { return kEngines; }
 
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question, const MemoryCloudOptions& packing) {
-  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
-  return check_packed(MemoryCloud(points, quantisation, packing), expected, question);
+  const auto environment = positions_of(points, quantisation);
+  const auto expected = brute_force_first_poses(environment, question);
+  const MemoryCloud cloud(points, quantisation, packing);
+  check_clearances(cloud, brute_force_clearances(environment, question), expected,
+                   with_clearance(question, 2.5 * question.radius, points.size() % 2 == 0));
+  return check_packed(cloud, expected, question);
 }
 
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question) {
-  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
+  const auto environment = positions_of(points, quantisation);
+  const auto expected = brute_force_first_poses(environment, question);
+  const Oracle least = brute_force_clearances(environment, question);
   std::uint64_t colliding = 0;
+  double of_radius = 0.4;
   for (const MemoryCloudOptions& packing :
        {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
         MemoryCloudOptions{128, 500}}) {
-    colliding = check_packed(MemoryCloud(points, quantisation, packing), expected, question);
+    const MemoryCloud cloud(points, quantisation, packing);
+    colliding = check_packed(cloud, expected, question);
+    for (const bool first_pose : {false, true}) {
+      check_clearances(cloud, least, expected,
+                       with_clearance(question, of_radius * question.radius, first_pose));
+    }
+    of_radius *= 2.5;
   }
   return colliding;
+}
+
+std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
+                               const Question& question) {
+  const auto environment = positions_of(points, quantisation);
+  return check_clearances(MemoryCloud(points, quantisation, {256, 0}),
+                          brute_force_clearances(environment, question),
+                          brute_force_first_poses(environment, question), question);
 }
 
 }  // namespace clearway

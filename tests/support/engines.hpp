@@ -19,12 +19,17 @@ struct Engine {
 std::span<const Engine> engines();
 
 /// Runs every engine on the points, packed in several ways, as a set and with first poses, and
-/// checks the answers against brute force. Returns the number of colliding points.
+/// checks the answers against brute force; likewise clearances below and above the radius, where an
+/// engine has them. Returns the number of colliding points.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question);
 
 /// The same for one way of packing them.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question, const MemoryCloudOptions& packing);
+
+/// The clearances that the question asks for. Returns how many there are.
+std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
+                               const Question& question);
 
 }  // namespace clearway

@@ -40,9 +40,10 @@ void add_compare(CLI::App& program, int& exit_code) {
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
       "Prints how many points are in both, only in A, only in B and, where both have first poses,\n"
-      "how many of those differ; and what was asked differently (model, trajectory, radius in\n"
+      "how many of those differ, likewise clearances; and what was asked differently (model, "
+      "trajectory, radius in\n"
       "metres).\n"
-      "Exit code 0: the same points with the same first poses, whatever was asked;\n"
+      "Exit code 0: the same points, first poses and clearances, whatever was asked;\n"
       "1: they differ; 3: a file is not a result, or the results are about different\n"
       "environments, whose point indices cannot be compared.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");

@@ -65,6 +65,12 @@ std::string comparison_text(const Comparison& c, const std::string& a, const std
   if (c.differing_coordinates > 0) {
     text += "differing coordinates: " + format_count(c.differing_coordinates) + "\n";
   }
+  if (c.clearances) {
+    text += "clearances in both: " + format_count(c.clearances->common) +
+            ", only in a: " + format_count(c.clearances->only_in_a) +
+            ", only in b: " + format_count(c.clearances->only_in_b) +
+            ", differing: " + format_count(c.clearances->differing) + "\n";
+  }
   for (const QuestionDifference& question : c.questions) {
     text += "questions differ: " + question.what + ": " + question.a + " / " + question.b + "\n";
   }
@@ -86,6 +92,13 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
                              {"differing_coordinates", c.differing_coordinates},
                              {"differing_first_poses", nullptr}};
   if (c.differing_first_poses) out["differing_first_poses"] = *c.differing_first_poses;
+  out["clearances"] = nullptr;
+  if (c.clearances) {
+    out["clearances"] = {
+        {"in_a", c.clearances->in_a},           {"in_b", c.clearances->in_b},
+        {"common", c.clearances->common},       {"only_in_a", c.clearances->only_in_a},
+        {"only_in_b", c.clearances->only_in_b}, {"differing", c.clearances->differing}};
+  }
   auto& questions = out["question_differences"] = nlohmann::ordered_json::array();
   for (const QuestionDifference& question : c.questions) {
     questions.push_back({{"what", question.what}, {"a", question.a}, {"b", question.b}});

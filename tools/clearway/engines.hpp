@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/hit_set.hpp"
+#include "core/answer.hpp"
 #include "core/progress.hpp"
 #include "core/question.hpp"
 #include "io/store.hpp"
@@ -25,9 +25,10 @@ struct EngineReport {
   std::uint64_t needed_bytes = 0;  ///< memory that inputs and engine take at the most
 };
 
-/// Answers the question with the engine chosen. Throws ResourceError before anything starts where
-/// memory_bytes is too little; InputError for a damaged cell.
-HitSet run_engine(const Store& store, const Question& question, const EngineOptions& options,
+/// Answers the question with the engine chosen. Throws UsageError where that engine cannot,
+/// ResourceError before anything starts where memory_bytes is too little, InputError for a damaged
+/// cell.
+Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
                   Progress& progress, EngineReport& report);
 
 }  // namespace clearway::tool

@@ -13,12 +13,18 @@ namespace {
 
 struct Options {
   std::filesystem::path result, output;
+  std::string what = "collisions";
   bool force = false;
 };
 
 void run_export(const Options& options) {
   const ResultReader result(options.result);
   ConsoleProgress progress;
+  if (options.what == "clearance") {
+    export_clearances(result, options.output, options.force, progress);
+    spdlog::info("{}: {} clearances", options.output.string(), format_count(result.clearances()));
+    return;
+  }
   export_result(result, options.output, options.force, progress);
   spdlog::info("{}: {} colliding points", options.output.string(),
                format_count(result.collisions()));
@@ -38,6 +44,11 @@ void add_export(CLI::App& program) {
                    "Output; the ending of its name chooses the format")
       ->type_name("FILE")
       ->required();
+  command
+      ->add_option("--what", options->what,
+                   "collisions, or clearance: CSV of what run --clearance found")
+      ->check(CLI::IsMember({"collisions", "clearance"}))
+      ->capture_default_str();
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->footer(
       "Formats, coordinates in the environment's unit (metres):\n"
@@ -45,6 +56,7 @@ void add_export(CLI::App& program) {
       "  .ply  binary little-endian, double x y z, uint first_pose\n"
       "  .xyz  text: x y z\n"
       "  .csv  text with a header: source,x,y,z,first_pose\n"
+      "        with --what clearance: source,distance,pose\n"
       "first_pose (0-based) where the result has it; source is the point's index in the order of\n"
       "the input scans. Text has as many digits as give back each coordinate exactly.\n"
       "Example: clearway export out.h5 -o colliding.las");

@@ -62,6 +62,8 @@ ordered_json describe(const ResultReader& result) {
           {"model_points", h.model_points},
           {"poses", h.poses},
           {"first_pose", h.first_pose},
+          {"clearance", h.clearance},
+          {"clearance_points", result.clearances()},
           {"scale", h.quantisation.scale},
           {"offset", h.quantisation.offset},
           {"crs_wkt", h.crs_wkt},

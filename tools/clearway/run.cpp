@@ -28,6 +28,7 @@ struct Options {
   EngineOptions engine;
   std::string device = "auto";
   bool first_pose = false;
+  double clearance = 0;
   TrajectoryOptions trajectory_options;
   bool force = false;
   bool json = false;
@@ -59,17 +60,19 @@ ResultHeader header_of(const Inputs& inputs, const Options& options) {
           .trajectory_hash = hash_of_trajectory(inputs.poses),
           .radius = options.radius,
           .first_pose = options.first_pose,
+          .clearance = options.clearance,
           .quantisation = metadata.quantisation,
           .crs_wkt = metadata.crs_wkt};
 }
 
-nlohmann::ordered_json report_of(const Inputs& inputs, const HitSet& hits,
+nlohmann::ordered_json report_of(const Inputs& inputs, const Answer& answer,
                                  const EngineReport& engine, const Seconds& seconds) {
   const Store::Touched touched = inputs.store.touched();
   return {{"environment_points", inputs.store.point_count()},
           {"model_points", inputs.model.size()},
           {"poses", inputs.poses.size()},
-          {"colliding_points", hits.count()},
+          {"colliding_points", answer.hits.count()},
+          {"clearance_points", answer.clearances.count()},
           {"engine", engine.engine},
           {"device", "cpu"},
           {"searches", engine.searches},
@@ -105,22 +108,27 @@ void run_run(const Options& options) {
   Seconds seconds;
   const Inputs inputs(options);
   warn_of(inputs);
-  const Question question{inputs.model, inputs.poses, options.radius, options.first_pose};
+  Question question{inputs.model, inputs.poses, options.radius, options.first_pose};
+  question.clearance = options.clearance;
   seconds.read = total.seconds();
   EngineReport engine;
-  const HitSet hits = run_engine(inputs.store, question, options.engine, progress, engine);
+  const Answer answer = run_engine(inputs.store, question, options.engine, progress, engine);
   peak_anonymous_bytes();
 
   const Stopwatch write;
-  write_collisions(inputs.store, hits, header_of(inputs, options), output.partial(),
-                   options.engine.memory_bytes - engine.needed_bytes, progress);
+  write_answer(inputs.store, answer, header_of(inputs, options), output.partial(),
+               options.engine.memory_bytes - engine.needed_bytes, progress);
   output.publish();
   seconds.write = write.seconds();
   seconds.total = total.seconds();
   spdlog::info("{}: {} of {} environment points collide; engine {} on the CPU, {:.2f} s",
-               options.output.string(), format_count(hits.count()),
+               options.output.string(), format_count(answer.hits.count()),
                format_count(inputs.store.point_count()), engine.engine, seconds.total);
-  if (options.json) print(report_of(inputs, hits, engine, seconds).dump(2) + "\n");
+  if (options.clearance > 0) {
+    spdlog::info("{} points are closer than {} m", format_count(answer.clearances.count()),
+                 options.clearance);
+  }
+  if (options.json) print(report_of(inputs, answer, engine, seconds).dump(2) + "\n");
 }
 
 void add_inputs(CLI::App& command, Options& options) {
@@ -169,6 +177,12 @@ void add_run(CLI::App& program) {
   add_inputs(*command, *options);
   command->add_flag("--first-pose", options->first_pose,
                     "Also the first pose (0-based) that touches each colliding point");
+  command
+      ->add_option("--clearance", options->clearance,
+                   "Also distance and pose of the model's nearest approach to every point that it "
+                   "comes closer to than this, for example 0.5; engine sweep only")
+      ->type_name("METRES")
+      ->check(CLI::PositiveNumber);
   command->add_option("--engine", options->engine.engine, "sweep or kdtree; auto takes sweep")
       ->check(CLI::IsMember({"auto", "sweep", "kdtree"}))
       ->capture_default_str();

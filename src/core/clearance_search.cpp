@@ -1,0 +1,103 @@
+#include "core/clearance_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/predicate.hpp"
+#include "core/sweep_bounds.hpp"
+
+namespace clearway {
+
+ClearanceSearch::ClearanceSearch(const SweepFilter& filter)
+    : filter_(filter),
+      motion_(filter.motion()),
+      limit_(rounded_product(filter.question().clearance, filter.question().clearance)),
+      guess_(filter.model().point(0)) {}
+
+Clearance ClearanceSearch::nearest(const Vec3& e, std::span<const std::uint32_t> nodes,
+                                   SweepStatistics& statistics) {
+  ++statistics.points_tested;
+  statistics_ = &statistics;
+  e_ = e;
+  set_best(limit_, 0);  // pose 0, so that a tie with the limit is no improvement
+  if (!nodes.empty()) offer(guess_pose_, guess_);
+  looks_.clear();
+  for (const std::uint32_t node : nodes) {
+    const Look seen = look(node);
+    if (!is_given_up(seen)) looks_.push_back(seen);
+  }
+  const auto nearest_first = std::min_element(
+      looks_.begin(), looks_.end(),
+      [](const Look& a, const Look& b) { return a.squared_lower < b.squared_lower; });
+  if (nearest_first != looks_.end()) std::iter_swap(looks_.begin(), nearest_first);
+  for (const Look& seen : looks_) visit(seen);
+  return best_.squared < limit_ ? best_ : Clearance{};
+}
+
+ClearanceSearch::Look ClearanceSearch::look(std::uint32_t index) {
+  ++statistics_->point_tests;
+  const std::uint32_t mid = motion_.nodes()[index].mid;
+  const ModelField::Bounds bounds = filter_.field().bounds(motion_.pulled_back(mid, e_));
+  const Look seen{index, bounds.near, bounds.squared_lower};
+  if (bounds.near != ModelField::kNone && !is_given_up(seen)) {
+    offer(filter_.first_equal_pose(mid), filter_.model().point(bounds.near));
+  }
+  return seen;
+}
+
+bool ClearanceSearch::is_given_up(const Look& seen) const {
+  const MotionNode& node = motion_.nodes()[seen.node];
+  return farther(motion_.pull_back(node.mid).least, seen.squared_lower, reach_ + node.delta);
+}
+
+void ClearanceSearch::visit(const Look& seen) {
+  if (is_given_up(seen)) return;
+  const MotionNode& node = motion_.nodes()[seen.node];
+  const std::uint32_t pose = filter_.first_equal_pose(node.first);
+  if (pose == filter_.first_equal_pose(node.first + node.count - 1)) {
+    search_pose(pose, seen.near);
+  } else {
+    visit_halves(seen.node);
+  }
+}
+
+void ClearanceSearch::visit_halves(std::uint32_t node) {
+  const Look earlier = look(node + 1);
+  const Look later = look(motion_.nodes()[node].later);
+  const bool later_first = later.squared_lower < earlier.squared_lower;
+  visit(later_first ? later : earlier);
+  visit(later_first ? earlier : later);
+}
+
+/// The model point nearest to e pulled back need not have the least computed d2, nor do others near
+/// it: every one within the rounding bound, and the stretch, of the best is put to the predicate.
+void ClearanceSearch::search_pose(std::uint32_t pose, std::uint32_t near) {
+  ++statistics_->exact_tests;
+  const ModelTree& model = filter_.model();
+  const double least = motion_.pull_back(pose).least;
+  const Vec3 x = motion_.pulled_back(pose, e_);
+  const ModelTree::Nearest nearest = model.nearest(x, near == ModelField::kNone ? 0 : near);
+  if (farther(least, nearest.squared_distance, reach_)) return;
+  offer(pose, model.point(nearest.point));
+  const double ball = reach_ / least * kRoundedUp;
+  model.any_within(x, ball * ball * kRoundedUp, [&](const Vec3& m) {
+    offer(pose, m);
+    return false;
+  });
+}
+
+void ClearanceSearch::offer(std::uint32_t pose, const Vec3& m) {
+  const double squared = squared_distance(e_, transform(filter_.question().poses[pose], m));
+  const bool better = squared < best_.squared;
+  if (!better && !(squared == best_.squared && pose < best_.pose)) return;
+  guess_pose_ = pose;
+  guess_ = m;
+  set_best(squared, pose);
+}
+
+void ClearanceSearch::set_best(double squared, std::uint32_t pose) {
+  best_ = {squared, pose};
+  reach_ = std::sqrt(squared) * kRoundedUp + filter_.rounding();
+}
+
+}  // namespace clearway

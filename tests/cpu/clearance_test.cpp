@@ -1,0 +1,178 @@
+// Clearances against brute force, where they are hard: ties, clearances of any size, roundings.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/predicate.hpp"
+#include "support/engines.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+
+namespace {
+
+const Quantisation kTenthMillimetre{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
+const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
+const Box kPart{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
+
+struct Scene {
+  Random random{17};
+  Quantisation quantisation = kTenthMillimetre;
+  std::vector<Quantum> points = quantise(random_points(random, kRoom, 1000), quantisation);
+  std::vector<Vec3> model = random_points(random, kPart, 60);
+  std::vector<Pose> poses = smooth_path(random, kRoom, 60);
+  double radius = 0.1;
+
+  std::uint64_t check(double clearance) const {
+    std::uint64_t found = 0;
+    for (const bool first_pose : {false, true}) {
+      Question question{model, poses, radius, first_pose};
+      question.clearance = clearance;
+      found = check_clearances(points, quantisation, question);
+    }
+    return found;
+  }
+};
+
+void move_far_away(Scene& scene, const Vec3& offset) {
+  for (int k = 0; k < 3; ++k) scene.quantisation.offset[k] += offset[k];
+  for (Pose& pose : scene.poses) {
+    for (int k = 0; k < 3; ++k) pose.translation[k] += offset[k];
+  }
+}
+
+}  // namespace
+
+TEST_CASE("clearances of every size") {
+  Scene scene;
+  SECTION("smaller than every distance") { CHECK(scene.check(1e-7) == 0); }
+  SECTION("smaller than the radius") { CHECK(scene.check(0.07) > 0); }
+  SECTION("the radius") { CHECK(scene.check(0.1) > 0); }
+  SECTION("just above it") { CHECK(scene.check(std::nextafter(0.1, 1)) > 0); }
+  SECTION("far larger") { CHECK(scene.check(2) > 300); }
+  SECTION("larger than the scene") { CHECK(scene.check(1000) == scene.points.size()); }
+  SECTION("beyond any scene") { CHECK(scene.check(1e150) == scene.points.size()); }
+  SECTION("whose square is infinite") { CHECK(scene.check(1e200) == scene.points.size()); }
+  SECTION("whose square is zero") { CHECK(scene.check(1e-200) == 0); }
+  SECTION("with a radius far below the model's spacing") {
+    scene.radius = 1e-4;
+    CHECK(scene.check(1.5) > 200);
+  }
+  SECTION("with a radius larger than the scene") {
+    scene.radius = 30;
+    CHECK(scene.check(0.5) > 0);
+  }
+}
+
+TEST_CASE("clearances of few model points, poses and points") {
+  Scene scene;
+  SECTION("one model point") { scene.model.resize(1); }
+  SECTION("one pose") { scene.poses.resize(1); }
+  SECTION("one point") { scene.points.resize(1); }
+  SECTION("one of each") {
+    scene.model.resize(1);
+    scene.poses.resize(1);
+    scene.points.resize(1);
+  }
+  CHECK(scene.check(20) == scene.points.size());
+}
+
+TEST_CASE("clearances that several poses tie for") {
+  Scene scene;
+  SECTION("repeated poses") {
+    const auto once = scene.poses;
+    scene.poses.clear();
+    for (const Pose& pose : once) scene.poses.insert(scene.poses.end(), 4, pose);
+  }
+  SECTION("one pose all the time") { scene.poses.assign(50, scene.poses[7]); }
+  SECTION("there and back and there again") {
+    const auto there = scene.poses;
+    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
+    scene.poses.insert(scene.poses.end(), there.begin(), there.end());
+  }
+  SECTION("later poses first in the tree's order") {
+    scene.poses.insert(scene.poses.begin(), scene.poses.rbegin(), scene.poses.rend());
+  }
+  CHECK(scene.check(3) > 300);
+}
+
+TEST_CASE("clearances that mirror images tie for") {
+  // Points in the plane x = 0, poses at -x and x in exact numbers: equal d2, the earlier wins.
+  Scene scene;
+  scene.quantisation = {{0x1p-10, 0x1p-10, 0x1p-10}, {0, 0, 0}};
+  scene.points.clear();
+  for (std::int32_t i = 0; i < 900; ++i) scene.points.push_back({0, i % 30 * 64, i / 30 * 32});
+  scene.model = {{0, 0, 0}, {0, 0.25, 0}, {0, 0, 0.5}};
+  scene.poses.clear();
+  const bool towards = GENERATE(false, true);
+  for (int i = -32; i <= 32; ++i) {
+    if (i != 0) scene.poses.push_back(translation({(towards ? i : -i) * 0x1p-5, 0.5, 0.25}));
+  }
+  CHECK(scene.check(4) == scene.points.size());
+  scene.model = {{0.5, 0, 0}, {-0.5, 0, 0}};  // ties between model points, too
+  CHECK(scene.check(4) == scene.points.size());
+}
+
+TEST_CASE("clearances of duplicates") {
+  Scene scene;
+  scene.points.resize(300);
+  for (int i = 0; i < 300; ++i) scene.points.push_back(scene.points[i]);
+  for (int i = 0; i < 60; ++i) scene.model.push_back(scene.model[i]);
+  CHECK(scene.check(1) % 2 == 0);
+}
+
+TEST_CASE("clearances far from the origin and of matrices that are not rigid") {
+  Scene scene;
+  SECTION("UTM") { move_far_away(scene, {5e6, 2e6, 1e3}); }
+  SECTION("six digits") {
+    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
+  }
+  SECTION("slightly stretched") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {1.00009, 0.99992, 1.00005});
+  }
+  SECTION("strongly stretched") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {2.5, 0.3, 1.7});
+  }
+  SECTION("strongly stretched, far away") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {0.2, 1.4, 0.7});
+    move_far_away(scene, {5e6, 2e6, 1e3});
+  }
+  SECTION("singular") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {3, 0, 1});
+  }
+  CHECK(scene.check(1.5) > 100);
+}
+
+TEST_CASE("clearances where roundings decide the pose and the model point") {
+  // A model whose points are all as far from the points asked about, give or take a few roundings,
+  // at poses that differ by as little: the least computed d2 is not that of the nearest point.
+  Random random(23);
+  for (int trial = 0; trial < 40; ++trial) {
+    const double far = trial % 3 == 0 ? 0 : trial % 3 == 1 ? 1e3 : 5e6;
+    const double ulp = std::max(far, 1.0) * 0x1p-52;
+    const Vec3 centre{far, -0.7 * far, 0.3 * far};
+    Scene scene;
+    scene.model.clear();
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 d = random_direction(random);
+      scene.model.push_back({0.5 * d.x, 0.5 * d.y, 0.5 * d.z});
+    }
+    scene.poses.clear();
+    for (int i = 0; i < 30; ++i) {
+      const Vec3 by = random_direction(random);
+      scene.poses.push_back(random_rotation(
+          random,
+          {centre.x + 4 * ulp * by.x, centre.y + 4 * ulp * by.y, centre.z + 4 * ulp * by.z}));
+    }
+    for (int k = 0; k < 3; ++k) {
+      scene.quantisation.scale[k] = ulp;
+      scene.quantisation.offset[k] = centre[k];
+    }
+    scene.points.clear();
+    for (int i = 0; i < 40; ++i) {
+      Quantum q;
+      for (int k = 0; k < 3; ++k) q[k] = static_cast<std::int32_t>(below(random, 5)) - 2;
+      scene.points.push_back(q);
+    }
+    CHECK(scene.check(0.9) == 40);
+  }
+}
