@@ -33,14 +33,6 @@ PullBack pull_back_of(const Pose& pose) {
   return out;
 }
 
-double reach_of(const Box& box) {
-  double reach = 0;
-  for (int k = 0; k < 3; ++k) {
-    reach = std::max({reach, std::abs(box.lo[k]), std::abs(box.hi[k])});
-  }
-  return reach;
-}
-
 }  // namespace
 
 MotionTree::MotionTree(std::span<const Pose> poses, const Box& model) : poses_(poses) {
@@ -56,7 +48,8 @@ MotionTree::MotionTree(std::span<const Pose> poses, const Box& model) : poses_(p
   }
   double greatest = 1;
   for (const PullBack& p : pull_backs_) greatest = std::max(greatest, p.greatest);
-  magnitude_ += 2 * greatest * reach_of(model);
+  const Vec3 reach = reach_of(model);
+  magnitude_ += 2 * greatest * std::max({reach.x, reach.y, reach.z});
   nodes_.reserve(2 * poses.size());
   add(0, static_cast<std::uint32_t>(poses.size()));
   for (auto node = static_cast<std::uint32_t>(nodes_.size()); node-- > 0;) {
