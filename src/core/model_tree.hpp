@@ -25,6 +25,10 @@ class ModelTree {
   const Vec3& point(std::uint32_t index) const { return points_[index]; }
   const Box& box() const { return box_; }
 
+  /// An estimate of the distance between neighbouring points, metres: for choosing sizes, never for
+  /// answers.
+  double spacing() const { return spacing_; }
+
   /// The nearest point to x of a model that is not empty. `guess`: any point, better a near one.
   Nearest nearest(const Vec3& x, std::uint32_t guess = 0) const;
 
@@ -44,6 +48,7 @@ class ModelTree {
   static constexpr std::uint32_t kLeafPoints = 8;
 
   void build(std::uint32_t begin, std::uint32_t end, std::size_t node);
+  double median_leaf_diagonal() const;
   void search(std::uint32_t begin, std::uint32_t end, std::size_t node, const Vec3& x,
               Nearest& best) const;
 
@@ -65,6 +70,7 @@ class ModelTree {
   std::vector<Vec3> points_;
   std::vector<Box> boxes_;  // of node i; children 2 i + 1 and 2 i + 2
   Box box_{};
+  double spacing_ = 0;
 };
 
 }  // namespace clearway
