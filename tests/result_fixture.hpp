@@ -75,16 +75,33 @@ inline ResultRows sample_rows(const ResultHeader& header, std::size_t count) {
   return rows;
 }
 
+inline ClearanceRows sample_clearances(const ResultHeader& header, std::size_t count) {
+  ClearanceRows rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    rows.source.push_back(2 * i + 1);
+    rows.distance.push_back(header.clearance / static_cast<double>(1 + i % 7));
+    rows.pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
+  }
+  return rows;
+}
+
 /// Writes `rows` by append() calls of `step` rows.
 inline void write_result(const std::filesystem::path& path, const ResultHeader& header,
-                         const ResultRows& rows, std::size_t step = 1000) {
-  ResultWriter writer(path, header, rows.size());
+                         const ResultRows& rows, std::size_t step = 1000,
+                         const ClearanceRows& clearances = {}) {
+  ResultWriter writer(path, header, rows.size(), clearances.size());
   for (std::size_t from = 0; from < rows.size(); from += step) {
     const std::size_t count = std::min(step, rows.size() - from);
     writer.append(std::span(rows.source).subspan(from, count),
                   std::span(rows.xyz).subspan(from, count),
                   header.first_pose ? std::span(rows.first_pose).subspan(from, count)
                                     : std::span<const std::uint32_t>());
+  }
+  for (std::size_t from = 0; from < clearances.size(); from += step) {
+    const std::size_t count = std::min(step, clearances.size() - from);
+    writer.append_clearances(std::span(clearances.source).subspan(from, count),
+                             std::span(clearances.distance).subspan(from, count),
+                             std::span(clearances.pose).subspan(from, count));
   }
   writer.finish();
 }

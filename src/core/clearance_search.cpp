@@ -2,11 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/predicate.hpp"
 #include "core/sweep_bounds.hpp"
 
 namespace clearway {
+namespace {
+
+/// Up to this many poses are searched at once, where no more than kMostNearPoints model points can
+/// be the nearest at any of them.
+constexpr std::uint32_t kPosesAtOnce = 32;
+constexpr std::size_t kMostNearPoints = 256;
+
+}  // namespace
 
 ClearanceSearch::ClearanceSearch(const SweepFilter& filter)
     : filter_(filter),
@@ -56,9 +65,44 @@ void ClearanceSearch::visit(const Look& seen) {
   const std::uint32_t pose = filter_.first_equal_pose(node.first);
   if (pose == filter_.first_equal_pose(node.first + node.count - 1)) {
     search_pose(pose, seen.near);
-  } else {
+  } else if (node.count > kPosesAtOnce || !search_poses(node)) {
     visit_halves(seen.node);
   }
+}
+
+/// One search of the model for the box of the point pulled back by every pose of the node: along a
+/// surface that the path follows, bounds of single poses decide nothing. False, and nothing done,
+/// where too many model points are open.
+bool ClearanceSearch::search_poses(const MotionNode& node) {
+  ++statistics_->exact_tests;
+  pulled_back_.clear();
+  Box box{};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t pose = node.first; pose < node.first + node.count; ++pose) {
+    const Vec3 x = motion_.pulled_back(pose, e_);
+    for (int k = 0; k < 3; ++k) {
+      if (std::isnan(x[k])) return false;
+      box.lo[k] = pulled_back_.empty() ? x[k] : std::min(box.lo[k], x[k]);
+      box.hi[k] = pulled_back_.empty() ? x[k] : std::max(box.hi[k], x[k]);
+    }
+    least = std::min(least, motion_.pull_back(pose).least);
+    pulled_back_.push_back(x);
+  }
+  const auto squared_ball = [&] {
+    const double ball = reach_ / least * kRoundedUp;
+    return ball * ball * kRoundedUp;
+  };
+  if (!(squared_ball() >= 0)) return false;
+  if (!filter_.model().within(box, squared_ball(), kMostNearPoints, near_points_)) return false;
+  if (near_points_.empty()) return true;
+  for (std::uint32_t i = 0; i < node.count; ++i) {
+    const std::uint32_t pose = filter_.first_equal_pose(node.first + i);
+    const double squared = squared_ball();
+    for (const Vec3& m : near_points_) {
+      if (!(squared_distance(m, pulled_back_[i]) > squared)) offer(pose, m);
+    }
+  }
+  return true;
 }
 
 void ClearanceSearch::visit_halves(std::uint32_t node) {

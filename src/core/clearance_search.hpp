@@ -35,6 +35,7 @@ class ClearanceSearch {
   bool is_given_up(const Look& look) const;
   void visit(const Look& look);
   void visit_halves(std::uint32_t node);
+  bool search_poses(const MotionNode& node);
   void search_pose(std::uint32_t pose, std::uint32_t near);
   void offer(std::uint32_t pose, const Vec3& m);
   void set_best(double squared, std::uint32_t pose);
@@ -49,6 +50,8 @@ class ClearanceSearch {
   std::uint32_t guess_pose_ = 0;
   Vec3 guess_{};  ///< the model point of the last answer
   std::vector<Look> looks_;
+  std::vector<Vec3> pulled_back_;
+  std::vector<Vec3> near_points_;
 };
 
 }  // namespace clearway

@@ -17,6 +17,15 @@ Box box_of(std::span<const Vec3> points) {
   return box;
 }
 
+/// Between the nearest points of two boxes.
+double least_squared_distance(const Box& a, const Box& b) {
+  double d[3];
+  for (int k = 0; k < 3; ++k) {
+    d[k] = std::max({b.lo[k] - a.hi[k], a.lo[k] - b.hi[k], 0.0});
+  }
+  return squared_length(d[0], d[1], d[2]);
+}
+
 int longest_side(const Box& box) {
   int longest = 0;
   for (int k = 1; k < 3; ++k) {
@@ -93,6 +102,21 @@ void ModelTree::search(std::uint32_t begin, std::uint32_t end, std::size_t node,
     visit_right();
     visit_left();
   }
+}
+
+bool ModelTree::within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
+                       double squared_radius, std::size_t most, std::vector<Vec3>& out) const {
+  if (begin == end || least_squared_distance(boxes_[node], box) > squared_radius) return true;
+  if (end - begin <= kLeafPoints) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const bool outside = clearway::least_squared_distance(box, points_[i]) > squared_radius;
+      if (!outside) out.push_back(points_[i]);
+    }
+    return out.size() <= most;
+  }
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  return within(begin, middle, 2 * node + 1, box, squared_radius, most, out) &&
+         within(middle, end, 2 * node + 2, box, squared_radius, most, out);
 }
 
 }  // namespace clearway

@@ -40,6 +40,14 @@ class ModelTree {
     return any_within(0, size(), 0, x, squared_radius, visit);
   }
 
+  /// The points with a computed squared distance to the box of at most `squared_radius` (which is a
+  /// number), into `out`, replaced; false, and some of them, where they are more than `most`.
+  bool within(const Box& box, double squared_radius, std::size_t most,
+              std::vector<Vec3>& out) const {
+    out.clear();
+    return within(0, size(), 0, box, squared_radius, most, out);
+  }
+
   std::uint64_t allocated_bytes() const {
     return points_.capacity() * sizeof(Vec3) + boxes_.capacity() * sizeof(Box);
   }
@@ -51,6 +59,9 @@ class ModelTree {
   double median_leaf_diagonal() const;
   void search(std::uint32_t begin, std::uint32_t end, std::size_t node, const Vec3& x,
               Nearest& best) const;
+
+  bool within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
+              double squared_radius, std::size_t most, std::vector<Vec3>& out) const;
 
   template <typename Visit>
   bool any_within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Vec3& x,
