@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "core/filter_bounds.hpp"
 #include "core/hit_set.hpp"
 #include "core/predicate.hpp"
+#include "core/swept_step.hpp"
 
 namespace clearway {
 namespace {
 
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-
 /// A node of the motion tree is split for a box while it moves more than this many times the box's
 /// half diagonal.
 constexpr double kMotionPerBox = 1.0;
+
 double largest_coordinate(const PackedCloud& cloud) {
   if (cloud.tree().empty()) return 0;
   const Box box = position_box(cloud.quantisation(), cloud.tree()[0].box);
@@ -23,19 +23,6 @@ double largest_coordinate(const PackedCloud& cloud) {
     largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
   }
   return largest;
-}
-
-double half_diagonal(const Box& box) {
-  const double x = box.hi.x - box.lo.x, y = box.hi.y - box.lo.y, z = box.hi.z - box.lo.z;
-  return 0.5 * std::sqrt(squared_length(x, y, z)) * (1 + 16 * kUnitRoundoff);
-}
-
-/// True only when sigma * sqrt(squared_lower) >= reach, rounding included; false for NaN and where
-/// the reach overflows.
-bool farther(double sigma, double squared_lower, double reach) {
-  const double squared_reach = reach * reach * (1 + 16 * kUnitRoundoff);
-  return squared_reach <= std::numeric_limits<double>::max() &&
-         sigma * sigma * squared_lower >= squared_reach;
 }
 
 }  // namespace
@@ -53,13 +40,19 @@ SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, con
       motion_(motion),
       model_(model),
       field_(field),
-      rounding_(motion.rounding(largest_coordinate(cloud) + question.radius) + 1e-150) {}
+      rounding_(motion.rounding(largest_coordinate(cloud) + question.radius) + 1e-150) {
+  // The part of a computed hit's error between poses that does not grow with the step.
+  if (question.between_poses) rounding_ += 8 * kUnitRoundoff * question.radius;
+}
+
+bool SweepFilter::moves_on(const MotionNode& node) const {
+  return question_.between_poses && node.count == 1 && node.first + 1 < question_.poses.size();
+}
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
   out.clear();
-  const Vec3 centre{box.lo.x + 0.5 * (box.hi.x - box.lo.x), box.lo.y + 0.5 * (box.hi.y - box.lo.y),
-                    box.lo.z + 0.5 * (box.hi.z - box.lo.z)};
+  const Vec3 centre = centre_of(box);
   const double rho = half_diagonal(box);
   for (const std::uint32_t node : nodes) narrow_node(centre, rho, node, out, statistics);
 }
@@ -74,9 +67,14 @@ void SweepFilter::narrow_node(const Vec3& centre, double rho, std::uint32_t inde
   if (node.count > 1 && !(node.delta <= kMotionPerBox * rho)) {
     narrow_node(centre, rho, index + 1, out, statistics);
     narrow_node(centre, rho, node.later, out, statistics);
-  } else {
-    out.push_back(index);
+    return;
   }
+  const bool long_step = moves_on(node) && !(node.delta <= kMotionPerBox * rho);
+  if (long_step &&
+      !SweptStep(question_, motion_, model_, node.first, rounding_).may_touch(centre, rho)) {
+    return;
+  }
+  out.push_back(index);
 }
 
 SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
@@ -97,6 +95,10 @@ SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
   }
   if (node.count == 1) {
     ++statistics.exact_tests;
+    if (moves_on(node)) {
+      const SweptStep step(question_, motion_, model_, node.first, rounding_);
+      return step.touches(e) ? Verdict::kHitAtMid : Verdict::kDismissed;
+    }
     const double ball = (question_.radius + rounding_) / least * (1 + 16 * kUnitRoundoff);
     return model_.any_within(x, ball * ball * (1 + 16 * kUnitRoundoff), hits) ? Verdict::kHitAtMid
                                                                               : Verdict::kDismissed;

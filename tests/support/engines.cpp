@@ -22,7 +22,7 @@ HitSet sweep(const PackedCloud& cloud, const Question& question, int threads) {
   if (question.model.empty()) return HitSet(cloud.slot_count(), question.first_pose);
   const ModelTree model(question.model);
   const ModelField field(model, question.radius, {}, threads);
-  const MotionTree motion(question.poses, model.box());
+  const MotionTree motion(question.poses, model.box(), question.between_poses);
   const SweepFilter filter(question, motion, model, field, cloud);
   SweepEngine engine(cloud, filter);
   return run_cells(cloud, plan(cloud, motion, filter), engine, question.first_pose, threads,
@@ -33,15 +33,28 @@ const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep}};
 
 constexpr int kThreads = 3;
 
-std::uint64_t check_packed(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
-                           Question question) {
+/// First poses by brute force, at poses and between them.
+struct Expected {
+  Expected(const std::vector<Vec3>& positions, Question question) {
+    question.between_poses = false;
+    at_poses = brute_force_first_poses(positions, question);
+    question.between_poses = true;
+    between_poses = brute_force_first_poses(positions, question);
+  }
+
+  std::vector<std::uint32_t> at_poses, between_poses;
+};
+
+std::uint64_t check_answers(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
+                            Question question) {
   std::uint64_t colliding = 0;
   for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
   for (const Engine& engine : engines()) {
     for (const bool first_pose : {false, true}) {
       question.first_pose = first_pose;
       const HitSet hits = engine.run(cloud, question, kThreads);
-      CAPTURE(engine.name, first_pose, cloud.cell_points(), cloud.cells().size());
+      CAPTURE(engine.name, first_pose, question.between_poses, cloud.cell_points(),
+              cloud.cells().size());
       std::uint64_t wrong = 0;
       for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
         if (!cloud.is_used(slot)) {
@@ -59,19 +72,28 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const std::vector<std::uint
   return colliding;
 }
 
+std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Question question) {
+  question.between_poses = true;
+  const std::uint64_t swept = check_answers(cloud, expected.between_poses, question);
+  question.between_poses = false;
+  const std::uint64_t colliding = check_answers(cloud, expected.at_poses, question);
+  CHECK(swept >= colliding);
+  return colliding;
+}
+
 }  // namespace
 
 std::span<const Engine> engines() { return kEngines; }
 
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question, const MemoryCloudOptions& packing) {
-  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
+  const Expected expected(positions_of(points, quantisation), question);
   return check_packed(MemoryCloud(points, quantisation, packing), expected, question);
 }
 
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question) {
-  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
+  const Expected expected(positions_of(points, quantisation), question);
   std::uint64_t colliding = 0;
   for (const MemoryCloudOptions& packing :
        {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},

@@ -47,7 +47,7 @@ HitSet run_sweep_engine(const Store& store, const Question& question, const Engi
   report.field_seconds = field_time.seconds();
 
   const Stopwatch plan_time;
-  const MotionTree motion(question.poses, model.box());
+  const MotionTree motion(question.poses, model.box(), question.between_poses);
   const SweepFilter filter(question, motion, model, field, store);
   const std::vector<PlannedCell> cells = plan(store, motion, filter);
   report.plan_seconds = plan_time.seconds();

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/box.hpp"
+#include "core/predicate.hpp"
+
+/// What the filters of the sweep share.
+namespace clearway {
+
+inline constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+inline Vec3 centre_of(const Box& box) {
+  return {box.lo.x + 0.5 * (box.hi.x - box.lo.x), box.lo.y + 0.5 * (box.hi.y - box.lo.y),
+          box.lo.z + 0.5 * (box.hi.z - box.lo.z)};
+}
+
+/// At least the true one.
+inline double half_diagonal(const Box& box) {
+  const double x = box.hi.x - box.lo.x, y = box.hi.y - box.lo.y, z = box.hi.z - box.lo.z;
+  return 0.5 * std::sqrt(squared_length(x, y, z)) * (1 + 16 * kUnitRoundoff);
+}
+
+/// True only when sigma * sqrt(squared_lower) >= reach, rounding included; false for NaN and where
+/// the reach overflows.
+inline bool farther(double sigma, double squared_lower, double reach) {
+  const double squared_reach = reach * reach * (1 + 16 * kUnitRoundoff);
+  return squared_reach <= std::numeric_limits<double>::max() &&
+         sigma * sigma * squared_lower >= squared_reach;
+}
+
+}  // namespace clearway
