@@ -85,6 +85,15 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Q
 
 std::span<const Engine> engines() { return kEngines; }
 
+std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
+                                               const Quantisation& quantisation,
+                                               Question question) {
+  question.between_poses = true;
+  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
+  check_answers(MemoryCloud(points, quantisation, {128, 0}), expected, question);
+  return expected;
+}
+
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question, const MemoryCloudOptions& packing) {
   const Expected expected(positions_of(points, quantisation), question);
