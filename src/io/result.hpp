@@ -22,6 +22,7 @@ struct ResultHeader {
   std::uint64_t trajectory_hash = 0;
   double radius = 0;
   bool first_pose = false;
+  bool between_poses = false;
   Quantisation quantisation{};
   std::string crs_wkt;
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;

@@ -61,6 +61,7 @@ ordered_json describe(const ResultReader& result) {
           {"model_points", h.model_points},
           {"poses", h.poses},
           {"first_pose", h.first_pose},
+          {"between_poses", h.between_poses},
           {"scale", h.quantisation.scale},
           {"offset", h.quantisation.offset},
           {"crs_wkt", h.crs_wkt},

@@ -27,6 +27,7 @@ struct Options {
   EngineOptions engine;
   std::string device = "auto";
   bool first_pose = false;
+  bool between_poses = false;
   TrajectoryOptions trajectory_options;
   bool force = false;
   bool json = false;
@@ -58,6 +59,7 @@ ResultHeader header_of(const Inputs& inputs, const Options& options) {
           .trajectory_hash = hash_of_trajectory(inputs.poses),
           .radius = options.radius,
           .first_pose = options.first_pose,
+          .between_poses = options.between_poses,
           .quantisation = metadata.quantisation,
           .crs_wkt = metadata.crs_wkt};
 }
@@ -103,7 +105,11 @@ void run_run(const Options& options) {
   Seconds seconds;
   const Inputs inputs(options);
   warn_of(inputs);
-  const Question question{inputs.model, inputs.poses, options.radius, options.first_pose};
+  const Question question{.model = inputs.model,
+                          .poses = inputs.poses,
+                          .radius = options.radius,
+                          .first_pose = options.first_pose,
+                          .between_poses = options.between_poses};
   seconds.read = total.seconds();
   EngineReport engine;
   const HitSet hits = run_engine(inputs.store, question, options.engine, progress, engine);
@@ -163,6 +169,8 @@ void add_run(CLI::App& program) {
   add_inputs(*command, *options);
   command->add_flag("--first-pose", options->first_pose,
                     "Also the first pose (0-based) that touches each colliding point");
+  command->add_flag("--between-poses", options->between_poses,
+                    "Move every model point on a straight segment from each pose to the next");
   command->add_option("--engine", options->engine.engine, "sweep or kdtree; auto takes sweep")
       ->check(CLI::IsMember({"auto", "sweep", "kdtree"}))
       ->capture_default_str();
@@ -179,7 +187,10 @@ void add_run(CLI::App& program) {
   command->add_flag("--force", options->force, "Overwrite an existing result");
   command->add_flag("--json", options->json, "Print one JSON object about the run");
   command->footer(
-      "A point collides when it is strictly closer than the radius to a model point at a pose.\n"
+      "A point collides when it is strictly closer than the radius to a model point at a pose,\n"
+      "with --between-poses also on the way from a pose to the next. Its first pose is then the "
+      "one\n"
+      "that the way starts from.\n"
       "The result is the same for every engine, number of threads and memory bound.\n"
       "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
       "-o out.h5");
