@@ -142,27 +142,36 @@ struct Grazed {
   std::size_t model_points;
 };
 
-/// Points around one place at the radius from the inside of a model point's segment.
+/// Model points on a line across their way, and environment points around one place beyond the
+/// line's end at the radius from its segment: as far from the middle of the model as can be.
 std::uint64_t check_grazed(Random& random, const Grazed& g, std::uint64_t& total) {
   const double radius = uniform(random, 0.05, 2);
-  const auto model = random_points(random, {{-1, -1, -1}, {1, 1, 1}}, g.model_points);
   const Vec3 along = random_direction(random);
-  const Vec3 at{g.offset, -0.4 * g.offset, 1e-3 * g.offset};
-  const Pose from = random_rotation(random, at);
+  const Vec3 other = random_direction(random);
+  const Vec3 across{along.y * other.z - along.z * other.y, along.z * other.x - along.x * other.z,
+                    along.x * other.y - along.y * other.x};
+  const double width = std::sqrt(rounded_dot(across, across));
+  const Vec3 away{across.x / width, across.y / width, across.z / width};
+  const Pose from = random_rotation(random, {g.offset, -0.4 * g.offset, 1e-3 * g.offset});
   Pose to = from;
   for (int k = 0; k < 3; ++k) to.translation[k] += g.length * along[k];
   const std::vector<Pose> poses{from, to};
+  std::vector<Vec3> model;
+  for (std::size_t i = 0; i < g.model_points; ++i) {
+    const double t = i < 2 ? 1.0 - static_cast<double>(i) : uniform(random, 0, 1);
+    Vec3 m{};
+    for (int k = 0; k < 3; ++k) {
+      for (int row = 0; row < 3; ++row) m[k] += t * from.rotation[3 * row + k] * away[row];
+    }
+    model.push_back(m);
+  }
 
   const Vec3 a = transform(from, model[0]), b = transform(to, model[0]);
   const double t = uniform(random, 0.01, 0.99);
-  const Vec3 other = random_direction(random);
-  Vec3 away{along.y * other.z - along.z * other.y, along.z * other.x - along.x * other.z,
-            along.x * other.y - along.y * other.x};
-  const double width = std::sqrt(rounded_dot(away, away));
   Quantisation quantisation{};
   for (int k = 0; k < 3; ++k) {
     quantisation.scale[k] = g.jitter / 64;
-    quantisation.offset[k] = a[k] + t * (b[k] - a[k]) + radius * away[k] / width;
+    quantisation.offset[k] = a[k] + t * (b[k] - a[k]) + radius * away[k];
   }
   std::vector<Quantum> points;
   for (int i = 0; i < 200; ++i) {
@@ -179,8 +188,9 @@ std::uint64_t check_grazed(Random& random, const Grazed& g, std::uint64_t& total
 TEST_CASE("points at the radius from a segment, rounding apart") {
   const Grazed grazed =
       GENERATE(Grazed{0.1, 0, 1e-15, 1}, Grazed{3, 0, 4e-15, 1}, Grazed{3, 5e6, 4e-9, 1},
-               Grazed{2e3, 0, 1e-12, 1}, Grazed{2e3, 5e6, 4e-9, 20}, Grazed{1e7, 0, 1e-8, 1},
-               Grazed{1e12, 0, 1e-3, 1}, Grazed{1e-12, 1, 1e-15, 1});
+               Grazed{2e3, 0, 1e-12, 1}, Grazed{2e3, 5e6, 4e-9, 20}, Grazed{3, 5e6, 4e-9, 2},
+               Grazed{3, 0, 4e-15, 2}, Grazed{1e7, 0, 1e-8, 1}, Grazed{1e12, 0, 1e-3, 1},
+               Grazed{1e-12, 1, 1e-15, 1});
   CAPTURE(grazed.length, grazed.offset, grazed.jitter, grazed.model_points);
   Random random(23);
   std::uint64_t total = 0, hits = 0;
