@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -48,6 +49,16 @@ class ModelTree {
     return within(0, size(), 0, box, squared_radius, most, out);
   }
 
+  enum class Step { kSkip, kEnter, kTake };
+
+  /// Goes down the tree: step(box) tells whether to leave out the points of the box, to look
+  /// closer, or to answer true. Whether any box was taken or visit(point) was true; stops at the
+  /// first.
+  template <typename StepInto, typename Visit>
+  bool any(StepInto step, Visit visit) const {
+    return !empty() && any(0, size(), 0, step, visit);
+  }
+
   std::uint64_t allocated_bytes() const {
     return points_.capacity() * sizeof(Vec3) + boxes_.capacity() * sizeof(Box);
   }
@@ -76,6 +87,19 @@ class ModelTree {
     const std::uint32_t middle = begin + (end - begin) / 2;
     return any_within(begin, middle, 2 * node + 1, x, squared_radius, visit) ||
            any_within(middle, end, 2 * node + 2, x, squared_radius, visit);
+  }
+
+  template <typename StepInto, typename Visit>
+  bool any(std::uint32_t begin, std::uint32_t end, std::size_t node, StepInto& step,
+           Visit& visit) const {
+    const Step next = step(boxes_[node]);
+    if (next != Step::kEnter) return next == Step::kTake;
+    if (end - begin <= kLeafPoints) {
+      return std::any_of(points_.begin() + begin, points_.begin() + end, visit);
+    }
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    return any(begin, middle, 2 * node + 1, step, visit) ||
+           any(middle, end, 2 * node + 2, step, visit);
   }
 
   std::vector<Vec3> points_;

@@ -35,7 +35,8 @@ PullBack pull_back_of(const Pose& pose) {
 
 }  // namespace
 
-MotionTree::MotionTree(std::span<const Pose> poses, const Box& model) : poses_(poses) {
+MotionTree::MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses)
+    : poses_(poses), between_poses_(between_poses) {
   if (poses.empty()) return;
   pull_backs_.resize(poses.size());
   travelled_.resize(poses.size());
@@ -76,13 +77,15 @@ void MotionTree::add(std::uint32_t first, std::uint32_t count) {
 
 double MotionTree::delta_of(std::uint32_t node, const Box& model) const {
   const MotionNode& n = nodes_[node];
-  if (n.count == 1) return 0;
   if (n.count > kExactPoses) return delta_below(node, n.mid, kLevels, model);
   double delta = 0;
-  for (std::uint32_t i = n.first; i < n.first + n.count; ++i) {
+  const bool moves_on = between_poses_ && n.first + n.count < poses_.size();
+  for (std::uint32_t i = n.first; i < n.first + n.count + (moves_on ? 1 : 0); ++i) {
     if (i != n.mid) delta = std::max(delta, displacement_bound(model, poses_[n.mid], poses_[i]));
   }
-  return delta;
+  // Between poses, a computed hit may lie outside the radius by 4 u times the step's length, which
+  // is at most 2 delta (docs/numerics.md).
+  return between_poses_ ? delta * (1 + 16 * kUnitRoundoff) : delta;
 }
 
 /// From the nodes `levels` below, whose own delta is known: how far their poses are from `mid`.

@@ -15,7 +15,9 @@ struct MotionNode {
   std::uint32_t count;
   std::uint32_t mid;    ///< a pose of the range
   std::uint32_t later;  ///< node of the later half, 0 where count is 1
-  double delta;  ///< no model point is farther at any pose of the range from where it is at mid
+  /// No model point is farther at any pose of the range from where it is at mid; between poses, nor
+  /// at the pose after the range, so nowhere on its segments either.
+  double delta;
 };
 
 /// The true inverse of a pose's rotation, never its transpose: poses read from text are not quite
@@ -31,8 +33,9 @@ struct PullBack {
 /// et al. 2012), conservative advancement (Mirtich).
 class MotionTree {
  public:
-  /// `model` holds every model point; both must be finite.
-  MotionTree(std::span<const Pose> poses, const Box& model);
+  /// `model` holds every model point; both must be finite. between_poses: a pose's range includes
+  /// the motion on to the next pose.
+  MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses = false);
 
   std::span<const MotionNode> nodes() const { return nodes_; }
   std::span<const Pose> poses() const { return poses_; }
@@ -53,6 +56,7 @@ class MotionTree {
   double delta_below(std::uint32_t node, std::uint32_t mid, int levels, const Box& model) const;
 
   std::span<const Pose> poses_;
+  bool between_poses_;
   std::vector<double> travelled_;  ///< up to each pose, metres; only while building
   std::vector<MotionNode> nodes_;
   std::vector<PullBack> pull_backs_;

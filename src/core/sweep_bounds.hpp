@@ -1,13 +1,29 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
+#include "core/box.hpp"
+#include "core/predicate.hpp"
+
+/// What the filters of the sweep share.
 namespace clearway {
 
 inline constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 /// Widens a product or sum of a few roundings.
 inline constexpr double kRoundedUp = 1 + 16 * kUnitRoundoff;
+
+inline Vec3 centre_of(const Box& box) {
+  return {box.lo.x + 0.5 * (box.hi.x - box.lo.x), box.lo.y + 0.5 * (box.hi.y - box.lo.y),
+          box.lo.z + 0.5 * (box.hi.z - box.lo.z)};
+}
+
+/// At least the true one.
+inline double half_diagonal(const Box& box) {
+  const double x = box.hi.x - box.lo.x, y = box.hi.y - box.lo.y, z = box.hi.z - box.lo.z;
+  return 0.5 * std::sqrt(squared_length(x, y, z)) * kRoundedUp;
+}
 
 /// True only when sigma * sqrt(squared_lower) >= reach, rounding included; false for NaN and where
 /// the reach overflows.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/hit_set.hpp"
 #include "core/predicate.hpp"
 #include "core/sweep_bounds.hpp"
+#include "core/swept_step.hpp"
 
 namespace clearway {
 namespace {
@@ -14,6 +14,7 @@ namespace {
 /// A node of the motion tree is split for a box while it moves more than this many times the box's
 /// half diagonal.
 constexpr double kMotionPerBox = 1.0;
+
 double largest_coordinate(const PackedCloud& cloud) {
   if (cloud.tree().empty()) return 0;
   const Box box = position_box(cloud.quantisation(), cloud.tree()[0].box);
@@ -22,11 +23,6 @@ double largest_coordinate(const PackedCloud& cloud) {
     largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
   }
   return largest;
-}
-
-double half_diagonal(const Box& box) {
-  const double x = box.hi.x - box.lo.x, y = box.hi.y - box.lo.y, z = box.hi.z - box.lo.z;
-  return 0.5 * std::sqrt(squared_length(x, y, z)) * (1 + 16 * kUnitRoundoff);
 }
 
 /// Per pose the first of the equal ones that it follows without a break.
@@ -58,13 +54,18 @@ SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, con
                                 32 * field.voxel()) +
                 1e-150) {
   if (question.clearance > 0) first_equal_pose_ = first_equal_poses(question.poses);
+  // The part of a computed hit's error between poses that does not grow with the step.
+  if (question.between_poses) rounding_ += 8 * kUnitRoundoff * question.radius;
+}
+
+bool SweepFilter::moves_on(const MotionNode& node) const {
+  return question_.between_poses && node.count == 1 && node.first + 1 < question_.poses.size();
 }
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
   out.clear();
-  const Vec3 centre{box.lo.x + 0.5 * (box.hi.x - box.lo.x), box.lo.y + 0.5 * (box.hi.y - box.lo.y),
-                    box.lo.z + 0.5 * (box.hi.z - box.lo.z)};
+  const Vec3 centre = centre_of(box);
   const double rho = half_diagonal(box);
   const double limit =
       question_.clearance > 0 ? clearance_limit(centre, rho, nodes, statistics) : question_.radius;
@@ -100,9 +101,14 @@ void SweepFilter::narrow_node(const Vec3& centre, double rho, double limit, std:
   if (node.count > 1 && !(node.delta <= kMotionPerBox * rho)) {
     narrow_node(centre, rho, limit, index + 1, out, statistics);
     narrow_node(centre, rho, limit, node.later, out, statistics);
-  } else {
-    out.push_back(index);
+    return;
   }
+  const bool long_step = moves_on(node) && !(node.delta <= kMotionPerBox * rho);
+  if (long_step &&
+      !SweptStep(question_, motion_, model_, node.first, rounding_).may_touch(centre, rho)) {
+    return;
+  }
+  out.push_back(index);
 }
 
 SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
@@ -123,6 +129,10 @@ SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
   }
   if (node.count == 1) {
     ++statistics.exact_tests;
+    if (moves_on(node)) {
+      const SweptStep step(question_, motion_, model_, node.first, rounding_);
+      return step.touches(e) ? Verdict::kHitAtMid : Verdict::kDismissed;
+    }
     const double ball = (question_.radius + rounding_) / least * (1 + 16 * kUnitRoundoff);
     return model_.any_within(x, ball * ball * (1 + 16 * kUnitRoundoff), hits) ? Verdict::kHitAtMid
                                                                               : Verdict::kDismissed;

@@ -50,18 +50,20 @@ class SweepFilter {
   void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
 
-  /// Whether the model touches e at a pose of `nodes`.
+  /// Whether the model touches e at a pose of `nodes`, or between poses on the way from one to the
+  /// next.
   bool touches(const Vec3& e, std::span<const std::uint32_t> nodes,
                SweepStatistics& statistics) const;
 
-  /// The smallest pose of `nodes` at which the model touches e, or HitSet::kNever. `nodes` in the
-  /// order of their poses.
+  /// The smallest pose of `nodes` at or after which the model touches e, or HitSet::kNever. `nodes`
+  /// in the order of their poses.
   std::uint32_t first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
                            SweepStatistics& statistics) const;
 
  private:
   enum class Verdict { kDismissed, kHitAtMid, kOpen };
 
+  bool moves_on(const MotionNode& node) const;
   double clearance_limit(const Vec3& centre, double rho, std::span<const std::uint32_t> nodes,
                          SweepStatistics& statistics) const;
   void narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t node,

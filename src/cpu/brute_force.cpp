@@ -1,5 +1,7 @@
 #include "cpu/brute_force.hpp"
 
+#include <algorithm>
+
 #include "core/hit_set.hpp"
 #include "core/predicate.hpp"
 
@@ -8,25 +10,45 @@ namespace {
 
 constexpr std::size_t kPairsWorthThreads = 1'000'000;
 
+std::vector<Vec3> moved_model(const Question& question, std::size_t pose) {
+  std::vector<Vec3> moved;
+  moved.reserve(question.model.size());
+  for (const Vec3& m : question.model) moved.push_back(transform(question.poses[pose], m));
+  return moved;
+}
+
+bool touched(const Vec3& e, const std::vector<Vec3>& moved, double radius) {
+  for (const Vec3& m : moved) {
+    if (collides(e, m, radius)) return true;
+  }
+  return false;
+}
+
+/// The first pose of `e` as the segments from pose `i` to the next one give it, or kNever.
+std::uint32_t touching_pose(const Vec3& e, std::uint32_t i, const std::vector<Vec3>& from,
+                            const std::vector<Vec3>& to, double radius) {
+  if (touched(e, from, radius)) return i;
+  for (std::size_t m = 0; m < to.size(); ++m) {
+    if (collides_inside(e, from[m], to[m], radius)) return i;
+  }
+  return touched(e, to, radius) ? i + 1 : HitSet::kNever;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
                                                    const Question& question) {
   std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
+  const bool worth_threads = environment.size() * question.model.size() > kPairsWorthThreads;
   for (std::uint32_t i = 0; i < question.poses.size(); ++i) {
-    std::vector<Vec3> moved;
-    moved.reserve(question.model.size());
-    for (const Vec3& m : question.model) moved.push_back(transform(question.poses[i], m));
-    const bool worth_threads = environment.size() * moved.size() > kPairsWorthThreads;
+    const bool moves_on = question.between_poses && i + 1 < question.poses.size();
+    const std::vector<Vec3> from = moved_model(question, i);
+    const std::vector<Vec3> to = moves_on ? moved_model(question, i + 1) : std::vector<Vec3>();
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
-      if (first[e] != HitSet::kNever) continue;
-      for (const Vec3& m : moved) {
-        if (collides(environment[e], m, question.radius)) {
-          first[e] = i;
-          break;
-        }
-      }
+      if (first[e] <= i) continue;
+      const std::uint32_t pose = touching_pose(environment[e], i, from, to, question.radius);
+      first[e] = std::min(first[e], pose);
     }
   }
   return first;

@@ -117,7 +117,8 @@ void search_tasks(Shared& shared) {
     const std::uint64_t task = shared.next_task++;
     if (task >= shared.tasks.count()) break;
     const PoseTree poses(shared.question.poses, shared.tasks.first_pose(task),
-                         shared.tasks.poses(task), shared.model.box());
+                         shared.tasks.poses(task), shared.model.box(),
+                         shared.question.between_poses);
     search.search(poses, shared.model.node(shared.tasks.sphere(task)));
     if (const std::uint32_t done = shared.tasks.finish(task)) shared.progress.advance(done);
   }

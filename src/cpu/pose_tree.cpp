@@ -8,16 +8,17 @@
 namespace clearway {
 
 PoseTree::PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
-                   const Box& model) {
+                   const Box& model, bool between_poses) {
   nodes_.reserve(2 * count);
-  add(poses, first, count, model);
+  add(poses, first, count, model, between_poses);
 }
 
 std::uint32_t PoseTree::add(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
-                            const Box& model) {
+                            const Box& model, bool between_poses) {
   const std::uint32_t reference = first + count / 2;
   double motion = 0;
-  for (std::uint32_t i = first; i < first + count; ++i) {
+  const bool moves_on = between_poses && first + count < poses.size();
+  for (std::uint32_t i = first; i < first + count + (moves_on ? 1 : 0); ++i) {
     if (i != reference) {
       motion = std::max(motion, displacement_bound(model, poses[reference], poses[i]));
     }
@@ -29,8 +30,9 @@ std::uint32_t PoseTree::add(std::span<const Pose> poses, std::uint32_t first, st
   nodes_.push_back(
       {first, count, reference, 0, 0, motion + rounding, greatest_stretch_bound(poses[reference])});
   if (count > 1) {
-    const std::uint32_t earlier = add(poses, first, count / 2, model);
-    const std::uint32_t later = add(poses, first + count / 2, count - count / 2, model);
+    const std::uint32_t earlier = add(poses, first, count / 2, model, between_poses);
+    const std::uint32_t later =
+        add(poses, first + count / 2, count - count / 2, model, between_poses);
     nodes_[self].earlier = earlier;
     nodes_[self].later = later;
   }

@@ -9,9 +9,9 @@
 
 namespace clearway {
 
-/// A range of consecutive poses. At any of them a model point within distance d of a model point c
-/// lies within stretch * d + spread of transform(reference pose, c), rounding included
-/// (docs/numerics.md, "Motion").
+/// A range of consecutive poses. At any of them (between poses: also on the way to the next one) a
+/// model point within distance d of a model point c lies within stretch * d + spread of
+/// transform(reference pose, c), rounding included (docs/numerics.md, "Motion").
 struct PoseNode {
   std::uint32_t first;
   std::uint32_t count;
@@ -27,15 +27,16 @@ class PoseTree {
   static constexpr std::uint32_t kMostPoses = 32;
 
   /// Poses first .. first + count - 1 of `poses`, 0 < count <= kMostPoses; `model` holds every
-  /// model point.
-  PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count, const Box& model);
+  /// model point. between_poses: a pose's range includes the motion on to the next pose.
+  PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count, const Box& model,
+           bool between_poses = false);
 
   /// Node 0 is the root.
   const PoseNode& node(std::uint32_t index) const { return nodes_[index]; }
 
  private:
   std::uint32_t add(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
-                    const Box& model);
+                    const Box& model, bool between_poses);
 
   std::vector<PoseNode> nodes_;
 };

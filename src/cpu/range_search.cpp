@@ -43,10 +43,16 @@ RangeSearch::RangeSearch(const EnvironmentTree& environment, SettledPoints& sett
       hit_(kBatchPoints),
       moved_x_(model.largest_leaf()),
       moved_y_(model.largest_leaf()),
-      moved_z_(model.largest_leaf()) {}
+      moved_z_(model.largest_leaf()) {
+  if (!question.between_poses) return;
+  next_x_.resize(model.largest_leaf());
+  next_y_.resize(model.largest_leaf());
+  next_z_.resize(model.largest_leaf());
+}
 
 std::uint64_t RangeSearch::allocated_bytes() const {
-  const std::size_t doubles = 4 * x_.size() + squared_.size() + 3 * moved_x_.size();
+  const std::size_t doubles =
+      4 * x_.size() + squared_.size() + 3 * moved_x_.size() + 3 * next_x_.size();
   return cache_.allocated_bytes() + doubles * sizeof(double) + hit_.size() +
          candidates_.capacity() * sizeof(Candidate);
 }
@@ -202,14 +208,23 @@ void RangeSearch::refine_points(const Query& query, Points points) {
   for_each_half(query, [&](const Query& part) { search_points(part, points); });
 }
 
-/// Puts every pair of a point and a model point of the leaf to the predicate.
+/// Puts every pair of a point and a model point of the leaf, or its segment to the next pose, to
+/// the predicate.
 void RangeSearch::test_points(const Query& query, Points points) {
   const ModelSphere& leaf = query.sphere;
   const MutableColumns moved{moved_x_.data(), moved_y_.data(), moved_z_.data()};
-  transform_points(question_.poses[query.poses.first], model_.columns(leaf), leaf.padded, moved);
-  collide_any(columns(points), points.count, moved, leaf.padded, question_.radius, hit_.data());
+  const std::uint32_t pose = query.poses.first;
+  transform_points(question_.poses[pose], model_.columns(leaf), leaf.padded, moved);
+  if (question_.between_poses && pose + 1 < question_.poses.size()) {
+    const MutableColumns next{next_x_.data(), next_y_.data(), next_z_.data()};
+    transform_points(question_.poses[pose + 1], model_.columns(leaf), leaf.padded, next);
+    collide_any_on_step(columns(points), points.count, moved, next, leaf.padded, question_.radius,
+                        hit_.data());
+  } else {
+    collide_any(columns(points), points.count, moved, leaf.padded, question_.radius, hit_.data());
+  }
   for (std::size_t i = 0; i < points.count; ++i) {
-    if (hit_[i] != 0) settled_.mark(slots_[points.begin + i], query.poses.first);
+    if (hit_[i] != 0) settled_.mark(slots_[points.begin + i], pose);
   }
   tested_searches_ += leaf.count;
 }

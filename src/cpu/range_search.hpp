@@ -95,6 +95,7 @@ class RangeSearch {
   std::vector<double> squared_;
   std::vector<std::uint8_t> hit_;
   std::vector<double> moved_x_, moved_y_, moved_z_;
+  std::vector<double> next_x_, next_y_, next_z_;  ///< the same at the next pose; between poses only
   std::uint64_t tested_searches_ = 0;
 };
 

@@ -13,17 +13,20 @@ struct PredicateCase {
   Vec3 environment;
   Vec3 model;
   Pose pose;
+  Pose next;  ///< the model point moves to it from pose
   double radius;
 };
 
 struct PredicateAnswer {
   double squared_distance;
   bool hit;
+  bool inside;  ///< hit by the inside of the segment to the next pose
 };
 
 CLEARWAY_HD inline PredicateAnswer decide(const PredicateCase& c) {
   const Vec3 moved = transform(c.pose, c.model);
-  return {squared_distance(c.environment, moved), collides(c.environment, moved, c.radius)};
+  return {squared_distance(c.environment, moved), collides(c.environment, moved, c.radius),
+          collides_inside(c.environment, moved, transform(c.next, c.model), c.radius)};
 }
 
 /// Whether this machine has a CUDA device that the program can use.

@@ -55,6 +55,8 @@ std::vector<QuestionDifference> question_differences(const ResultHeader& a, cons
   differ("first poses", a.first_pose ? "asked for" : "not asked for",
          b.first_pose ? "asked for" : "not asked for");
   differ("clearance", clearance_text(a), clearance_text(b));
+  differ("motion", a.between_poses ? "between poses" : "at poses only",
+         b.between_poses ? "between poses" : "at poses only");
   differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
   differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
   return out;

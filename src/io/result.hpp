@@ -23,6 +23,7 @@ struct ResultHeader {
   double radius = 0;
   bool first_pose = false;
   double clearance = 0;  ///< metres, 0: not asked for
+  bool between_poses = false;
   Quantisation quantisation{};
   std::string crs_wkt;
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;

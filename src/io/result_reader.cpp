@@ -70,6 +70,7 @@ ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
   header.radius = read_number<double>(file, "radius", name);
   header.first_pose = read_number<std::uint8_t>(file, "first_pose", name) != 0;
   header.clearance = read_number<double>(file, "clearance", name);
+  header.between_poses = read_number<std::uint8_t>(file, "between_poses", name) != 0;
   read_axes(file, "scale", name, header.quantisation.scale);
   read_axes(file, "offset", name, header.quantisation.offset);
   header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);

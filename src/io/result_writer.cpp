@@ -41,6 +41,7 @@ void write_header(const hdf5::Id& file, const ResultHeader& header) {
   write_number(file, "radius", header.radius);
   write_number(file, "first_pose", static_cast<std::uint8_t>(header.first_pose));
   write_number(file, "clearance", header.clearance);
+  write_number(file, "between_poses", static_cast<std::uint8_t>(header.between_poses));
   hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
   hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);

@@ -20,9 +20,9 @@ Pose turned(double angle, const Vec3& p) {
 double distance(const Vec3& a, const Vec3& b) { return std::sqrt(squared_distance(a, b)); }
 
 /// Every node covers its poses, holds its mid, halves into its children, and its delta bounds the
-/// motion of random model points.
-void check_tree(const std::vector<Pose>& poses) {
-  const MotionTree tree(poses, kModel);
+/// motion of random model points, between poses to the next pose too.
+void check_tree(const std::vector<Pose>& poses, bool between_poses) {
+  const MotionTree tree(poses, kModel, between_poses);
   REQUIRE(tree.nodes().size() == 2 * poses.size() - 1);
   CHECK(tree.nodes()[0].count == poses.size());
   std::mt19937_64 random(3);
@@ -37,11 +37,13 @@ void check_tree(const std::vector<Pose>& poses) {
       covered &= earlier.first == node.first && later.first == node.first + earlier.count &&
                  earlier.count + later.count == node.count;
     } else {
-      covered &= node.later == 0 && node.delta == 0;
+      covered &= node.later == 0 && (between_poses || node.delta == 0);
     }
     for (int k = 0; k < 3; ++k) {
       const Vec3 m{-2 + 5 * unit(random), -1 + 2 * unit(random), 1.5 * unit(random)};
-      const auto pose = node.first + static_cast<std::uint32_t>(unit(random) * node.count);
+      const bool moves_on = between_poses && node.first + node.count < poses.size();
+      const auto pose =
+          node.first + static_cast<std::uint32_t>(unit(random) * (node.count + (moves_on ? 1 : 0)));
       bounded &= distance(transform(poses[pose], m), transform(poses[node.mid], m)) <= node.delta;
     }
   }
@@ -70,7 +72,8 @@ TEST_CASE("a motion tree covers its poses and bounds their motion") {
   SECTION("steps that double") {
     for (int i = 0; i < 300; ++i) poses.push_back(turned(0, {std::ldexp(1e-30, i), 0, 0}));
   }
-  check_tree(poses);
+  check_tree(poses, false);
+  check_tree(poses, true);
 }
 
 TEST_CASE("a jump separates the motion tree's halves") {

@@ -12,6 +12,48 @@ using namespace clearway;
 
 namespace {
 
+void spell_out_transform(const Pose& pose, const Vec3& model, double* m) {
+  for (int k = 0; k < 3; ++k) {
+    volatile double a = pose.rotation[3 * k] * model.x;
+    volatile double b = pose.rotation[3 * k + 1] * model.y;
+    volatile double sum = a + b;
+    a = pose.rotation[3 * k + 2] * model.z;
+    sum = sum + a;
+    sum = sum + pose.translation[k];
+    m[k] = sum;
+  }
+}
+
+double spell_out_dot(const double* a, const double* b) {
+  volatile double xx = a[0] * b[0], yy = a[1] * b[1], zz = a[2] * b[2];
+  volatile double sum = xx + yy;
+  sum = sum + zz;
+  return sum;
+}
+
+/// Of the segment to the next pose: whether the foot is inside, and w.w.
+struct Segment {
+  bool beside;
+  double squared;
+};
+
+Segment segment_of(const PredicateCase& c) {
+  double a[3], b[3], ab[3], ae[3], w[3];
+  spell_out_transform(c.pose, c.model, a);
+  spell_out_transform(c.next, c.model, b);
+  for (int k = 0; k < 3; ++k) {
+    ab[k] = b[k] - a[k];
+    ae[k] = c.environment[k] - a[k];
+  }
+  const double n = spell_out_dot(ae, ab), length = spell_out_dot(ab, ab);
+  volatile double g = n / length;
+  for (int k = 0; k < 3; ++k) {
+    volatile double along = g * ab[k];
+    w[k] = ae[k] - along;
+  }
+  return {0 < n && n < length, spell_out_dot(w, w)};
+}
+
 /// Pairs whose distance straddles the radius by a few ulps, near and far from the origin.
 std::vector<PredicateCase> cases_at_the_radius(std::size_t count) {
   std::mt19937_64 random(1);
@@ -27,6 +69,16 @@ std::vector<PredicateCase> cases_at_the_radius(std::size_t count) {
     const Vec3 away{unit(random), unit(random), unit(random)};
     c.environment = {moved.x + 0.1 * away.x, moved.y + 0.1 * away.y, moved.z + 0.1 * away.z};
     c.radius = std::sqrt(squared_distance(c.environment, moved));
+    c.next = c.pose;
+    if (i % 5 == 0) {
+      for (double& p : c.next.translation) p += unit(random);
+      const Vec3 b = transform(c.next, c.model);
+      const Vec3 beside{c.environment.x + 0.5 * (b.x - moved.x),
+                        c.environment.y + 0.5 * (b.y - moved.y),
+                        c.environment.z + 0.5 * (b.z - moved.z)};
+      c.environment = beside;
+      c.radius = std::sqrt(segment_of(c).squared);
+    }
     if (i % 3 == 0) c.radius = std::nextafter(c.radius, 1.0);
   }
   return cases;
@@ -34,32 +86,27 @@ std::vector<PredicateCase> cases_at_the_radius(std::size_t count) {
 
 /// The predicate spelt out, without the header's helpers.
 PredicateAnswer spelt_out(const PredicateCase& c) {
-  volatile double m[3], d[3];
-  for (int k = 0; k < 3; ++k) {
-    volatile double a = c.pose.rotation[3 * k] * c.model.x;
-    volatile double b = c.pose.rotation[3 * k + 1] * c.model.y;
-    volatile double sum = a + b;
-    a = c.pose.rotation[3 * k + 2] * c.model.z;
-    sum = sum + a;
-    m[k] = sum + c.pose.translation[k];
-    d[k] = c.environment[k] - m[k];
-  }
-  volatile double xx = d[0] * d[0], yy = d[1] * d[1], zz = d[2] * d[2], rr = c.radius * c.radius;
-  volatile double squared = xx + yy;
-  squared = squared + zz;
-  return {squared, squared < rr};
+  double m[3], d[3];
+  spell_out_transform(c.pose, c.model, m);
+  for (int k = 0; k < 3; ++k) d[k] = c.environment[k] - m[k];
+  const double squared = spell_out_dot(d, d);
+  volatile double rr = c.radius * c.radius;
+  const Segment segment = segment_of(c);
+  return {squared, squared < rr, segment.beside && segment.squared < rr};
 }
 
 void check_equal(const std::vector<PredicateCase>& cases,
                  const std::vector<PredicateAnswer>& answers) {
-  std::size_t differing = 0;
+  std::size_t differing = 0, inside = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const PredicateAnswer expected = spelt_out(cases[i]);
     differing += std::bit_cast<std::uint64_t>(expected.squared_distance) !=
                      std::bit_cast<std::uint64_t>(answers[i].squared_distance) ||
-                 expected.hit != answers[i].hit;
+                 expected.hit != answers[i].hit || expected.inside != answers[i].inside;
+    inside += expected.inside;
   }
   CHECK(differing == 0);
+  CHECK(inside > cases.size() / 100);
 }
 
 }  // namespace

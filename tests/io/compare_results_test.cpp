@@ -126,16 +126,20 @@ TEST_CASE("every part of the question that differs is named, the sets decide") {
   b.header.model_hash ^= 1;
   b.header.poses -= 1;
   b.header.radius = 0.25;
+  b.header.between_poses = true;
   b.header.quantisation.offset[2] += 1;
   b.header.crs_wkt = "LOCAL_CS[\"site\"]";
   const Comparison comparison = compare(a, b);
   CHECK(comparison.equal());
   std::vector<std::string> named;
   for (const QuestionDifference& question : comparison.questions) named.push_back(question.what);
-  CHECK(named == std::vector<std::string>{"model", "trajectory", "radius", "quantisation", "CRS"});
+  CHECK(named ==
+        std::vector<std::string>{"model", "trajectory", "radius", "motion", "quantisation", "CRS"});
   CHECK(comparison.questions[0].a == "1234 points, hash 0123456789abcdef");
   CHECK(comparison.questions[2].a == "0.1 m");
   CHECK(comparison.questions[2].b == "0.25 m");
+  CHECK(comparison.questions[3].a == "at poses only");
+  CHECK(comparison.questions[3].b == "between poses");
 }
 
 TEST_CASE("results about different environments are refused") {

@@ -16,6 +16,7 @@ TEST_CASE("a result is read as it was written") {
   const bool first_pose = GENERATE(false, true);
   const std::size_t count = GENERATE(0u, 1u, 3u, 65'535u, 65'536u, 65'537u, 200'000u);
   ResultHeader header = sample_header(first_pose);
+  header.between_poses = GENERATE(false, true);
   header.crs_wkt = GENERATE(std::string(), std::string("PROJCS[\"ETRS89 / UTM 32N — ä\"]"));
   const ResultRows rows = sample_rows(header, count);
   write_result(folder / "out.h5", header, rows);
@@ -65,7 +66,8 @@ TEST_CASE("results of different questions differ in their bytes") {
   const ResultHeader header = sample_header(false);
   write_result(folder / "a.h5", header, {});
   ResultHeader other = header;
-  other.radius = std::nextafter(header.radius, 1.0);
+  SECTION("radius") { other.radius = std::nextafter(header.radius, 1.0); }
+  SECTION("between poses") { other.between_poses = true; }
   write_result(folder / "b.h5", other, {});
   CHECK(bytes_of(folder / "a.h5") != bytes_of(folder / "b.h5"));
 }

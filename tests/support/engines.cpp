@@ -25,7 +25,7 @@ Answer sweep_with_clearances(const PackedCloud& cloud, const Question& question,
   }
   const ModelTree model(question.model);
   const ModelField field(model, question.radius, {.reach = question.clearance}, threads);
-  const MotionTree motion(question.poses, model.box());
+  const MotionTree motion(question.poses, model.box(), question.between_poses);
   const SweepFilter filter(question, motion, model, field, cloud);
   SweepEngine engine(cloud, filter);
   return run_cells(cloud, plan(cloud, motion, filter), engine, question, threads, progress);
@@ -39,15 +39,28 @@ const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep}};
 
 constexpr int kThreads = 3;
 
-std::uint64_t check_packed(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
-                           Question question) {
+/// First poses by brute force, at poses and between them.
+struct Expected {
+  Expected(const std::vector<Vec3>& positions, Question question) {
+    question.between_poses = false;
+    at_poses = brute_force_first_poses(positions, question);
+    question.between_poses = true;
+    between_poses = brute_force_first_poses(positions, question);
+  }
+
+  std::vector<std::uint32_t> at_poses, between_poses;
+};
+
+std::uint64_t check_answers(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
+                            Question question) {
   std::uint64_t colliding = 0;
   for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
   for (const Engine& engine : engines()) {
     for (const bool first_pose : {false, true}) {
       question.first_pose = first_pose;
       const HitSet hits = engine.run(cloud, question, kThreads);
-      CAPTURE(engine.name, first_pose, cloud.cell_points(), cloud.cells().size());
+      CAPTURE(engine.name, first_pose, question.between_poses, cloud.cell_points(),
+              cloud.cells().size());
       std::uint64_t wrong = 0;
       for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
         if (!cloud.is_used(slot)) {
@@ -100,16 +113,34 @@ Question with_clearance(Question question, double clearance, bool first_pose) {
   return question;
 }
 
+std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Question question) {
+  question.between_poses = true;
+  const std::uint64_t swept = check_answers(cloud, expected.between_poses, question);
+  question.between_poses = false;
+  const std::uint64_t colliding = check_answers(cloud, expected.at_poses, question);
+  CHECK(swept >= colliding);
+  return colliding;
+}
+
 }  // namespace
 
 std::span<const Engine> engines() { return kEngines; }
 
+std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
+                                               const Quantisation& quantisation,
+                                               Question question) {
+  question.between_poses = true;
+  const auto expected = brute_force_first_poses(positions_of(points, quantisation), question);
+  check_answers(MemoryCloud(points, quantisation, {128, 0}), expected, question);
+  return expected;
+}
+
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question, const MemoryCloudOptions& packing) {
   const auto environment = positions_of(points, quantisation);
-  const auto expected = brute_force_first_poses(environment, question);
+  const Expected expected(environment, question);
   const MemoryCloud cloud(points, quantisation, packing);
-  check_clearances(cloud, brute_force_clearances(environment, question), expected,
+  check_clearances(cloud, brute_force_clearances(environment, question), expected.at_poses,
                    with_clearance(question, 2.5 * question.radius, points.size() % 2 == 0));
   return check_packed(cloud, expected, question);
 }
@@ -117,7 +148,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question) {
   const auto environment = positions_of(points, quantisation);
-  const auto expected = brute_force_first_poses(environment, question);
+  const Expected expected(environment, question);
   const Oracle least = brute_force_clearances(environment, question);
   std::uint64_t colliding = 0;
   double of_radius = 0.4;
@@ -127,7 +158,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
         MemoryCloudOptions{128, 500}}) {
     const MemoryCloud cloud(points, quantisation, packing);
     colliding = check_packed(cloud, expected, question);
-    check_clearances(cloud, least, expected,
+    check_clearances(cloud, least, expected.at_poses,
                      with_clearance(question, of_radius * question.radius, first_pose));
     first_pose = !first_pose;
     of_radius *= 2.5;

@@ -18,13 +18,17 @@ struct Engine {
 
 std::span<const Engine> engines();
 
-/// Runs every engine on the points, packed in several ways, as a set and with first poses, and
-/// checks the answers against brute force; likewise clearances below and above the radius, where an
-/// engine has them. Returns the number of colliding points.
+/// Runs every engine on the points, packed in several ways, as a set and with first poses, at
+/// poses and between them, and checks the answers against brute force; likewise clearances below and
+/// above the radius, where an engine has them. Returns the number of points that collide at a pose.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question);
 
-/// The same for one way of packing them.
+/// Only between poses, in one packing. Returns every point's first pose, or HitSet::kNever.
+std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
+                                               const Quantisation& quantisation, Question question);
+
+/// The same as check_engines above for one way of packing them.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question, const MemoryCloudOptions& packing);
 

@@ -65,7 +65,7 @@ Answer run_sweep_engine(const Store& store, const Question& question, const Engi
   report.field_seconds = field_time.seconds();
 
   const Stopwatch plan_time;
-  const MotionTree motion(question.poses, model.box());
+  const MotionTree motion(question.poses, model.box(), question.between_poses);
   const SweepFilter filter(question, motion, model, field, store);
   const std::vector<PlannedCell> cells = plan(store, motion, filter);
   report.plan_seconds = plan_time.seconds();
@@ -87,6 +87,9 @@ Answer run_sweep_engine(const Store& store, const Question& question, const Engi
 
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
                   Progress& progress, EngineReport& report) {
+  if (question.clearance > 0 && question.between_poses) {
+    throw UsageError("--clearance and --between-poses cannot be combined: clearances are at poses");
+  }
   if (question.clearance > 0 && options.engine == "kdtree") {
     throw UsageError("--clearance: engine kdtree has no clearances; take --engine sweep");
   }

@@ -64,6 +64,7 @@ ordered_json describe(const ResultReader& result) {
           {"first_pose", h.first_pose},
           {"clearance", h.clearance},
           {"clearance_points", result.clearances()},
+          {"between_poses", h.between_poses},
           {"scale", h.quantisation.scale},
           {"offset", h.quantisation.offset},
           {"crs_wkt", h.crs_wkt},

@@ -29,6 +29,7 @@ struct Options {
   std::string device = "auto";
   bool first_pose = false;
   double clearance = 0;
+  bool between_poses = false;
   TrajectoryOptions trajectory_options;
   bool force = false;
   bool json = false;
@@ -61,6 +62,7 @@ ResultHeader header_of(const Inputs& inputs, const Options& options) {
           .radius = options.radius,
           .first_pose = options.first_pose,
           .clearance = options.clearance,
+          .between_poses = options.between_poses,
           .quantisation = metadata.quantisation,
           .crs_wkt = metadata.crs_wkt};
 }
@@ -108,8 +110,12 @@ void run_run(const Options& options) {
   Seconds seconds;
   const Inputs inputs(options);
   warn_of(inputs);
-  Question question{inputs.model, inputs.poses, options.radius, options.first_pose};
-  question.clearance = options.clearance;
+  const Question question{.model = inputs.model,
+                          .poses = inputs.poses,
+                          .radius = options.radius,
+                          .first_pose = options.first_pose,
+                          .between_poses = options.between_poses,
+                          .clearance = options.clearance};
   seconds.read = total.seconds();
   EngineReport engine;
   const Answer answer = run_engine(inputs.store, question, options.engine, progress, engine);
@@ -183,6 +189,8 @@ void add_run(CLI::App& program) {
                    "comes closer to than this, for example 0.5; engine sweep only")
       ->type_name("METRES")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--between-poses", options->between_poses,
+                    "Move every model point on a straight segment from each pose to the next");
   command->add_option("--engine", options->engine.engine, "sweep or kdtree; auto takes sweep")
       ->check(CLI::IsMember({"auto", "sweep", "kdtree"}))
       ->capture_default_str();
@@ -199,7 +207,10 @@ void add_run(CLI::App& program) {
   command->add_flag("--force", options->force, "Overwrite an existing result");
   command->add_flag("--json", options->json, "Print one JSON object about the run");
   command->footer(
-      "A point collides when it is strictly closer than the radius to a model point at a pose.\n"
+      "A point collides when it is strictly closer than the radius to a model point at a pose,\n"
+      "with --between-poses also on the way from a pose to the next. Its first pose is then the "
+      "one\n"
+      "that the way starts from.\n"
       "The result is the same for every engine, number of threads and memory bound.\n"
       "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
       "-o out.h5");
