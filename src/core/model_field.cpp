@@ -13,7 +13,8 @@ constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 /// The coarse lattice reaches this many of its steps beyond the model.
 constexpr double kMarginSteps = 3;
-/// A voxel is no smaller than this many spacings of the model's points.
+/// A voxel is no smaller than this many spacings of the model's points, between half the radius and
+/// twice the radius.
 constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
 
@@ -71,9 +72,10 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
 void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
   const Box& box = tree_.box();
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
+  const double wanted = std::clamp(kVoxelSpacings * tree_.spacing(), radius / 2, 2 * radius);
   // A field much finer than the model's points, or than their rounding, serves nobody.
   const double least = 1e-7 * (length(extent) + length(box.hi) + length(box.lo)) + 1e-100;
-  voxel_ = options.voxel > 0 ? options.voxel : std::max({radius / 2, kVoxelSpacings * tree_.spacing(), least});
+  voxel_ = options.voxel > 0 ? options.voxel : std::max(wanted, least);
   const auto coarse_bytes = [&] {
     double nodes = 1;
     for (int k = 0; k < 3; ++k) {

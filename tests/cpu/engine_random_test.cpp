@@ -79,7 +79,7 @@ std::uint64_t check_random_scene(std::uint64_t seed) {
 
 TEST_CASE("random scenes") {
   std::uint64_t with_hits = 0;
-  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     CAPTURE(seed);
     with_hits += check_random_scene(seed) > 0;
   }

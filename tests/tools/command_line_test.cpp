@@ -232,7 +232,7 @@ TEST_CASE("run --json prints one object with all that was asked for") {
     CHECK(report["seconds"][key].is_number());
   }
   CHECK(report["environment_points"] == 30000);
-  CHECK(report["engine"] == "kdtree");
+  CHECK(report["engine"] == "sweep");
   CHECK(report["cells_total"] == 1);
   CHECK(report["bytes_read"] > 30000);
 }
