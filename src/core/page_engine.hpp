@@ -1,0 +1,56 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/clearance_set.hpp"
+#include "core/page.hpp"
+
+namespace clearway {
+
+/// A cell within reach of the trajectory, and the nodes of the motion tree that may touch it, in
+/// the order of their poses.
+struct PlannedCell {
+  std::uint32_t cell;
+  std::vector<std::uint32_t> nodes;
+};
+
+using Clock = std::chrono::steady_clock;
+
+struct Interval {
+  Clock::time_point begin, end;
+};
+
+/// What an engine found in the cells of a page, in their order.
+struct PageAnswer {
+  std::span<const std::uint64_t> hits;         ///< blocks_per_cell words a cell, bit i is point i
+  std::span<const std::uint32_t> first_poses;  ///< where asked for, blocks_per_cell * 64 a cell
+  std::span<const Clearance> clearances;       ///< likewise
+  Interval upload{}, compute{};                ///< when the page was sent, and searched
+};
+
+/// The one interface by which the pipeline knows an engine that works cell by cell. A slot holds
+/// one page at a time: filled by the pipeline, then start, then finish. Different slots may be used
+/// by different threads at once.
+class PageEngine {
+ public:
+  virtual ~PageEngine() = default;
+
+  /// How many pages may be in flight, over all devices.
+  virtual std::uint32_t slots() const = 0;
+
+  /// The memory of a slot's page, to be filled: as many bytes in every slot, on kPageAlignment.
+  virtual std::span<std::byte> page(std::uint32_t slot) = 0;
+
+  /// Starts the search of the page in the slot, whose shape fits it. A GPU goes on by itself.
+  virtual void start(std::uint32_t slot, const PageShape& shape) = 0;
+
+  /// Waits for the answer, which stays valid until the slot is started again. Throws what became of
+  /// the search.
+  virtual PageAnswer finish(std::uint32_t slot) = 0;
+};
+
+}  // namespace clearway
