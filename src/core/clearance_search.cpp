@@ -20,7 +20,7 @@ constexpr std::size_t kMostNearPoints = 256;
 ClearanceSearch::ClearanceSearch(const SweepFilter& filter)
     : filter_(filter),
       motion_(filter.motion()),
-      limit_(rounded_product(filter.question().clearance, filter.question().clearance)),
+      limit_(rounded_product(filter.ref().clearance, filter.ref().clearance)),
       guess_(filter.model().point(0)) {}
 
 Clearance ClearanceSearch::nearest(const Vec3& e, std::span<const std::uint32_t> nodes,
@@ -46,7 +46,7 @@ Clearance ClearanceSearch::nearest(const Vec3& e, std::span<const std::uint32_t>
 ClearanceSearch::Look ClearanceSearch::look(std::uint32_t index) {
   ++statistics_->point_tests;
   const std::uint32_t mid = motion_.nodes()[index].mid;
-  const ModelField::Bounds bounds = filter_.field().bounds(motion_.pulled_back(mid, e_));
+  const ModelField::Bounds bounds = filter_.ref().field.bounds(motion_.pulled_back(mid, e_));
   const Look seen{index, bounds.near, bounds.squared_lower};
   if (bounds.near != ModelField::kNone && !is_given_up(seen)) {
     offer(filter_.first_equal_pose(mid), filter_.model().point(bounds.near));
@@ -124,14 +124,14 @@ void ClearanceSearch::search_pose(std::uint32_t pose, std::uint32_t near) {
   if (farther(least, nearest.squared_distance, reach_)) return;
   offer(pose, model.point(nearest.point));
   const double ball = reach_ / least * kRoundedUp;
-  model.any_within(x, ball * ball * kRoundedUp, [&](const Vec3& m) {
+  model.ref().any_within(x, ball * ball * kRoundedUp, [&](const Vec3& m) {
     offer(pose, m);
     return false;
   });
 }
 
 void ClearanceSearch::offer(std::uint32_t pose, const Vec3& m) {
-  const double squared = squared_distance(e_, transform(filter_.question().poses[pose], m));
+  const double squared = squared_distance(e_, transform(motion_.poses()[pose], m));
   const bool better = squared < best_.squared;
   if (!better && !(squared == best_.squared && pose < best_.pose)) return;
   guess_pose_ = pose;
@@ -141,7 +141,7 @@ void ClearanceSearch::offer(std::uint32_t pose, const Vec3& m) {
 
 void ClearanceSearch::set_best(double squared, std::uint32_t pose) {
   best_ = {squared, pose};
-  reach_ = std::sqrt(squared) * kRoundedUp + filter_.rounding();
+  reach_ = std::sqrt(squared) * kRoundedUp + filter_.ref().rounding;
 }
 
 }  // namespace clearway

@@ -9,8 +9,6 @@
 namespace clearway {
 namespace {
 
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-
 /// The coarse lattice reaches this many of its steps beyond the model.
 constexpr double kMarginSteps = 3;
 /// A voxel is no smaller than this many spacings of the model's points, between half the radius and
@@ -29,28 +27,6 @@ float rounded_down(double squared) {
 }
 
 double length(const Vec3& v) { return std::sqrt(squared_length(v.x, v.y, v.z)); }
-
-/// Position within a lattice: the cell of x and the fractions in it, clamped to [0, 1].
-struct Place {
-  std::uint32_t cell[3];
-  double fraction[3];
-};
-
-/// sum w_k f_k over the corners of a cell, corner (0, 0, 0) first.
-template <typename At>
-double interpolated(const double (&f)[3], At at) {
-  const auto along_x = [&](int y, int z) { return (1 - f[0]) * at(0, y, z) + f[0] * at(1, y, z); };
-  const auto along_y = [&](int z) { return (1 - f[1]) * along_x(0, z) + f[1] * along_x(1, z); };
-  return (1 - f[2]) * along_y(0) + f[2] * along_y(1);
-}
-
-/// d_M^2(x) - |x|^2 is a minimum of linear functions of x, hence concave: the interpolation of d^2
-/// exceeds d^2 by at most step^2 sum f (1 - f). `slack` covers the rounding of all of it.
-double concave_bound(double mean, const double (&f)[3], double step) {
-  const double bend = f[0] * (1 - f[0]) + f[1] * (1 - f[1]) + f[2] * (1 - f[2]);
-  const double excess = step * step * bend;
-  return std::max(0.0, mean - excess - (mean + excess) * (64 * kUnitRoundoff));
-}
 
 }  // namespace
 
@@ -195,57 +171,19 @@ void ModelField::fill_bricks(int threads) {
   }
 }
 
-/// place: in coarse steps from the origin, anywhere.
-std::uint32_t ModelField::near_coarse_node(const double (&place)[3]) const {
-  if (coarse_nearest_.empty()) return kNone;
-  std::size_t at = 0;
-  for (int k = 2; k >= 0; --k) {
-    const double last = size_[k] - 1;
-    const double node = place[k] > 0 ? std::min(place[k] + 0.5, last) : 0;
-    at = at * size_[k] + static_cast<std::size_t>(node);
-  }
-  return coarse_nearest_[at];
-}
-
-ModelField::Bounds ModelField::bounds(const Vec3& x) const {
-  double place[3];
-  std::uint32_t cell[3];
-  for (int k = 0; k < 3; ++k) place[k] = (x[k] - origin_[k]) / coarse_;
-  for (int k = 0; k < 3; ++k) {
-    if (!(place[k] >= 0 && place[k] < size_[k] - 1)) {
-      return {least_squared_distance(tree_.box(), x), near_coarse_node(place)};
-    }
-  }
-  const double whole[3] = {place[0], place[1], place[2]};
-  for (int k = 0; k < 3; ++k) {
-    cell[k] = static_cast<std::uint32_t>(place[k]);
-    place[k] -= cell[k];
-  }
-  const std::size_t at = (std::size_t{cell[2]} * size_[1] + cell[1]) * size_[0] + cell[0];
-  const std::uint32_t brick = brick_of_[at];
-  if (brick == kNoBrick) {
-    const float* corner = coarse_squared_.data() + at;
-    const std::size_t row = size_[0], layer = std::size_t{size_[0]} * size_[1];
-    const double mean = interpolated(place, [&](int i, int j, int k) {
-      return static_cast<double>(corner[i + j * row + k * layer]);
-    });
-    return {concave_bound(mean, place, coarse_), near_coarse_node(whole)};
-  }
-  std::uint32_t fine[3], round[3];
-  for (int k = 0; k < 3; ++k) {
-    place[k] *= kBrick;
-    fine[k] = std::min(static_cast<std::uint32_t>(place[k]), kBrick - 1);
-    place[k] -= fine[k];
-    round[k] = fine[k] + (place[k] >= 0.5 ? 1 : 0);
-  }
-  constexpr std::uint32_t kRow = kBrick + 1;
-  const std::size_t first = std::size_t{brick} * kBrickNodes;
-  const float* corner = distances_.data() + first + (fine[2] * kRow + fine[1]) * kRow + fine[0];
-  const double mean = interpolated(place, [&](int i, int j, int k) {
-    return static_cast<double>(corner[(static_cast<std::uint32_t>(k) * kRow + j) * kRow + i]);
-  });
-  return {concave_bound(mean, place, voxel_),
-          nearest_[first + (round[2] * kRow + round[1]) * kRow + round[0]]};
+ModelFieldRef ModelField::ref() const {
+  return {.model = tree_.box(),
+          .coarse = coarse_,
+          .voxel = voxel_,
+          .per_metre = 1 / coarse_,
+          .origin = origin_,
+          .size = {size_[0], size_[1], size_[2]},
+          .bricks = static_cast<std::uint32_t>(bricks()),
+          .coarse_squared = coarse_squared_.data(),
+          .coarse_nearest = coarse_nearest_.empty() ? nullptr : coarse_nearest_.data(),
+          .brick_of = brick_of_.data(),
+          .distances = distances_.data(),
+          .nearest = nearest_.data()};
 }
 
 std::uint64_t ModelField::allocated_bytes() const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/model_field_ref.hpp"
 #include "core/model_tree.hpp"
 
 namespace clearway {
@@ -26,22 +27,21 @@ class ModelField {
   /// radius: the band around the model in which the descent ends. Uses OpenMP with `threads`.
   ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options, int threads);
 
-  struct Bounds {
-    double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
-    std::uint32_t near;    ///< a model point near x, or kNone; never kNone with a reach
-  };
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  using Bounds = ModelFieldRef::Bounds;
+  static constexpr std::uint32_t kNone = ModelFieldRef::kNone;
 
-  Bounds bounds(const Vec3& x) const;
+  /// Valid while the field lives.
+  ModelFieldRef ref() const;
+  Bounds bounds(const Vec3& x) const { return ref().bounds(x); }
 
   double voxel() const { return voxel_; }
   std::uint64_t bricks() const { return distances_.size() / kBrickNodes; }
   std::uint64_t allocated_bytes() const;
 
  private:
-  static constexpr std::uint32_t kBrick = 8;  // fine voxels along a coarse one
-  static constexpr std::uint32_t kBrickNodes = (kBrick + 1) * (kBrick + 1) * (kBrick + 1);
-  static constexpr std::uint32_t kNoBrick = 0xffffffff;
+  static constexpr std::uint32_t kBrick = ModelFieldRef::kBrick;
+  static constexpr std::uint32_t kBrickNodes = ModelFieldRef::kBrickNodes;
+  static constexpr std::uint32_t kNoBrick = ModelFieldRef::kNoBrick;
 
   void choose_voxel(double radius, const ModelFieldOptions& options);
   double band(double radius, double reach) const;
@@ -50,7 +50,6 @@ class ModelField {
   void fill_coarse(bool with_nearest, int threads);
   std::uint64_t mark_bricks(double band, int threads);
   void fill_bricks(int threads);
-  std::uint32_t near_coarse_node(const double (&place)[3]) const;
   Vec3 coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t iz) const;
 
   const ModelTree& tree_;

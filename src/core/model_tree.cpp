@@ -71,39 +71,6 @@ void ModelTree::build(std::uint32_t begin, std::uint32_t end, std::size_t node) 
   build(middle, end, 2 * node + 2);
 }
 
-ModelTree::Nearest ModelTree::nearest(const Vec3& x, std::uint32_t guess) const {
-  Nearest best{guess, squared_distance(points_[guess], x)};
-  search(0, size(), 0, x, best);
-  return best;
-}
-
-void ModelTree::search(std::uint32_t begin, std::uint32_t end, std::size_t node, const Vec3& x,
-                       Nearest& best) const {
-  if (end - begin <= kLeafPoints) {
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const double squared = squared_distance(points_[i], x);
-      if (squared < best.squared_distance) best = {i, squared};
-    }
-    return;
-  }
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  const double left = least_squared_distance(boxes_[2 * node + 1], x);
-  const double right = least_squared_distance(boxes_[2 * node + 2], x);
-  const auto visit_left = [&] {
-    if (left < best.squared_distance) search(begin, middle, 2 * node + 1, x, best);
-  };
-  const auto visit_right = [&] {
-    if (right < best.squared_distance) search(middle, end, 2 * node + 2, x, best);
-  };
-  if (left <= right) {
-    visit_left();
-    visit_right();
-  } else {
-    visit_right();
-    visit_left();
-  }
-}
-
 bool ModelTree::within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
                        double squared_radius, std::size_t most, std::vector<Vec3>& out) const {
   if (begin == end || least_squared_distance(boxes_[node], box) > squared_radius) return true;

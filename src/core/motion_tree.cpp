@@ -3,14 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/rigid.hpp"
+#include "core/sweep_bounds.hpp"
 
 namespace clearway {
 namespace {
-
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 /// Ranges up to this long get their delta pose by pose, longer ones from nodes kLevels below.
 constexpr std::uint32_t kExactPoses = 8;
@@ -24,6 +22,7 @@ PullBack pull_back_of(const Pose& pose) {
   std::copy(inverse.data(), inverse.data() + 9, inverse_pose.rotation);
   PullBack out{};
   std::copy(inverse.data(), inverse.data() + 9, out.inverse);
+  std::copy(pose.translation, pose.translation + 3, out.translation);
   out.greatest = greatest_stretch_bound(pose);
   // Singular values of the inverse are the reciprocals; the inverse by cofactors errs by less than
   // 20 u condition^2 (docs/numerics.md, "Sweep").
@@ -85,7 +84,7 @@ double MotionTree::delta_of(std::uint32_t node, const Box& model) const {
   }
   // Between poses, a computed hit may lie outside the radius by 4 u times the step's length, which
   // is at most 2 delta (docs/numerics.md).
-  return between_poses_ ? delta * (1 + 16 * kUnitRoundoff) : delta;
+  return between_poses_ ? delta * kRoundedUp : delta;
 }
 
 /// From the nodes `levels` below, whose own delta is known: how far their poses are from `mid`.
@@ -98,14 +97,6 @@ double MotionTree::delta_below(std::uint32_t node, std::uint32_t mid, int levels
   }
   const double between = n.mid == mid ? 0 : displacement_bound(model, poses_[mid], poses_[n.mid]);
   return (n.delta + between) * (1 + 4 * kUnitRoundoff);
-}
-
-Vec3 MotionTree::pulled_back(std::uint32_t pose, const Vec3& e) const {
-  const double* p = poses_[pose].translation;
-  const double* m = pull_backs_[pose].inverse;
-  const double x = e.x - p[0], y = e.y - p[1], z = e.z - p[2];
-  return {m[0] * x + m[1] * y + m[2] * z, m[3] * x + m[4] * y + m[5] * z,
-          m[6] * x + m[7] * y + m[8] * z};
 }
 
 double MotionTree::rounding(double reach) const {

@@ -5,28 +5,9 @@
 #include <vector>
 
 #include "core/box.hpp"
-#include "core/pose.hpp"
+#include "core/motion_tree_ref.hpp"
 
 namespace clearway {
-
-/// A range of consecutive poses around one of them. Preorder: the earlier half is the next node.
-struct MotionNode {
-  std::uint32_t first;
-  std::uint32_t count;
-  std::uint32_t mid;    ///< a pose of the range
-  std::uint32_t later;  ///< node of the later half, 0 where count is 1
-  /// No model point is farther at any pose of the range from where it is at mid; between poses, nor
-  /// at the pose after the range, so nowhere on its segments either.
-  double delta;
-};
-
-/// The true inverse of a pose's rotation, never its transpose: poses read from text are not quite
-/// rigid.
-struct PullBack {
-  double inverse[9];  ///< row-major
-  double least;       ///< at most the least singular value of the rotation
-  double greatest;    ///< at least the greatest
-};
 
 /// A binary tree over a trajectory, split where half of the motion is done, so that a jump or a
 /// long stop costs nothing. Prior art: the inverted trajectory of NC milling simulation (Sullivan
@@ -42,7 +23,13 @@ class MotionTree {
   const PullBack& pull_back(std::uint32_t pose) const { return pull_backs_[pose]; }
 
   /// x with transform(pose, x) = e, up to a rounding of at most rounding() metres times `greatest`.
-  Vec3 pulled_back(std::uint32_t pose, const Vec3& e) const;
+  Vec3 pulled_back(std::uint32_t pose, const Vec3& e) const { return pull_backs_[pose].apply(e); }
+
+  /// Valid while the tree and the poses live.
+  MotionTreeRef ref() const {
+    return {nodes_.data(), pull_backs_.data(), poses_.data(),
+            static_cast<std::uint32_t>(poses_.size())};
+  }
 
   /// What all roundings of a test at a node, predicate and pull-back, amount to at the most in
   /// metres, for environment points with coordinates of at most `reach` (docs/numerics.md).

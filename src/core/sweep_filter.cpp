@@ -4,16 +4,11 @@
 #include <cmath>
 
 #include "core/hit_set.hpp"
-#include "core/predicate.hpp"
-#include "core/sweep_bounds.hpp"
-#include "core/swept_step.hpp"
 
 namespace clearway {
 namespace {
 
-/// A node of the motion tree is split for a box while it moves more than this many times the box's
-/// half diagonal.
-constexpr double kMotionPerBox = 1.0;
+using Verdict = SweepRef::Verdict;
 
 double largest_coordinate(const PackedCloud& cloud) {
   if (cloud.tree().empty()) return 0;
@@ -34,32 +29,30 @@ std::vector<std::uint32_t> first_equal_poses(std::span<const Pose> poses) {
   return first;
 }
 
-}  // namespace
-
-void SweepStatistics::add(const SweepStatistics& other) {
-  node_tests += other.node_tests;
-  point_tests += other.point_tests;
-  exact_tests += other.exact_tests;
-  points_tested += other.points_tested;
+double rounding_of(const Question& question, const MotionTree& motion, const ModelField& field,
+                   const PackedCloud& cloud) {
+  const double farthest = std::max(question.radius, question.clearance);
+  const double rounding =
+      motion.rounding(largest_coordinate(cloud) + farthest + 32 * field.voxel()) + 1e-150;
+  // Between poses, the part of a computed hit's error that does not grow with the step.
+  return question.between_poses ? rounding + 8 * kUnitRoundoff * question.radius : rounding;
 }
+
+}  // namespace
 
 SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, const ModelTree& model,
                          const ModelField& field, const PackedCloud& cloud)
-    : question_(question),
-      motion_(motion),
+    : motion_(motion),
       model_(model),
-      field_(field),
-      rounding_(motion.rounding(largest_coordinate(cloud) +
-                                std::max(question.radius, question.clearance) +
-                                32 * field.voxel()) +
-                1e-150) {
+      ref_{.motion = motion.ref(),
+           .model = model.ref(),
+           .field = field.ref(),
+           .radius = question.radius,
+           .clearance = question.clearance,
+           .rounding = rounding_of(question, motion, field, cloud),
+           .first_pose = question.first_pose,
+           .between_poses = question.between_poses} {
   if (question.clearance > 0) first_equal_pose_ = first_equal_poses(question.poses);
-  // The part of a computed hit's error between poses that does not grow with the step.
-  if (question.between_poses) rounding_ += 8 * kUnitRoundoff * question.radius;
-}
-
-bool SweepFilter::moves_on(const MotionNode& node) const {
-  return question_.between_poses && node.count == 1 && node.first + 1 < question_.poses.size();
 }
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
@@ -68,76 +61,36 @@ void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
   const Vec3 centre = centre_of(box);
   const double rho = half_diagonal(box);
   const double limit =
-      question_.clearance > 0 ? clearance_limit(centre, rho, nodes, statistics) : question_.radius;
+      ref_.clearance > 0
+          ? ref_.clearance_limit(centre, rho, nodes.data(),
+                                 static_cast<std::uint32_t>(nodes.size()), statistics)
+          : ref_.radius;
   for (const std::uint32_t node : nodes) narrow_node(centre, rho, limit, node, out, statistics);
-}
-
-/// A distance beyond which nothing matters to any point of the box: the clearance asked for, or
-/// what a pair found at a mid keeps them all below; never less than a radius still to be searched.
-double SweepFilter::clearance_limit(const Vec3& centre, double rho,
-                                    std::span<const std::uint32_t> nodes,
-                                    SweepStatistics& statistics) const {
-  double squared = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t index : nodes) {
-    ++statistics.node_tests;
-    const std::uint32_t mid = motion_.nodes()[index].mid;
-    const std::uint32_t near = field_.bounds(motion_.pulled_back(mid, centre)).near;
-    if (near == ModelField::kNone) continue;
-    const Vec3 moved = transform(question_.poses[mid], model_.point(near));
-    squared = std::min(squared, squared_distance(centre, moved));
-  }
-  const double upper = std::sqrt(squared) * kRoundedUp + rho + rounding_;
-  const double limit = std::min(question_.clearance * kRoundedUp, upper);
-  return hits_follow_from_clearance(question_) ? limit : std::max(limit, question_.radius);
 }
 
 void SweepFilter::narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t index,
                               std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
-  const MotionNode& node = motion_.nodes()[index];
   ++statistics.node_tests;
-  const Vec3 x = motion_.pulled_back(node.mid, centre);
-  const double reach = limit + node.delta + rho + rounding_;
-  if (farther(motion_.pull_back(node.mid).least, field_.bounds(x).squared_lower, reach)) return;
-  if (node.count > 1 && !(node.delta <= kMotionPerBox * rho)) {
-    narrow_node(centre, rho, limit, index + 1, out, statistics);
-    narrow_node(centre, rho, limit, node.later, out, statistics);
-    return;
+  const MotionNode& node = motion_.nodes()[index];
+  switch (ref_.fate_of(node, centre, rho, limit)) {
+    case SweepRef::Fate::kDismissed:
+      return;
+    case SweepRef::Fate::kKept:
+      out.push_back(index);
+      return;
+    case SweepRef::Fate::kSplit:
+      narrow_node(centre, rho, limit, index + 1, out, statistics);
+      narrow_node(centre, rho, limit, node.later, out, statistics);
   }
-  const bool long_step = moves_on(node) && !(node.delta <= kMotionPerBox * rho);
-  if (long_step &&
-      !SweptStep(question_, motion_, model_, node.first, rounding_).may_touch(centre, rho)) {
-    return;
-  }
-  out.push_back(index);
 }
 
-SweepFilter::Verdict SweepFilter::test(const Vec3& e, const MotionNode& node,
-                                       SweepStatistics& statistics, double& squared_lower) const {
+Verdict SweepFilter::test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
+                          double& squared_lower) const {
   ++statistics.point_tests;
-  const Vec3 x = motion_.pulled_back(node.mid, e);
-  const double least = motion_.pull_back(node.mid).least;
-  const double reach = question_.radius + node.delta + rounding_;
-  const ModelField::Bounds bounds = field_.bounds(x);
-  squared_lower = bounds.squared_lower;
-  if (farther(least, bounds.squared_lower, reach)) return Verdict::kDismissed;
-  const Pose& pose = question_.poses[node.mid];
-  const auto hits = [&](const Vec3& m) {
-    return collides(e, transform(pose, m), question_.radius);
-  };
-  if (bounds.near != ModelField::kNone && hits(model_.point(bounds.near))) {
-    return Verdict::kHitAtMid;
-  }
-  if (node.count == 1) {
-    ++statistics.exact_tests;
-    if (moves_on(node)) {
-      const SweptStep step(question_, motion_, model_, node.first, rounding_);
-      return step.touches(e) ? Verdict::kHitAtMid : Verdict::kDismissed;
-    }
-    const double ball = (question_.radius + rounding_) / least * (1 + 16 * kUnitRoundoff);
-    return model_.any_within(x, ball * ball * (1 + 16 * kUnitRoundoff), hits) ? Verdict::kHitAtMid
-                                                                              : Verdict::kDismissed;
-  }
-  return Verdict::kOpen;
+  const Verdict verdict = ref_.look(e, node, squared_lower);
+  if (verdict != Verdict::kOpen || node.count > 1) return verdict;
+  ++statistics.exact_tests;
+  return ref_.touches_at(e, node) ? Verdict::kHitAtMid : Verdict::kDismissed;
 }
 
 bool SweepFilter::touches(const Vec3& e, std::span<const std::uint32_t> nodes,

@@ -23,9 +23,8 @@ class CellSearch {
         chunks_(cloud.coordinates(cell)) {
     answer_.cell = cell;
     answer_.hits.resize(cloud.blocks_per_cell());
-    if (filter.question().first_pose)
-      answer_.first_poses.resize(cloud.cell_slots(), HitSet::kNever);
-    if (filter.question().clearance > 0) {
+    if (filter.ref().first_pose) answer_.first_poses.resize(cloud.cell_slots(), HitSet::kNever);
+    if (filter.ref().clearance > 0) {
       answer_.clearances.resize(cloud.cell_slots());
       clearance_search_.emplace(filter);
     }
@@ -72,7 +71,7 @@ class CellSearch {
     for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
     for (std::uint32_t i = 0; i < count; ++i) {
       const Vec3 e = position(cloud_.quantisation(), q[0][i], q[1][i], q[2][i]);
-      const bool hit = clearance_search_ && hits_follow_from_clearance(filter_.question())
+      const bool hit = clearance_search_ && filter_.ref().hits_follow_from_clearance()
                            ? search_clearance(e, begin + i, nodes)
                            : search_hit(e, begin + i, nodes);
       answer_.hits[block] |= std::uint64_t{hit} << i;
@@ -81,7 +80,7 @@ class CellSearch {
 
   /// Whether the point collides.
   bool search_hit(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes) {
-    const Question& question = filter_.question();
+    const SweepRef& question = filter_.ref();
     bool hit = false;
     if (question.first_pose) {
       const std::uint32_t pose = filter_.first_pose(e, nodes, statistics_);
@@ -101,7 +100,7 @@ class CellSearch {
   bool search_clearance(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes) {
     const Clearance clearance = clearance_search_->nearest(e, nodes, statistics_);
     answer_.clearances[index] = clearance;
-    const double radius = filter_.question().radius;
+    const double radius = filter_.ref().radius;
     return clearance.squared < rounded_product(radius, radius);
   }
 

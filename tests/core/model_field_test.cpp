@@ -78,9 +78,9 @@ TEST_CASE("the nearest model point is the one that brute force finds") {
     equal &= nearest.squared_distance == brute_squared(model, x) &&
              squared_distance(tree.point(nearest.point), x) == nearest.squared_distance;
     const double squared_radius = nearest.squared_distance;
-    equal &= tree.any_within(x, squared_radius, [](const Vec3&) { return true; });
+    equal &= tree.ref().any_within(x, squared_radius, [](const Vec3&) { return true; });
     equal &=
-        !tree.any_within(x, std::nextafter(squared_radius, 0), [](const Vec3&) { return true; });
+        !tree.ref().any_within(x, std::nextafter(squared_radius, 0), [](const Vec3&) { return true; });
   }
   CHECK(equal);
 }
