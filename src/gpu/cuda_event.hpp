@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <utility>
+
+#include "gpu/cuda_check.hpp"
+
+namespace clearway {
+
+/// Owner of an event with a time stamp, of the device that is current when it is made. Waiting for
+/// it puts the thread to sleep.
+class CudaEvent {
+ public:
+  CudaEvent() { check_cuda(cudaEventCreateWithFlags(&event_, cudaEventBlockingSync)); }
+  CudaEvent(CudaEvent&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
+  CudaEvent& operator=(CudaEvent&& other) noexcept {
+    std::swap(event_, other.event_);
+    return *this;
+  }
+  ~CudaEvent() {
+    if (event_ != nullptr) cudaEventDestroy(event_);
+  }
+
+  cudaEvent_t get() const { return event_; }
+
+  /// Enqueued on `stream`, not synchronised.
+  void record(cudaStream_t stream) const { check_cuda(cudaEventRecord(event_, stream)); }
+
+  /// Waits until the event has happened. Throws what became of the work before it.
+  void synchronise() const { check_cuda(cudaEventSynchronize(event_)); }
+
+  /// Seconds from `earlier` to this event; both have happened.
+  double seconds_since(const CudaEvent& earlier) const {
+    float milliseconds = 0;
+    check_cuda(cudaEventElapsedTime(&milliseconds, earlier.event_, event_));
+    return 1e-3 * static_cast<double>(milliseconds);
+  }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+}  // namespace clearway
