@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/page_engine.hpp"
+#include "core/quantisation.hpp"
+#include "core/sweep_ref.hpp"
+
+namespace clearway {
+
+/// The pages of an engine and what they are answered for.
+struct SlotOptions {
+  std::uint32_t slots = 1;
+  std::uint64_t page_bytes = 0;
+  std::uint32_t page_cells = 0;  ///< at most
+  std::uint32_t blocks_per_cell = 0;
+};
+
+/// The sweep engine on one CUDA device: model field, model and motion tree stay there; a warp
+/// searches a block of points (gpu/sweep_block.hpp). All memory is taken when it is made.
+class CudaSweepEngine final : public PageEngine {
+ public:
+  /// Uploads what `sweep` refers to, which may go afterwards. Throws ResourceError with CUDA's
+  /// reason.
+  CudaSweepEngine(int device, const SweepRef& sweep, const Quantisation& quantisation,
+                  const SlotOptions& options);
+  ~CudaSweepEngine() override;
+
+  std::uint32_t slots() const override;
+  std::span<std::byte> page(std::uint32_t slot) override;
+  void start(std::uint32_t slot, const PageShape& shape) override;
+  PageAnswer finish(std::uint32_t slot) override;
+
+  /// Of all pages finished. Not during a search.
+  SweepStatistics statistics() const;
+
+  /// Taken on the device, without CUDA's context, and of page-locked memory on the host.
+  std::uint64_t device_bytes() const;
+  std::uint64_t pinned_bytes() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Device memory that a CudaSweepEngine takes beside its slots, and for each of them.
+std::uint64_t cuda_sweep_bytes(const SweepRef& sweep);
+std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const SlotOptions& options);
+
+}  // namespace clearway
