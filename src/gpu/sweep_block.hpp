@@ -22,7 +22,8 @@ struct SweepAnswerRef {
 /// that may touch the block, a lane a node, then its points, a lane a point. Every lane goes
 /// through its subtrees in preorder, where a node's subtree is a run, so that no stack is needed;
 /// lanes that need a search of the model wait for each other.
-template <typename Warp>
+/// kClearance: whether the question asks for clearances.
+template <typename Warp, bool kClearance>
 class SweepBlock {
  public:
   /// Open nodes are kept in `queue`, kQueue of them, shared by the lanes.
@@ -73,13 +74,14 @@ class SweepBlock {
       for (std::uint32_t i = lane; i < kBlockPoints; i += kWarpLanes) {
         const std::uint64_t slot = word_ * kBlockPoints + i;
         if (answer_.first_poses != nullptr) answer_.first_poses[slot] = kNever;
-        if (answer_.clearances != nullptr) answer_.clearances[slot] = Clearance{kInfinity, kNever};
+        if (kClearance) answer_.clearances[slot] = Clearance{kInfinity, kNever};
       }
     });
   }
 
   CLEARWAY_HD void narrow(const Vec3& centre, double rho, const std::uint32_t* nodes) {
-    const double limit = sweep_.clearance > 0 ? clearance_limit(centre, rho, nodes) : sweep_.radius;
+    double limit = sweep_.radius;
+    if constexpr (kClearance) limit = clearance_limit(centre, rho, nodes);
     PerLane<Way> ways;
     PerLane<std::uint32_t> kept;
     for (std::uint32_t next = 0;;) {  // of `nodes`
@@ -133,7 +135,7 @@ class SweepBlock {
 
   /// Puts the points to the nodes in the queue, and empties it.
   CLEARWAY_HD void search_points() {
-    const bool clearances_decide = sweep_.clearance > 0 && sweep_.hits_follow_from_clearance();
+    const bool clearances_decide = kClearance && sweep_.hits_follow_from_clearance();
     for (std::uint32_t half = 0; half < kBlockPoints / kWarpLanes; ++half) {
       const std::uint32_t first = block_ * kBlockPoints + half * kWarpLanes;
       if (first >= cell_.count) break;
@@ -142,7 +144,7 @@ class SweepBlock {
         if (first + lane < cell_.count) points[lane] = point(first + lane);
       });
       std::uint32_t hits = clearances_decide ? 0 : search_hits(points, half);
-      if (sweep_.clearance > 0) hits |= search_clearances(points, half);
+      if constexpr (kClearance) hits |= search_clearances(points, half);
       Warp::each([&](std::uint32_t lane) {
         if (lane == 0) answer_.hits[word_] |= std::uint64_t{hits} << (half * kWarpLanes);
       });

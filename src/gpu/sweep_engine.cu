@@ -23,20 +23,24 @@ __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
   }
 }
 
+template <bool kClearance>
+using Block = SweepBlock<CudaWarp, kClearance>;
+
 /// A warp a block of the page's cells. tallies: kTallies times the four of SweepStatistics.
+template <bool kClearance>
 __global__ void __launch_bounds__(kWarpsPerBlock* kWarpLanes)
     search_blocks_kernel(const __grid_constant__ SweepRef sweep,
                          const __grid_constant__ PageRef page,
                          const __grid_constant__ Quantisation quantisation,
                          const __grid_constant__ SweepAnswerRef answer,
                          unsigned long long* tallies) {
-  __shared__ std::uint32_t queues[kWarpsPerBlock][SweepBlock<CudaWarp>::kQueue];
+  __shared__ std::uint32_t queues[kWarpsPerBlock][Block<kClearance>::kQueue];
   const std::uint32_t warp = threadIdx.x / kWarpLanes;
   const std::uint64_t word = std::uint64_t{blockIdx.x} * kWarpsPerBlock + warp;
   const std::uint32_t per_cell = page.shape.blocks_per_cell;
   if (word >= std::uint64_t{page.shape.cells} * per_cell) return;
-  SweepBlock<CudaWarp> block(sweep, page, quantisation, static_cast<std::uint32_t>(word / per_cell),
-                             static_cast<std::uint32_t>(word % per_cell), answer, queues[warp]);
+  Block<kClearance> block(sweep, page, quantisation, static_cast<std::uint32_t>(word / per_cell),
+                          static_cast<std::uint32_t>(word % per_cell), answer, queues[warp]);
   const SweepStatistics& found = block.statistics(0);
   unsigned long long* total = tallies + 4 * (blockIdx.x % kTallies);
   tally(total, found.node_tests);
@@ -187,7 +191,9 @@ class CudaSweepEngine::Impl {
                                cudaMemcpyHostToDevice, stream));
     slot.uploaded.record(stream);
     const auto grid = static_cast<unsigned>(divide_up(blocks, kWarpsPerBlock));
-    search_blocks_kernel<<<grid, kWarpsPerBlock * kWarpLanes, 0, stream>>>(
+    const auto search =
+        layout.clearances > 0 ? search_blocks_kernel<true> : search_blocks_kernel<false>;
+    search<<<grid, kWarpsPerBlock * kWarpLanes, 0, stream>>>(
         sweep_.ref(), PageRef{slot.page.data(), shape}, quantisation_, to, tallies_.data());
     check_cuda(cudaGetLastError());
     slot.searched.record(stream);

@@ -1,0 +1,28 @@
+#include "gpu/devices.hpp"
+
+#include "gpu/cuda_check.hpp"
+
+namespace clearway {
+
+int cuda_device_count() {
+  int count = 0;
+  return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
+}
+
+std::string why_no_cuda_device() {
+  int count = 0;
+  const cudaError_t status = cudaGetDeviceCount(&count);
+  if (status != cudaSuccess) return cudaGetErrorString(status);
+  return count > 0 ? "" : cudaGetErrorString(cudaErrorNoDevice);
+}
+
+CudaDevice open_cuda_device(int index) {
+  check_cuda(cudaSetDevice(index));
+  cudaDeviceProp properties{};
+  check_cuda(cudaGetDeviceProperties(&properties, index));
+  std::size_t free_bytes = 0, total_bytes = 0;
+  check_cuda(cudaMemGetInfo(&free_bytes, &total_bytes));
+  return {index, properties.name, total_bytes, free_bytes};
+}
+
+}  // namespace clearway

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace clearway {
+
+struct CudaDevice {
+  int index;
+  std::string name;
+  std::uint64_t total_bytes;
+  std::uint64_t free_bytes;
+};
+
+/// How many CUDA devices this machine offers; 0 where there is none, or no driver for them.
+int cuda_device_count();
+
+/// Why there are none, in CUDA's words; empty where there is one.
+std::string why_no_cuda_device();
+
+/// Makes the device's context, which takes a while, and asks what is free. Throws ResourceError.
+CudaDevice open_cuda_device(int index);
+
+}  // namespace clearway
