@@ -6,11 +6,10 @@
 #include <limits>
 
 #include "core/predicate.hpp"
+#include "core/sweep_bounds.hpp"
 
 namespace clearway {
 namespace {
-
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 

@@ -176,6 +176,7 @@ void export_clearances(const ResultReader& result, const std::filesystem::path& 
   if (ending_of(output) != ".csv") {
     throw UsageError(output.string() + ": clearances are exported as .csv only");
   }
+  refuse_overwriting(output, {result.name()});
   PendingFile pending(output, overwrite);
   {
     const File file = File::create(pending.partial());

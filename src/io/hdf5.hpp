@@ -51,6 +51,21 @@ hid_t file_type();
 template <typename Number>
 hid_t memory_type();
 
+// clang-format off
+template <> inline hid_t file_type<std::uint8_t>() { return H5T_STD_U8LE; }
+template <> inline hid_t memory_type<std::uint8_t>() { return H5T_NATIVE_UINT8; }
+template <> inline hid_t file_type<std::uint16_t>() { return H5T_STD_U16LE; }
+template <> inline hid_t memory_type<std::uint16_t>() { return H5T_NATIVE_UINT16; }
+template <> inline hid_t file_type<std::int32_t>() { return H5T_STD_I32LE; }
+template <> inline hid_t memory_type<std::int32_t>() { return H5T_NATIVE_INT32; }
+template <> inline hid_t file_type<std::uint32_t>() { return H5T_STD_U32LE; }
+template <> inline hid_t memory_type<std::uint32_t>() { return H5T_NATIVE_UINT32; }
+template <> inline hid_t file_type<std::uint64_t>() { return H5T_STD_U64LE; }
+template <> inline hid_t memory_type<std::uint64_t>() { return H5T_NATIVE_UINT64; }
+template <> inline hid_t file_type<double>() { return H5T_IEEE_F64LE; }
+template <> inline hid_t memory_type<double>() { return H5T_NATIVE_DOUBLE; }
+// clang-format on
+
 /// Writes a one- or two-dimensional dataset, chunked by rows, with fletcher32.
 /// values: rows x columns, row-major; columns 0 makes it one-dimensional.
 template <typename Number>

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/ply_body_reader.hpp"
 #include "io/ply_reader.hpp"
 #include "io/refusal.hpp"
 #include "io/text_number.hpp"
@@ -10,16 +11,12 @@
 namespace clearway {
 namespace {
 
-class AsciiPlyReader final : public PointReader {
+class AsciiPlyReader final : public PlyBodyReader {
  public:
   AsciiPlyReader(InputBuffer input, PlyHeader header)
-      : input_(std::move(input)), header_(std::move(header)) {
-    for (std::size_t i = 0; i < header_.vertex; ++i) skip_element(header_.elements[i]);
-    first_vertex_ = input_.mark();
-    info_.declared_points = header_.vertices().count;
+      : PlyBodyReader(std::move(input), std::move(header)) {
+    begin();
   }
-
-  const CloudInfo& info() const override { return info_; }
 
   bool read(PointBatch& batch) override {
     batch.quanta.clear();
@@ -35,18 +32,12 @@ class AsciiPlyReader final : public PointReader {
     return !batch.positions.empty();
   }
 
-  void rewind() override {
-    input_.return_to(first_vertex_);
-    next_ = 0;
-    finished_ = false;
-  }
-
  private:
   [[noreturn]] void fail(const std::string& what) const {
     refuse_line(input_.name(), input_.line(), what);
   }
 
-  void skip_element(const PlyElement& element) {
+  void skip_element(const PlyElement& element) override {
     for (std::uint64_t row = 0; row < element.count; ++row) read_row(element, row, nullptr);
   }
 
@@ -107,21 +98,6 @@ class AsciiPlyReader final : public PointReader {
     }
     for (double i = 0; i < count; ++i) next_number(at, end, property);
   }
-
-  void finish() {
-    if (finished_) return;
-    for (std::size_t i = header_.vertex + 1; i < header_.elements.size(); ++i) {
-      skip_element(header_.elements[i]);
-    }
-    finished_ = true;
-  }
-
-  InputBuffer input_;
-  PlyHeader header_;
-  CloudInfo info_;
-  InputBuffer::Mark first_vertex_;
-  std::uint64_t next_ = 0;  ///< vertex to read next
-  bool finished_ = false;
 };
 
 }  // namespace

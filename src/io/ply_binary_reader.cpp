@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "io/byte_load.hpp"
+#include "io/ply_body_reader.hpp"
 #include "io/ply_reader.hpp"
 #include "io/refusal.hpp"
 
@@ -57,24 +58,19 @@ void decode_axis(const std::byte* bytes, std::size_t stride, PlyType type, bool 
   });
 }
 
-class BinaryPlyReader final : public PointReader {
+class BinaryPlyReader final : public PlyBodyReader {
  public:
   BinaryPlyReader(InputBuffer input, PlyHeader header)
-      : input_(std::move(input)),
-        header_(std::move(header)),
+      : PlyBodyReader(std::move(input), std::move(header)),
         swapped_(header_.format == PlyFormat::kBigEndian) {
     check_size();
-    for (std::size_t i = 0; i < header_.vertex; ++i) skip_element(header_.elements[i]);
-    first_vertex_ = input_.mark();
-    info_.declared_points = header_.vertices().count;
+    begin();
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < header_.coordinates[i]; ++k) {
         offsets_[i] += size_bytes(header_.vertices().properties[k].type);
       }
     }
   }
-
-  const CloudInfo& info() const override { return info_; }
 
   bool read(PointBatch& batch) override {
     batch.quanta.clear();
@@ -90,12 +86,6 @@ class BinaryPlyReader final : public PointReader {
       for (Vec3& point : batch.positions) walk_row(header_.vertices(), next_++, &point);
     }
     return true;
-  }
-
-  void rewind() override {
-    input_.return_to(first_vertex_);
-    next_ = 0;
-    finished_ = false;
   }
 
  private:
@@ -120,7 +110,7 @@ class BinaryPlyReader final : public PointReader {
                               "; expected " + std::to_string(element.count) + " of them");
   }
 
-  void skip_element(const PlyElement& element) {
+  void skip_element(const PlyElement& element) override {
     if (const auto bytes = element.fixed_bytes()) {
       if (!input_.skip(*bytes * element.count)) refuse_cut(element, element.count);
       return;
@@ -172,22 +162,8 @@ class BinaryPlyReader final : public PointReader {
         type, [&]<typename Number>(Number) { return load_double<Number>(bytes.data(), swapped_); });
   }
 
-  void finish() {
-    if (finished_) return;
-    for (std::size_t i = header_.vertex + 1; i < header_.elements.size(); ++i) {
-      skip_element(header_.elements[i]);
-    }
-    finished_ = true;
-  }
-
-  InputBuffer input_;
-  PlyHeader header_;
   bool swapped_;
-  CloudInfo info_;
-  InputBuffer::Mark first_vertex_;
   std::size_t offsets_[3] = {0, 0, 0};  ///< of x, y, z in a vertex without lists
-  std::uint64_t next_ = 0;              ///< vertex to read next
-  bool finished_ = false;
 };
 
 }  // namespace

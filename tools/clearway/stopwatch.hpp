@@ -1,18 +1,3 @@
 #pragma once
 
-#include <chrono>
-
-namespace clearway::tool {
-
-/// Wall clock since it was made.
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-}  // namespace clearway::tool
+#include "core/stopwatch.hpp"

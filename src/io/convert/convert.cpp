@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/stopwatch.hpp"
 #include "io/convert/count.hpp"
 #include "io/convert/distribute.hpp"
 #include "io/convert/environment_source.hpp"
@@ -32,19 +32,6 @@ constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk 
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
 constexpr std::uint32_t kLeastCellPoints = 64;
 constexpr std::uint32_t kMostCellPoints = 1 << 20;
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - start_).count();
-    start_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void check_options(const ConversionOptions& options) {
   if (options.memory_bytes < kLeastConversionMemory) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/hdf5.hpp"
+
+/// What the parts of hdf5.hpp share.
+namespace clearway::hdf5 {
+
+/// HDF5's innermost reason for its last failure.
+std::string reason();
+
+/// Throws InputError about a dataset or attribute of a file.
+[[noreturn]] void malformed(const std::string& file, const std::string& name,
+                            const std::string& expected);
+
+Id property_list(hid_t kind);
+/// A property list of objects that hold no times.
+Id untimed(hid_t kind);
+
+/// columns 0: one-dimensional.
+Id simple_space(std::uint64_t rows, std::uint64_t columns);
+
+}  // namespace clearway::hdf5
