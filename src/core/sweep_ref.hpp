@@ -116,6 +116,11 @@ struct SweepRef {
     return Verdict::kOpen;
   }
 
+  CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node) const {
+    double squared_lower;
+    return look(e, node, squared_lower);
+  }
+
   /// Whether e collides at a single pose, or on the way from it, that look() left open.
   CLEARWAY_HD bool touches_at(const Vec3& e, const MotionNode& node) const {
     if (moves_on(node)) {

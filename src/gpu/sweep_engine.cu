@@ -13,8 +13,12 @@ namespace clearway {
 namespace {
 
 constexpr std::uint32_t kWarpsPerBlock = 4;
+constexpr unsigned kThreads = kWarpsPerBlock * kWarpLanes;
 /// Statistics are added up in several places, so that warps seldom wait for each other.
 constexpr std::uint32_t kTallies = 64;
+/// Room for pairs and items on a page's lists, a block.
+constexpr std::uint64_t kPairsPerBlock = 4;
+constexpr std::uint64_t kItemsPerBlock = 16;
 
 __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
   const auto sum = __reduce_add_sync(0xffffffff, static_cast<unsigned>(of_lane));
@@ -23,30 +27,54 @@ __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
   }
 }
 
-template <bool kClearance>
-using Block = SweepBlock<CudaWarp, kClearance>;
-
-/// A warp a block of the page's cells. tallies: kTallies times the four of SweepStatistics.
-template <bool kClearance>
-__global__ void __launch_bounds__(kWarpsPerBlock* kWarpLanes)
-    search_blocks_kernel(const __grid_constant__ SweepRef sweep,
-                         const __grid_constant__ PageRef page,
-                         const __grid_constant__ Quantisation quantisation,
-                         const __grid_constant__ SweepAnswerRef answer,
-                         unsigned long long* tallies) {
-  __shared__ std::uint32_t queues[kWarpsPerBlock][Block<kClearance>::kQueue];
-  const std::uint32_t warp = threadIdx.x / kWarpLanes;
-  const std::uint64_t word = std::uint64_t{blockIdx.x} * kWarpsPerBlock + warp;
-  const std::uint32_t per_cell = page.shape.blocks_per_cell;
-  if (word >= std::uint64_t{page.shape.cells} * per_cell) return;
-  Block<kClearance> block(sweep, page, quantisation, static_cast<std::uint32_t>(word / per_cell),
-                          static_cast<std::uint32_t>(word % per_cell), answer, queues[warp]);
-  const SweepStatistics& found = block.statistics(0);
+/// tallies: kTallies times the four of SweepStatistics.
+__device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lane) {
   unsigned long long* total = tallies + 4 * (blockIdx.x % kTallies);
-  tally(total, found.node_tests);
-  tally(total + 1, found.point_tests);
-  tally(total + 2, found.exact_tests);
-  tally(total + 3, found.points_tested);
+  tally(total, of_lane.node_tests);
+  tally(total + 1, of_lane.point_tests);
+  tally(total + 2, of_lane.exact_tests);
+  tally(total + 3, of_lane.points_tested);
+}
+
+/// A warp a block of the page's cells.
+template <bool kClearance>
+__global__ void __launch_bounds__(kThreads)
+    search_blocks_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  using Block = SweepBlock<CudaWarp, kClearance>;
+  __shared__ std::uint32_t queues[kWarpsPerBlock][Block::kQueue];
+  const std::uint32_t warp = threadIdx.x / kWarpLanes;
+  const std::uint32_t block = blockIdx.x * kWarpsPerBlock + warp;
+  if (block >= job.block_count()) return;
+  CudaWarp::PerLane<SweepStatistics> statistics;
+  Block(job, block, queues[warp], statistics).search();
+  tally(tallies, statistics[0]);
+}
+
+/// Warps take one pair after the other, since some take far longer than others.
+__global__ void __launch_bounds__(kThreads)
+    search_pairs_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  const std::uint32_t count = job.work.pair_count();
+  CudaWarp::PerLane<SweepStatistics> statistics;
+  for (;;) {
+    const std::uint32_t index = CudaWarp::add(&job.work.counts->taken, 1, count);
+    if (index >= count) break;
+    const SweepWork::Pair pair = job.work.pair(index);
+    search_pair<CudaWarp>(job, pair, statistics);
+  }
+  tally(tallies, statistics[0]);
+}
+
+/// A thread an item.
+__global__ void __launch_bounds__(kThreads)
+    search_items_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  const std::uint32_t count = job.work.item_count();
+  SweepStatistics statistics;
+  for (std::uint32_t i = blockIdx.x * kThreads + threadIdx.x; i < count;
+       i += gridDim.x * kThreads) {
+    search_item(job, job.work.items[i], statistics);
+  }
+  __syncwarp();
+  tally(tallies, statistics);
 }
 
 /// Everything that a SweepRef refers to, on a device.
@@ -123,19 +151,49 @@ struct AnswerLayout {
   std::uint64_t bytes() const { return first_poses_at() + 4 * first_poses; }
 };
 
-std::uint64_t answer_bytes(const SweepRef& sweep, const SlotOptions& options) {
-  return AnswerLayout(sweep, std::uint64_t{options.page_cells} * options.blocks_per_cell).bytes();
+std::uint64_t most_blocks(const SlotOptions& options) {
+  return std::uint64_t{options.page_cells} * options.blocks_per_cell;
 }
+
+std::uint64_t answer_bytes(const SweepRef& sweep, const SlotOptions& options) {
+  return AnswerLayout(sweep, most_blocks(options)).bytes();
+}
+
+/// The lists of open work; clearances are searched without.
+struct WorkBuffers {
+  WorkBuffers(const SweepRef& sweep, const SlotOptions& options)
+      : pairs(sweep.clearance > 0 ? 0 : (kPairsPerBlock + 2) * most_blocks(options)),
+        items(sweep.clearance > 0 ? 0 : kItemsPerBlock * most_blocks(options)),
+        counts(1) {}
+
+  SweepWork ref(std::uint64_t blocks) const {
+    return {pairs.data(), items.data(), counts.data(),
+            static_cast<std::uint32_t>(pairs.size() > 0 ? kPairsPerBlock * blocks : 0),
+            static_cast<std::uint32_t>(items.size())};
+  }
+
+  static std::uint64_t bytes(const SweepRef& sweep, const SlotOptions& options) {
+    const std::uint64_t a_block =
+        (kPairsPerBlock + 2) * sizeof(SweepWork::Pair) + kItemsPerBlock * sizeof(SweepWork::Item);
+    return sizeof(SweepWork::Counts) + (sweep.clearance > 0 ? 0 : a_block * most_blocks(options));
+  }
+
+  DeviceBuffer<SweepWork::Pair> pairs;
+  DeviceBuffer<SweepWork::Item> items;
+  DeviceBuffer<SweepWork::Counts> counts;
+};
 
 struct Slot {
   Slot(const SweepRef& sweep, const SlotOptions& options)
       : host_page(options.page_bytes),
         host_answer(answer_bytes(sweep, options)),
         page(options.page_bytes),
-        answer(answer_bytes(sweep, options)) {}
+        answer(answer_bytes(sweep, options)),
+        work(sweep, options) {}
 
   PinnedBuffer<std::byte> host_page, host_answer;
   DeviceBuffer<std::byte> page, answer;
+  WorkBuffers work;
   CudaStream stream;
   CudaEvent begun, uploaded, searched, finished;
   PageShape shape;
@@ -148,6 +206,7 @@ class CudaSweepEngine::Impl {
   Impl(int device, const SweepRef& sweep, const Quantisation& quantisation,
        const SlotOptions& options)
       : device_(on(device)),
+        resident_(resident_blocks(device)),
         quantisation_(quantisation),
         sweep_(sweep),
         tallies_(4 * kTallies),
@@ -180,22 +239,23 @@ class CudaSweepEngine::Impl {
     const std::uint64_t blocks = std::uint64_t{shape.cells} * shape.blocks_per_cell;
     const AnswerLayout layout(sweep_.ref(), blocks);
     std::byte* answer = slot.answer.data();
-    const SweepAnswerRef to{
-        reinterpret_cast<std::uint64_t*>(answer),
-        layout.first_poses > 0 ? reinterpret_cast<std::uint32_t*>(answer + layout.first_poses_at())
-                               : nullptr,
-        layout.clearances > 0 ? reinterpret_cast<Clearance*>(answer + layout.clearances_at())
-                              : nullptr};
+    const SweepPage job{
+        .sweep = sweep_.ref(),
+        .page = {slot.page.data(), shape},
+        .quantisation = quantisation_,
+        .hits = reinterpret_cast<std::uint64_t*>(answer),
+        .first_poses = layout.first_poses > 0
+                           ? reinterpret_cast<std::uint32_t*>(answer + layout.first_poses_at())
+                           : nullptr,
+        .clearances = layout.clearances > 0
+                          ? reinterpret_cast<Clearance*>(answer + layout.clearances_at())
+                          : nullptr,
+        .work = slot.work.ref(blocks)};
     slot.begun.record(stream);
     check_cuda(cudaMemcpyAsync(slot.page.data(), slot.host_page.data(), shape.bytes(),
                                cudaMemcpyHostToDevice, stream));
     slot.uploaded.record(stream);
-    const auto grid = static_cast<unsigned>(divide_up(blocks, kWarpsPerBlock));
-    const auto search =
-        layout.clearances > 0 ? search_blocks_kernel<true> : search_blocks_kernel<false>;
-    search<<<grid, kWarpsPerBlock * kWarpLanes, 0, stream>>>(
-        sweep_.ref(), PageRef{slot.page.data(), shape}, quantisation_, to, tallies_.data());
-    check_cuda(cudaGetLastError());
+    search(job, stream);
     slot.searched.record(stream);
     check_cuda(cudaMemcpyAsync(slot.host_answer.data(), answer, layout.bytes(),
                                cudaMemcpyDeviceToHost, stream));
@@ -235,6 +295,30 @@ class CudaSweepEngine::Impl {
   std::uint64_t pinned_bytes() const { return pinned_bytes_; }
 
  private:
+  /// Enqueued on `stream`, not synchronised.
+  void search(const SweepPage& job, cudaStream_t stream) const {
+    const auto grid = static_cast<unsigned>(divide_up(job.block_count(), kWarpsPerBlock));
+    check_cuda(cudaMemsetAsync(job.work.counts, 0, sizeof(SweepWork::Counts), stream));
+    if (job.clearances != nullptr) {
+      search_blocks_kernel<true><<<grid, kThreads, 0, stream>>>(job, tallies_.data());
+      check_cuda(cudaGetLastError());
+      return;
+    }
+    search_blocks_kernel<false><<<grid, kThreads, 0, stream>>>(job, tallies_.data());
+    check_cuda(cudaGetLastError());
+    search_pairs_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
+    check_cuda(cudaGetLastError());
+    search_items_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
+    check_cuda(cudaGetLastError());
+  }
+
+  /// Blocks of threads that the device can hold at a time, with room for other slots' beside them.
+  static unsigned resident_blocks(int device) {
+    int processors = 0;
+    check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
+    return 4 * static_cast<unsigned>(processors);
+  }
+
   static int on(int device) {
     check_cuda(cudaSetDevice(device));
     return device;
@@ -246,6 +330,7 @@ class CudaSweepEngine::Impl {
   }
 
   int device_;
+  unsigned resident_;
   Quantisation quantisation_;
   SweepOnDevice sweep_;
   DeviceBuffer<unsigned long long> tallies_;
@@ -272,7 +357,7 @@ std::uint64_t CudaSweepEngine::pinned_bytes() const { return impl_->pinned_bytes
 std::uint64_t cuda_sweep_bytes(const SweepRef& sweep) { return SweepOnDevice::bytes(sweep); }
 
 std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const SlotOptions& options) {
-  return options.page_bytes + answer_bytes(sweep, options);
+  return options.page_bytes + answer_bytes(sweep, options) + WorkBuffers::bytes(sweep, options);
 }
 
 }  // namespace clearway

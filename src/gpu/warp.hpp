@@ -50,6 +50,23 @@ struct CudaWarp {
     return 0;
 #endif
   }
+
+  /// Adds n, once for the warp, to a counter that other warps add to, unless it is at `full`
+  /// already, so that it cannot overflow. What it was before.
+  CLEARWAY_HD static std::uint32_t add([[maybe_unused]] std::uint32_t* counter,
+                                       [[maybe_unused]] std::uint32_t n,
+                                       [[maybe_unused]] std::uint32_t full) {
+#ifdef __CUDA_ARCH__
+    std::uint32_t before = 0;
+    if (threadIdx.x % kWarpLanes == 0) {
+      before = *static_cast<volatile std::uint32_t*>(counter);
+      if (before < full) before = atomicAdd(counter, n);
+    }
+    return __shfl_sync(0xffffffff, before, 0);
+#else
+    return 0;
+#endif
+  }
 };
 
 /// The lanes as a loop: the same code without a GPU.
@@ -79,7 +96,31 @@ struct HostWarp {
     for (const double value : values.values) least = value < least ? value : least;
     return least;
   }
+
+  static std::uint32_t add(std::uint32_t* counter, std::uint32_t n, std::uint32_t full) {
+    const std::uint32_t before = *counter;
+    if (before < full) *counter += n;
+    return before;
+  }
 };
+
+/// Or-s bits into a word that other threads of a device or-into at the same time.
+CLEARWAY_HD inline void or_into(std::uint64_t* word, std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  atomicOr(reinterpret_cast<unsigned long long*>(word), static_cast<unsigned long long>(bits));
+#else
+  *word |= bits;
+#endif
+}
+
+/// Lowers a value that other threads of a device lower at the same time.
+CLEARWAY_HD inline void lower_to(std::uint32_t* value, std::uint32_t to) {
+#ifdef __CUDA_ARCH__
+  atomicMin(value, to);
+#else
+  if (to < *value) *value = to;
+#endif
+}
 
 /// Set bits.
 CLEARWAY_HD inline std::uint32_t count_of(std::uint32_t bits) {

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <cstdint>
+
+#include "gpu/sweep_page.hpp"
+#include "gpu/sweep_walk.hpp"
+
+namespace clearway {
+
+/// Which of the 32 points of a half block collide at the poses of some subtrees: marks them in the
+/// answer of the page. A lane a point. Other warps may work on the same points.
+template <typename Warp>
+class SweepHits {
+ public:
+  template <typename Value>
+  using PerLane = typename Warp::template PerLane<Value>;
+
+  CLEARWAY_HD SweepHits(const SweepPage& job, std::uint32_t half,
+                        PerLane<SweepStatistics>& statistics)
+      : job_(job),
+        block_(half / kHalves),
+        first_(half % kHalves * kWarpLanes),
+        cell_(job.cell_of_block(block_)),
+        statistics_(statistics) {}
+
+  /// Points of a block that other lanes take.
+  static constexpr std::uint32_t kHalves = kBlockPoints / kWarpLanes;
+
+  /// defer: put searches of the model at a single pose on the page's list while there is room.
+  CLEARWAY_HD void search(const SweepSubtrees& subtrees, bool defer) {
+    const std::uint32_t begin = job_.first_point(block_) + first_;
+    if (begin >= cell_.count) return;
+    const std::uint64_t known = job_.hits[block_] >> first_;
+    Warp::each([&](std::uint32_t lane) {
+      best_[lane] = SweepPage::kNever;
+      if (begin + lane >= cell_.count) return ways_[lane].leave_all(subtrees.count);
+      if (job_.sweep.first_pose) {
+        best_[lane] = job_.first_poses[slot(lane)];
+      } else if ((known >> lane & 1) != 0) {
+        return ways_[lane].leave_all(subtrees.count);
+      }
+      ++statistics_[lane].points_tested;
+      points_[lane] = job_.point(cell_, begin + lane);
+    });
+    walk<Warp>(
+        job_.sweep.motion, subtrees, ways_,
+        [&](std::uint32_t lane, SweepWay& way) { step(lane, way, subtrees.count); },
+        [&](std::uint32_t waiting) { return defer && deferred(waiting); },
+        [&](std::uint32_t lane, std::uint32_t at) {
+          ++statistics_[lane].exact_tests;
+          const MotionNode& node = job_.sweep.motion.nodes[at];
+          if (job_.sweep.touches_at(points_[lane], node)) hit(lane, node.mid, subtrees.count);
+        });
+    mark();
+  }
+
+ private:
+  CLEARWAY_HD std::uint32_t slot(std::uint32_t lane) const {
+    return block_ * kBlockPoints + first_ + lane;
+  }
+
+  CLEARWAY_HD void hit(std::uint32_t lane, std::uint32_t pose, std::uint32_t subtrees) {
+    if (pose < best_[lane]) best_[lane] = pose;
+    if (!job_.sweep.first_pose) ways_[lane].leave_all(subtrees);
+  }
+
+  CLEARWAY_HD void step(std::uint32_t lane, SweepWay& way, std::uint32_t subtrees) {
+    const MotionNode& node = job_.sweep.motion.nodes[way.at];
+    const std::uint32_t size = 2 * node.count - 1;
+    if (node.first >= best_[lane]) {
+      way.at += size;
+      return;
+    }
+    ++statistics_[lane].point_tests;
+    const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node);
+    if (verdict == SweepRef::Verdict::kOpen && node.count == 1) {
+      way.waits = true;
+      return;
+    }
+    way.at += verdict == SweepRef::Verdict::kDismissed ? size : 1;
+    if (verdict == SweepRef::Verdict::kHitAtMid) hit(lane, node.mid, subtrees);
+  }
+
+  /// All lanes that wait, or none.
+  CLEARWAY_HD bool deferred(std::uint32_t waiting) {
+    const SweepWork::Room room = job_.work.room_for_items<Warp>(count_of(waiting));
+    Warp::each([&](std::uint32_t lane) {
+      const std::uint32_t rank = count_of(waiting & ((1U << lane) - 1));
+      if ((waiting >> lane & 1) == 0 || rank >= room.written()) return;
+      job_.work.items[room.first + rank] = {room.fits() ? slot(lane) : SweepWork::kNone,
+                                            ways_[lane].at};
+    });
+    return room.fits();
+  }
+
+  CLEARWAY_HD void mark() {
+    const std::uint32_t hits = Warp::ballot([&](std::uint32_t lane) {
+      if (best_[lane] == SweepPage::kNever) return false;
+      if (job_.sweep.first_pose) lower_to(job_.first_poses + slot(lane), best_[lane]);
+      return true;
+    });
+    Warp::each([&](std::uint32_t lane) {
+      if (lane == 0 && hits != 0) or_into(job_.hits + block_, std::uint64_t{hits} << first_);
+    });
+  }
+
+  const SweepPage& job_;
+  std::uint32_t block_;
+  std::uint32_t first_;  ///< point of the block
+  const PageCell& cell_;
+  PerLane<SweepStatistics>& statistics_;
+  PerLane<SweepWay> ways_;
+  PerLane<Vec3> points_;
+  PerLane<std::uint32_t> best_;  ///< first pose known; without first poses any, as a mark
+};
+
+/// The second step: puts the points of a half block to the runs of poses of its pair.
+template <typename Warp>
+CLEARWAY_HD void search_pair(const SweepPage& job, const SweepWork::Pair& pair,
+                             typename Warp::template PerLane<SweepStatistics>& statistics) {
+  if (pair.half == SweepWork::kNone) return;
+  const PageCell& cell = job.cell_of_block(pair.half / SweepHits<Warp>::kHalves);
+  const SweepSubtrees subtrees = pair.node == SweepWork::kPlanned
+                                     ? SweepSubtrees{job.page.nodes(cell), cell.node_count}
+                                     : SweepSubtrees{&pair.node, 1};
+  SweepHits<Warp>(job, pair.half, statistics).search(subtrees, true);
+}
+
+/// The third step: searches the model for a point and a single pose.
+CLEARWAY_HD inline void search_item(const SweepPage& job, const SweepWork::Item& item,
+                                    SweepStatistics& statistics) {
+  if (item.point == SweepWork::kNone) return;
+  const std::uint32_t block = item.point / kBlockPoints;
+  const std::uint32_t bit = item.point % kBlockPoints;
+  const MotionNode& node = job.sweep.motion.nodes[item.node];
+  const bool known = job.sweep.first_pose ? job.first_poses[item.point] <= node.mid
+                                          : (job.hits[block] >> bit & 1) != 0;
+  if (known) return;
+  ++statistics.exact_tests;
+  const Vec3 e = job.point(job.cell_of_block(block), job.first_point(block) + bit);
+  if (!job.sweep.touches_at(e, node)) return;
+  if (job.sweep.first_pose) lower_to(job.first_poses + item.point, node.mid);
+  or_into(job.hits + block, std::uint64_t{1} << bit);
+}
+
+}  // namespace clearway

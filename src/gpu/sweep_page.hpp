@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/clearance_set.hpp"
+#include "core/page.hpp"
+#include "core/sweep_ref.hpp"
+
+namespace clearway {
+
+/// What is still to be done for a page: runs of poses that may touch a half block, and single poses
+/// that may touch a point. Both lists are bounded. A block whose runs find no room is put down once
+/// with kPlanned, for which there is always room; a single pose that finds none is decided at once.
+struct SweepWork {
+  struct Pair {
+    std::uint32_t half;  ///< half block within the page: 32 points
+    std::uint32_t node;
+  };
+  struct Item {
+    std::uint32_t point;  ///< slot within the page: 64 a block
+    std::uint32_t node;   ///< of a single pose
+  };
+  struct Counts {
+    std::uint32_t pairs, items;  ///< asked for: may exceed the capacities
+    std::uint32_t whole;         ///< half blocks with kPlanned
+    std::uint32_t taken;         ///< of pairs and whole
+  };
+  static constexpr std::uint32_t kNone = 0xffffffff;     ///< half or point of an entry not used
+  static constexpr std::uint32_t kPlanned = 0xffffffff;  ///< node: all planned ones of the cell
+
+  Pair* pairs;  ///< pair_capacity, then two a block
+  Item* items;
+  Counts* counts;
+  std::uint32_t pair_capacity, item_capacity;
+
+  /// Room for `count` entries of a list, taken by a warp.
+  struct Room {
+    std::uint32_t first, count, capacity;
+    CLEARWAY_HD bool fits() const { return first < capacity && count <= capacity - first; }
+    /// Entries that must be written: none, all, or those left, as not used.
+    CLEARWAY_HD std::uint32_t written() const {
+      return fits() ? count : first < capacity ? capacity - first : 0;
+    }
+  };
+  template <typename Warp>
+  CLEARWAY_HD Room room_for_pairs(std::uint32_t count) const {
+    return {Warp::add(&counts->pairs, count, pair_capacity), count, pair_capacity};
+  }
+  template <typename Warp>
+  CLEARWAY_HD Room room_for_items(std::uint32_t count) const {
+    return {Warp::add(&counts->items, count, item_capacity), count, item_capacity};
+  }
+
+  /// Entries of `pairs` to be looked at, those with kPlanned after the others.
+  CLEARWAY_HD std::uint32_t pair_count() const { return listed_pairs() + counts->whole; }
+  CLEARWAY_HD Pair pair(std::uint32_t index) const {
+    const std::uint32_t listed = listed_pairs();
+    return pairs[index < listed ? index : pair_capacity + index - listed];
+  }
+  CLEARWAY_HD std::uint32_t item_count() const {
+    return counts->items < item_capacity ? counts->items : item_capacity;
+  }
+
+ private:
+  CLEARWAY_HD std::uint32_t listed_pairs() const {
+    return counts->pairs < pair_capacity ? counts->pairs : pair_capacity;
+  }
+};
+
+/// A page under search: the question, the points, and where answers and open work go, cell after
+/// cell of the page; null for what is not asked for.
+struct SweepPage {
+  SweepRef sweep;
+  PageRef page;
+  Quantisation quantisation;
+  std::uint64_t* hits;         ///< a word a block
+  std::uint32_t* first_poses;  ///< 64 a block
+  Clearance* clearances;       ///< likewise
+  SweepWork work;
+
+  static constexpr std::uint32_t kNever = 0xffffffff;
+
+  CLEARWAY_HD std::uint32_t block_count() const {
+    return page.shape.cells * page.shape.blocks_per_cell;
+  }
+  CLEARWAY_HD const PageCell& cell_of_block(std::uint32_t block) const {
+    return page.cell(block / page.shape.blocks_per_cell);
+  }
+  /// Index in its cell of a block's first point.
+  CLEARWAY_HD std::uint32_t first_point(std::uint32_t block) const {
+    return block % page.shape.blocks_per_cell * kBlockPoints;
+  }
+  CLEARWAY_HD Vec3 point(const PageCell& cell, std::uint32_t index) const {
+    return position(quantisation, page.value(cell.chunks[0], index),
+                    page.value(cell.chunks[1], index), page.value(cell.chunks[2], index));
+  }
+};
+
+}  // namespace clearway
