@@ -73,6 +73,8 @@ class Budget {
     plan_.emplace(store_, question_, trees_,
                   ModelFieldOptions{options_.field_voxel, question_.clearance, field_bytes},
                   options_.threads);
+    field_seconds_ += plan_->field_seconds;
+    plan_seconds_ += plan_->plan_seconds;
     const std::uint64_t planned =
         trees_.allocated_bytes() + plan_->allocated_bytes() + run_pages_bytes(plan_->cells.size());
     for (const SlotLayout& layout : layouts(kind_, plan_->least_page_bytes())) {
