@@ -42,10 +42,16 @@ class PackedChunk {
   /// caller adds file and cell).
   PackedChunk(std::span<const std::byte> bytes, std::uint32_t count);
 
+  /// A chunk that was validated before, from the parts of its header and the payload after it.
+  static PackedChunk of_payload(const std::byte* payload, std::uint32_t count, unsigned minbits,
+                                Value minimum);
+
   std::uint32_t size() const { return count_; }
   unsigned minbits() const { return minbits_; }
   /// Of the header: not that of the values where minbits() is the full width.
   Value minimum() const { return static_cast<Value>(minimum_); }
+  /// The bytes after the header.
+  const std::byte* payload() const { return payload_; }
 
   /// Value `index` < size().
   Value operator[](std::uint32_t index) const;
@@ -69,6 +75,19 @@ template <std::integral Value>
 void append_packed_chunk(std::span<const Value> values, std::vector<std::byte>& out);
 
 // ---- implementation
+
+template <std::integral Value>
+inline PackedChunk<Value> PackedChunk<Value>::of_payload(const std::byte* payload,
+                                                         std::uint32_t count, unsigned minbits,
+                                                         Value minimum) {
+  PackedChunk chunk;
+  chunk.payload_ = payload;
+  chunk.payload_bytes_ = packed_bytes<Value>(count, minbits) - kPackedHeaderBytes;
+  chunk.minimum_ = static_cast<Unsigned>(minimum);
+  chunk.minbits_ = minbits;
+  chunk.count_ = count;
+  return chunk;
+}
 
 /// Big-endian 8 bytes from `byte` on, bytes past the payload read as zero.
 template <std::integral Value>

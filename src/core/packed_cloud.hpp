@@ -33,6 +33,16 @@ class PackedCloud {
   /// safe. Throws InputError naming file and cell when the bytes are not those that were written.
   virtual std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const = 0;
 
+  /// Bytes of the packed x, y and z of a cell together.
+  virtual std::uint64_t packed_bytes(std::uint32_t cell) const = 0;
+
+  /// Brings the packed x, y and z of a cell, one after the other, into `to`, of packed_bytes(cell)
+  /// bytes, and checks them against the cell's hashes; the chunks returned are views of `to`.
+  /// Thread safe. Throws InputError naming file and cell when the bytes are not those that were
+  /// written, ResourceError when they cannot be read.
+  virtual std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
+                                                               std::span<std::byte> to) const = 0;
+
   std::uint32_t blocks_per_cell() const {
     return static_cast<std::uint32_t>(divide_up(cell_points(), kBlockPoints));
   }

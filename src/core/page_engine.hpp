@@ -34,22 +34,25 @@ struct PageAnswer {
 
 /// The one interface by which the pipeline knows an engine that works cell by cell. A slot holds
 /// one page at a time: filled by the pipeline, then start, then finish. Different slots may be used
-/// by different threads at once.
+/// by different threads at once. The pages and answers of all slots are allocated when the engine
+/// is made.
 class PageEngine {
  public:
   virtual ~PageEngine() = default;
 
-  /// How many pages may be in flight, over all devices.
+  /// How many pages may be in flight, over all devices; at least 1. Pages go to the free slots in
+  /// the order of their numbers first, so slots that are neighbours should be on different devices.
   virtual std::uint32_t slots() const = 0;
 
   /// The memory of a slot's page, to be filled: as many bytes in every slot, on kPageAlignment.
   virtual std::span<std::byte> page(std::uint32_t slot) = 0;
 
-  /// Starts the search of the page in the slot, whose shape fits it. A GPU goes on by itself.
+  /// Starts the search of the page in the slot, whose shape fits it. A GPU goes on by itself. Where
+  /// it throws, nothing of the slot is in flight.
   virtual void start(std::uint32_t slot, const PageShape& shape) = 0;
 
   /// Waits for the answer, which stays valid until the slot is started again. Throws what became of
-  /// the search.
+  /// the search; the slot is then no longer in flight.
   virtual PageAnswer finish(std::uint32_t slot) = 0;
 };
 

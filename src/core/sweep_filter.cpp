@@ -42,7 +42,8 @@ double rounding_of(const Question& question, const MotionTree& motion, const Mod
 
 SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, const ModelTree& model,
                          const ModelField& field, const PackedCloud& cloud)
-    : motion_(motion),
+    : question_(question),
+      motion_(motion),
       model_(model),
       ref_{.motion = motion.ref(),
            .model = model.ref(),

@@ -21,6 +21,7 @@ class SweepFilter {
   SweepFilter(const Question& question, const MotionTree& motion, const ModelTree& model,
               const ModelField& field, const PackedCloud& cloud);
 
+  const Question& question() const { return question_; }
   const SweepRef& ref() const { return ref_; }
   const MotionTree& motion() const { return motion_; }
   const ModelTree& model() const { return model_; }
@@ -53,6 +54,7 @@ class SweepFilter {
   void first_pose_below(const Vec3& e, std::uint32_t node, std::uint32_t& best,
                         SweepStatistics& statistics) const;
 
+  const Question& question_;
   const MotionTree& motion_;
   const ModelTree& model_;
   SweepRef ref_;

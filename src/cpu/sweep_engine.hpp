@@ -2,29 +2,40 @@
 
 #include <memory>
 #include <mutex>
+#include <vector>
 
-#include "core/cell_engine.hpp"
-#include "core/packed_cloud.hpp"
-#include "core/sweep_filter.hpp"
+#include "core/page_engine.hpp"
+#include "core/page_pool.hpp"
+#include "cpu/cell_search.hpp"
 
 namespace clearway {
 
 /// The sweep engine on the CPU: descends a cell's implicit tree and the motion tree together, down
-/// to points, each decoded once. The cloud and the filter outlive it.
-class SweepEngine final : public CellEngine {
+/// to points, each decoded once. `finish` computes, in the thread that calls it.
+class SweepEngine final : public PageEngine {
  public:
-  SweepEngine(const PackedCloud& cloud, const SweepFilter& filter)
-      : cloud_(cloud), filter_(filter) {}
+  /// The cloud and the filter outlive it. Allocates its slots; beside them, at the most
+  /// CellSearch::most_bytes for each thread that is in `finish` at a time.
+  SweepEngine(const PackedCloud& cloud, const SweepFilter& filter, const SlotLayout& layout);
 
-  CellAnswer search(const PlannedCell& planned) override;
+  std::uint32_t slots() const override { return pool_.layout().slots; }
+  std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
+  void start(std::uint32_t slot, const PageShape& shape) override { shapes_[slot] = shape; }
+  PageAnswer finish(std::uint32_t slot) override;
 
   /// Of all searches so far. Not during one.
   const SweepStatistics& statistics() const { return statistics_; }
 
  private:
+  std::unique_ptr<CellSearch> take_search();
+  void give_back(std::unique_ptr<CellSearch> search);
+
   const PackedCloud& cloud_;
   const SweepFilter& filter_;
+  PagePool pool_;
+  std::vector<PageShape> shapes_;  ///< by slot
   std::mutex mutex_;
+  std::vector<std::unique_ptr<CellSearch>> idle_;  ///< no more than threads were ever in finish
   SweepStatistics statistics_;
 };
 

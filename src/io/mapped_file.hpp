@@ -20,6 +20,8 @@ class MappedFile {
 
   const std::string& name() const { return file_.name(); }
   std::span<const std::byte> bytes() const { return bytes_; }
+  /// The file itself, for reads that do not go through the map.
+  const File& file() const { return file_; }
 
  private:
   File file_;

@@ -174,6 +174,7 @@ Store::Store(const std::filesystem::path& path) : map_(path) {
     throw InputError(name() + ": damaged store: " + error.what());
   }
   checked_.resize(cells_.size());
+  read_.resize(cells_.size());
 }
 
 void Store::check_index() const {
@@ -209,36 +210,70 @@ std::span<const std::byte> Store::checked_chunk(std::uint32_t cell, int dataset)
   if (dataset < 3 && std::atomic_ref(checked_[cell]).load(std::memory_order_acquire) != 0) {
     return bytes;
   }
-  if (xxh64(bytes) != index_.xxh64[i]) {
-    refuse(name(), "cell " + std::to_string(cell) + ": the packed bytes of '" +
-                       kPointDatasets[dataset] + "' at byte " + std::to_string(index_.address[i]) +
-                       " are damaged (their hash is not the one recorded)");
-  }
+  check_hash(cell, dataset, bytes);
   return bytes;
 }
 
+void Store::check_hash(std::uint32_t cell, int dataset, std::span<const std::byte> bytes) const {
+  const std::size_t i = 4 * std::size_t{cell} + static_cast<std::size_t>(dataset);
+  if (xxh64(bytes) == index_.xxh64[i]) return;
+  refuse(name(), "cell " + std::to_string(cell) + ": the packed bytes of '" +
+                     kPointDatasets[dataset] + "' at byte " + std::to_string(index_.address[i]) +
+                     " are damaged (their hash is not the one recorded)");
+}
+
+/// bytes: whose hash is right, or was once (a file that is written to while in use).
 template <typename Number>
-PackedChunk<Number> Store::chunk(std::uint32_t cell, int dataset) const {
+PackedChunk<Number> Store::chunk(std::uint32_t cell, int dataset,
+                                 std::span<const std::byte> bytes) const {
   try {
-    return {checked_chunk(cell, dataset), cell_points()};
-  } catch (const InputError& error) {  // the hash was right once: written to while in use
-    const std::string what = error.what();
-    if (what.starts_with(name())) throw;
-    refuse(name(), "cell " + std::to_string(cell) + ": '" + kPointDatasets[dataset] + "': " + what);
+    return {bytes, cell_points()};
+  } catch (const InputError& error) {
+    refuse(name(),
+           "cell " + std::to_string(cell) + ": '" + kPointDatasets[dataset] + "': " + error.what());
   }
 }
 
 std::array<PackedChunk<std::int32_t>, 3> Store::coordinates(std::uint32_t cell) const {
   std::array<PackedChunk<std::int32_t>, 3> chunks;
   for (int axis = 0; axis < 3; ++axis) {
-    chunks[static_cast<std::size_t>(axis)] = chunk<std::int32_t>(cell, axis);
+    chunks[static_cast<std::size_t>(axis)] =
+        chunk<std::int32_t>(cell, axis, checked_chunk(cell, axis));
   }
   std::atomic_ref(checked_[cell]).store(1, std::memory_order_release);
   return chunks;
 }
 
 PackedChunk<std::uint64_t> Store::sources(std::uint32_t cell) const {
-  return chunk<std::uint64_t>(cell, 3);
+  return chunk<std::uint64_t>(cell, 3, checked_chunk(cell, 3));
+}
+
+std::uint64_t Store::packed_bytes(std::uint32_t cell) const {
+  const std::uint32_t* bytes = index_.bytes.data() + 4 * std::size_t{cell};
+  return std::uint64_t{bytes[0]} + bytes[1] + bytes[2];
+}
+
+std::array<PackedChunk<std::int32_t>, 3> Store::read_packed(std::uint32_t cell,
+                                                            std::span<std::byte> to) const {
+  const std::uint64_t* address = index_.address.data() + 4 * std::size_t{cell};
+  const std::uint32_t* bytes = index_.bytes.data() + 4 * std::size_t{cell};
+  const File& file = map_.file();
+  const std::array<std::span<std::byte>, 3> parts{to.subspan(0, bytes[0]),
+                                                  to.subspan(bytes[0], bytes[1]),
+                                                  to.subspan(bytes[0] + bytes[1], bytes[2])};
+  if (address[1] == address[0] + bytes[0] && address[2] == address[1] + bytes[1]) {
+    file.read_at(address[0], to);
+  } else {
+    for (std::size_t axis = 0; axis < 3; ++axis) file.read_at(address[axis], parts[axis]);
+  }
+  std::array<PackedChunk<std::int32_t>, 3> chunks;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto part = parts[static_cast<std::size_t>(axis)];
+    check_hash(cell, axis, part);
+    chunks[static_cast<std::size_t>(axis)] = chunk<std::int32_t>(cell, axis, part);
+  }
+  std::atomic_ref(read_[cell]).store(1, std::memory_order_relaxed);
+  return chunks;
 }
 
 std::uint64_t Store::fingerprint() const {
@@ -259,9 +294,9 @@ std::uint64_t Store::fingerprint() const {
 Store::Touched Store::touched() const {
   Touched touched;
   for (std::size_t cell = 0; cell < checked_.size(); ++cell) {
-    if (checked_[cell] == 0) continue;
+    if (checked_[cell] == 0 && read_[cell] == 0) continue;
     ++touched.cells;
-    for (std::size_t i = 4 * cell; i < 4 * cell + 3; ++i) touched.bytes += index_.bytes[i];
+    touched.bytes += packed_bytes(static_cast<std::uint32_t>(cell));
   }
   return touched;
 }
@@ -270,7 +305,7 @@ std::uint64_t Store::allocated_bytes() const {
   const auto bytes = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
   return bytes(index_.count) + bytes(index_.box) + bytes(index_.address) + bytes(index_.bytes) +
          bytes(index_.xxh64) + bytes(top_) + bytes(cells_) + bytes(tree_) + bytes(blocks_) +
-         bytes(checked_);
+         bytes(checked_) + bytes(read_);
 }
 
 }  // namespace clearway

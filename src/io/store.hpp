@@ -42,8 +42,13 @@ class Store final : public PackedCloud {
   std::span<const TreeNode> tree() const override { return tree_; }
   std::span<const BlockBox> blocks() const override { return blocks_; }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
+  std::uint64_t packed_bytes(std::uint32_t cell) const override;
+  /// Reads the file, not the map: one call where x, y and z are adjacent in it.
+  std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
+                                                       std::span<std::byte> to) const override;
 
-  /// Cells whose coordinates were asked for since the store was opened, and their packed bytes.
+  /// Cells whose coordinates were asked for or read since the store was opened, and their packed
+  /// bytes.
   struct Touched {
     std::uint64_t cells = 0;
     std::uint64_t bytes = 0;
@@ -55,8 +60,10 @@ class Store final : public PackedCloud {
 
  private:
   std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
+  void check_hash(std::uint32_t cell, int dataset, std::span<const std::byte> bytes) const;
   template <typename Number>
-  PackedChunk<Number> chunk(std::uint32_t cell, int dataset) const;
+  PackedChunk<Number> chunk(std::uint32_t cell, int dataset,
+                            std::span<const std::byte> bytes) const;
   void check_index() const;
 
   MappedFile map_;
@@ -66,8 +73,9 @@ class Store final : public PackedCloud {
   std::vector<Cell> cells_;
   std::vector<TreeNode> tree_;
   std::vector<BlockBox> blocks_;
-  /// Per cell: 1 when the hashes of x, y and z were found right.
+  /// Per cell: 1 when the hashes of x, y and z were found right in the map.
   mutable std::vector<std::uint8_t> checked_;
+  mutable std::vector<std::uint8_t> read_;  ///< per cell: 1 when they were read past the map
 };
 
 }  // namespace clearway

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/cell_engine.hpp"
 #include "core/packed_cloud.hpp"
+#include "core/page_engine.hpp"
 #include "core/sweep_filter.hpp"
 
 namespace clearway {

@@ -8,7 +8,7 @@
 #include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "stream/plan.hpp"
-#include "stream/run_cells.hpp"
+#include "stream/run_pages.hpp"
 
 namespace clearway {
 namespace {
@@ -27,8 +27,15 @@ Answer sweep_with_clearances(const PackedCloud& cloud, const Question& question,
   const ModelField field(model, question.radius, {.reach = question.clearance}, threads);
   const MotionTree motion(question.poses, model.box(), question.between_poses);
   const SweepFilter filter(question, motion, model, field, cloud);
-  SweepEngine engine(cloud, filter);
-  return run_cells(cloud, plan(cloud, motion, filter), engine, question, threads, progress);
+  const std::vector<PlannedCell> cells = plan(cloud, motion, filter);
+  // As many cells a page and pages in flight as the cloud's size makes them, so that all occur.
+  const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
+                          .page_bytes = 2 * smallest_page_bytes(cloud, cells),
+                          .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
+  SweepEngine engine(cloud, filter, layout);
+  StageTimes times;
+  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), engine,
+                   question, threads, progress, times);
 }
 
 HitSet sweep(const PackedCloud& cloud, const Question& question, int threads) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/error.hpp"
 
@@ -122,6 +123,24 @@ std::array<PackedChunk<std::int32_t>, 3> MemoryCloud::coordinates(std::uint32_t 
   return {PackedChunk<std::int32_t>(chunks[0], cell_points_),
           PackedChunk<std::int32_t>(chunks[1], cell_points_),
           PackedChunk<std::int32_t>(chunks[2], cell_points_)};
+}
+
+std::uint64_t MemoryCloud::packed_bytes(std::uint32_t cell) const {
+  const auto& chunks = chunks_[cell];
+  return chunks[0].size() + chunks[1].size() + chunks[2].size();
+}
+
+std::array<PackedChunk<std::int32_t>, 3> MemoryCloud::read_packed(std::uint32_t cell,
+                                                                  std::span<std::byte> to) const {
+  coordinates(cell);  // throws where it is damaged
+  std::array<PackedChunk<std::int32_t>, 3> chunks;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& bytes = chunks_[cell][axis];
+    std::memcpy(to.data(), bytes.data(), bytes.size());
+    chunks[axis] = {to.first(bytes.size()), cell_points_};
+    to = to.subspan(bytes.size());
+  }
+  return chunks;
 }
 
 std::vector<Vec3> positions_of(std::span<const Quantum> points, const Quantisation& quantisation) {

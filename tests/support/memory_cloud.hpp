@@ -33,6 +33,9 @@ class MemoryCloud final : public PackedCloud {
   std::span<const TreeNode> tree() const override { return tree_; }
   std::span<const BlockBox> blocks() const override { return blocks_; }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
+  std::uint64_t packed_bytes(std::uint32_t cell) const override;
+  std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
+                                                       std::span<std::byte> to) const override;
 
   /// Index, in the points given, of the point in a used slot.
   std::uint64_t source(std::uint64_t slot) const { return sources_[slot]; }

@@ -2,32 +2,46 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/answer.hpp"
 #include "core/progress.hpp"
 #include "core/question.hpp"
 #include "io/store.hpp"
+#include "stream/stage_times.hpp"
 
 namespace clearway::tool {
 
 struct EngineOptions {
-  std::string engine = "auto";  ///< "auto", "sweep" or "kdtree"
+  std::string engine = "auto";  ///< "auto", "sweep", "grid" or "kdtree"
+  std::string device = "auto";  ///< "auto", "cpu" or "cuda"
+  std::vector<int> gpus;        ///< CUDA's numbers; empty: all
   int threads = 0;              ///< 0: all cores
   double field_voxel = 0;       ///< metres; 0: chosen
+  double grid_cell = 0;         ///< metres; 0: chosen
+  bool float_precision = false;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  std::uint64_t device_memory_bytes = 0;  ///< of each device; 0: what is free
 };
 
 /// How an answer was computed.
 struct EngineReport {
-  std::string engine;
+  std::string engine, device = "cpu";
   std::uint64_t searches = 0;  ///< pairs of pose and model point
-  double plan_seconds = 0, field_seconds = 0, compute_seconds = 0;  ///< wall clock
-  std::uint64_t needed_bytes = 0;  ///< memory that inputs and engine take at the most
+  double context_seconds = 0;  ///< wall clock, like all of them
+  double plan_seconds = 0, field_seconds = 0;
+  StageTimes stages;
+  std::uint64_t pages = 0, page_bytes = 0;  ///< pages run, and the largest they may be
+  std::uint32_t slots = 0;
+  std::uint64_t needed_bytes = 0;       ///< memory that the run takes at the most
+  std::uint64_t write_bytes = 0;        ///< of --memory, what is left to write the answer with
+  std::uint64_t pinned_bytes = 0;       ///< of the host, which the process does not own alone
+  std::uint64_t peak_device_bytes = 0;  ///< allocated, without the CUDA context
 };
 
-/// Answers the question with the engine chosen. Throws UsageError where that engine cannot,
-/// ResourceError before anything starts where memory_bytes is too little, InputError for a damaged
-/// cell.
+/// Answers the question with the engine and device chosen. Throws UsageError where that engine
+/// cannot, ResourceError where the device is not there or, before cells are read, where a memory
+/// bound is too little; InputError for a damaged cell.
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
                   Progress& progress, EngineReport& report);
 

@@ -17,7 +17,7 @@ CLI::Validator positive_length() {
   return {check, ""};
 }
 
-std::uint64_t parse_size(const std::string& text) {
+std::uint64_t parse_size(const std::string& option, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   std::string unit(end, text.data() + text.size());
@@ -29,7 +29,7 @@ std::uint64_t parse_size(const std::string& text) {
   const double bytes = std::ldexp(value, static_cast<int>(10 * power));
   const bool known = unit.empty() || (unit.size() == 1 && power != 0);
   if (error != std::errc() || !known || !(bytes >= 0 && bytes < 0x1p60)) {
-    throw CLI::ValidationError("--memory",
+    throw CLI::ValidationError(option,
                                text +
                                    ": expected a size in bytes, or with K, M, G or T (powers of "
                                    "1024), for example 512M or 4G");
@@ -37,13 +37,19 @@ std::uint64_t parse_size(const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
+void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
+                     const std::string& description) {
   command
       .add_option_function<std::string>(
-          "--memory", [&bytes](const std::string& text) { bytes = parse_size(text); },
-          "Bound of the working memory, for example 512M or 4G (default: " + format_size(bytes) +
-              ")")
+          name, [&bytes, name](const std::string& text) { bytes = parse_size(name, text); },
+          description)
       ->type_name("SIZE");
+}
+
+void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
+  add_size_option(
+      command, "--memory", bytes,
+      "Bound of the working memory, for example 512M or 4G (default: " + format_size(bytes) + ")");
 }
 
 void add_threads_option(CLI::App& command, int& threads) {

@@ -9,14 +9,18 @@ namespace clearway::tool {
 /// Accepts a finite number of metres above 0.
 CLI::Validator positive_length();
 
-/// --memory, in bytes; "512M" and "4G" are powers of 1024.
+/// An option that takes a size in bytes; "512M" and "4G" are powers of 1024.
+void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
+                     const std::string& description);
+
+/// --memory, in bytes.
 void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 
 /// --threads; 0 stands for all cores.
 void add_threads_option(CLI::App& command, int& threads);
 
-/// Bytes of "512M", "1.5G", "4GiB" or "300000000"; throws CLI::ValidationError.
-std::uint64_t parse_size(const std::string& text);
+/// Bytes of "512M", "1.5G", "4GiB" or "300000000"; throws CLI::ValidationError naming the option.
+std::uint64_t parse_size(const std::string& option, const std::string& text);
 
 /// "1.5 GiB", for messages.
 std::string format_size(std::uint64_t bytes);

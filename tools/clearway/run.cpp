@@ -1,6 +1,5 @@
 #include <spdlog/spdlog.h>
 
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,39 +8,25 @@
 #include "clearway/engines.hpp"
 #include "clearway/memory_use.hpp"
 #include "clearway/options.hpp"
+#include "clearway/run_options.hpp"
 #include "clearway/standard_output.hpp"
 #include "clearway/stopwatch.hpp"
-#include "core/error.hpp"
 #include "io/content_hash.hpp"
 #include "io/model.hpp"
 #include "io/pending_file.hpp"
 #include "io/store.hpp"
-#include "io/trajectory.hpp"
-#include "stream/collect.hpp"
+#include "stream/write_answer.hpp"
 
 namespace clearway::tool {
 namespace {
 
-struct Options {
-  std::filesystem::path environment, model, trajectory, output;
-  double radius = 0;
-  EngineOptions engine;
-  std::string device = "auto";
-  bool first_pose = false;
-  double clearance = 0;
-  bool between_poses = false;
-  TrajectoryOptions trajectory_options;
-  bool force = false;
-  bool json = false;
-};
-
-/// Wall clock of the stages, seconds.
+/// Wall clock of what the engine does not report itself, seconds.
 struct Seconds {
-  double read = 0, write = 0, total = 0;
+  double inputs = 0, write = 0, total = 0;
 };
 
 struct Inputs {
-  explicit Inputs(const Options& options)
+  explicit Inputs(const RunOptions& options)
       : store(options.environment),
         model(read_model(options.model)),
         poses(read_trajectory(options.trajectory, options.trajectory_options)) {}
@@ -51,7 +36,7 @@ struct Inputs {
   std::vector<Pose> poses;
 };
 
-ResultHeader header_of(const Inputs& inputs, const Options& options) {
+ResultHeader header_of(const Inputs& inputs, const RunOptions& options) {
   const StoreMetadata& metadata = inputs.store.metadata();
   return {.environment_points = metadata.input_points,
           .environment_hash = metadata.points_hash,
@@ -67,8 +52,23 @@ ResultHeader header_of(const Inputs& inputs, const Options& options) {
           .crs_wkt = metadata.crs_wkt};
 }
 
+nlohmann::ordered_json seconds_of(const EngineReport& engine, const Seconds& seconds) {
+  return {{"total", seconds.total},
+          {"inputs", seconds.inputs},
+          {"context", engine.context_seconds},
+          {"plan", engine.plan_seconds},
+          {"field", engine.field_seconds},
+          {"search", engine.stages.total},
+          {"read", engine.stages.read},
+          {"upload", engine.stages.upload},
+          {"compute", engine.stages.compute},
+          {"collect", engine.stages.collect},
+          {"write", seconds.write}};
+}
+
 nlohmann::ordered_json report_of(const Inputs& inputs, const Answer& answer,
-                                 const EngineReport& engine, const Seconds& seconds) {
+                                 const EngineReport& engine, std::uint64_t peak_host_bytes,
+                                 const Seconds& seconds) {
   const Store::Touched touched = inputs.store.touched();
   return {{"environment_points", inputs.store.point_count()},
           {"model_points", inputs.model.size()},
@@ -76,22 +76,18 @@ nlohmann::ordered_json report_of(const Inputs& inputs, const Answer& answer,
           {"colliding_points", answer.hits.count()},
           {"clearance_points", answer.clearances.count()},
           {"engine", engine.engine},
-          {"device", "cpu"},
+          {"device", engine.device},
           {"searches", engine.searches},
           {"cells_total", inputs.store.cells().size()},
           {"cells_read", touched.cells},
           {"bytes_read", touched.bytes},
-          {"peak_host_bytes", peak_anonymous_bytes()},
-          {"peak_device_bytes", 0},
-          {"seconds",
-           {{"total", seconds.total},
-            {"context", 0.0},
-            {"plan", engine.plan_seconds},
-            {"field", engine.field_seconds},
-            {"read", seconds.read},
-            {"upload", 0.0},
-            {"compute", engine.compute_seconds},
-            {"write", seconds.write}}}};
+          {"pages", engine.pages},
+          {"page_bytes", engine.page_bytes},
+          {"slots", engine.slots},
+          {"needed_host_bytes", engine.needed_bytes},
+          {"peak_host_bytes", peak_host_bytes},
+          {"peak_device_bytes", engine.peak_device_bytes},
+          {"seconds", seconds_of(engine, seconds)}};
 }
 
 void warn_of(const Inputs& inputs) {
@@ -102,8 +98,9 @@ void warn_of(const Inputs& inputs) {
   }
 }
 
-void run_run(const Options& options) {
+void run_run(const RunOptions& options) {
   const Stopwatch total;
+  MemoryWatch memory;
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   PendingFile output(options.output, options.force);
   ConsoleProgress progress;
@@ -116,96 +113,37 @@ void run_run(const Options& options) {
                           .first_pose = options.first_pose,
                           .between_poses = options.between_poses,
                           .clearance = options.clearance};
-  seconds.read = total.seconds();
+  seconds.inputs = total.seconds();
   EngineReport engine;
   const Answer answer = run_engine(inputs.store, question, options.engine, progress, engine);
-  peak_anonymous_bytes();
 
   const Stopwatch write;
   write_answer(inputs.store, answer, header_of(inputs, options), output.partial(),
-               options.engine.memory_bytes - engine.needed_bytes, progress);
+               engine.write_bytes, progress);
   output.publish();
   seconds.write = write.seconds();
   seconds.total = total.seconds();
-  spdlog::info("{}: {} of {} environment points collide; engine {} on the CPU, {:.2f} s",
+  spdlog::info("{}: {} of {} environment points collide; engine {} on {}, {:.2f} s",
                options.output.string(), format_count(answer.hits.count()),
-               format_count(inputs.store.point_count()), engine.engine, seconds.total);
+               format_count(inputs.store.point_count()), engine.engine, engine.device,
+               seconds.total);
   if (options.clearance > 0) {
     spdlog::info("{} points are closer than {} m", format_count(answer.clearances.count()),
                  options.clearance);
   }
-  if (options.json) print(report_of(inputs, answer, engine, seconds).dump(2) + "\n");
-}
-
-void add_inputs(CLI::App& command, Options& options) {
-  command.add_option("--env", options.environment, "The environment: a store of clearway convert")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--model", options.model, "The model's points: LAS, PLY or XYZ text, metres")
-      ->type_name("FILE")
-      ->required();
-  command
-      .add_option("--trajectory", options.trajectory,
-                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--radius", options.radius, "Search radius in metres, for example 0.1")
-      ->type_name("METRES")
-      ->required()
-      ->check(positive_length());
-  command.add_option("-o,--output", options.output, "The result, an HDF5 file")
-      ->type_name("FILE")
-      ->required();
-  const std::map<std::string, TrajectoryFormat> formats{{"auto", TrajectoryFormat::kAuto},
-                                                        {"matrix", TrajectoryFormat::kMatrix},
-                                                        {"tum", TrajectoryFormat::kTum},
-                                                        {"euroc", TrajectoryFormat::kEuroc},
-                                                        {"csv", TrajectoryFormat::kCsv}};
-  command
-      .add_option_function<std::string>(
-          "--trajectory-format",
-          [formats, &format = options.trajectory_options.format](const std::string& name) {
-            format = formats.at(name);
-          },
-          "Format of the trajectory where a guess could go wrong (default: auto)")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "matrix", "tum", "euroc", "csv"}));
-  command.add_flag("--allow-non-rigid", options.trajectory_options.allow_non_rigid,
-                   "Accept matrices that scale or shear");
+  if (options.json) {
+    const std::uint64_t peak = memory.peak_bytes() + engine.pinned_bytes;
+    print(report_of(inputs, answer, engine, peak, seconds).dump(2) + "\n");
+  }
 }
 
 }  // namespace
 
 void add_run(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   CLI::App* command = program.add_subcommand(
       "run", "Find every environment point that the moving model comes closer to than the radius");
-  add_inputs(*command, *options);
-  command->add_flag("--first-pose", options->first_pose,
-                    "Also the first pose (0-based) that touches each colliding point");
-  command
-      ->add_option("--clearance", options->clearance,
-                   "Also distance and pose of the model's nearest approach to every point that it "
-                   "comes closer to than this, for example 0.5; engine sweep only")
-      ->type_name("METRES")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--between-poses", options->between_poses,
-                    "Move every model point on a straight segment from each pose to the next");
-  command->add_option("--engine", options->engine.engine, "sweep or kdtree; auto takes sweep")
-      ->check(CLI::IsMember({"auto", "sweep", "kdtree"}))
-      ->capture_default_str();
-  command->add_option("--device", options->device, "cpu; auto takes it")
-      ->check(CLI::IsMember({"auto", "cpu"}))
-      ->capture_default_str();
-  add_threads_option(*command, options->engine.threads);
-  add_memory_option(*command, options->engine.memory_bytes);
-  command
-      ->add_option("--field-voxel", options->engine.field_voxel,
-                   "Voxel of the sweep engine's model field in metres (default: chosen)")
-      ->type_name("METRES")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--force", options->force, "Overwrite an existing result");
-  command->add_flag("--json", options->json, "Print one JSON object about the run");
+  add_run_options(*command, *options);
   command->footer(
       "A point collides when it is strictly closer than the radius to a model point at a pose,\n"
       "with --between-poses also on the way from a pose to the next. Its first pose is then the "

@@ -1,4 +1,4 @@
-#include "stream/collect.hpp"
+#include "stream/write_answer.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

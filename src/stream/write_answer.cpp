@@ -1,4 +1,4 @@
-#include "stream/collect.hpp"
+#include "stream/write_answer.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -25,6 +25,16 @@ struct ClearanceRow {
 
 /// Sorted and written in pieces of this many rows.
 constexpr std::size_t kRows = 1 << 16;
+
+/// What the file's writer and the pieces take at the most, bytes.
+constexpr std::uint64_t kBufferBytes = std::uint64_t{16} << 20;
+
+/// A pass holds twice the rows that it gives.
+template <typename Row>
+std::size_t rows_of_pass(std::uint64_t memory_bytes) {
+  const std::uint64_t left = memory_bytes > kBufferBytes ? memory_bytes - kBufferBytes : 0;
+  return std::max<std::uint64_t>(kRows, left / (2 * sizeof(Row)));
+}
 
 /// Calls visit(slot, index in the cell) for every slot of a cell that is in the set.
 template <typename Set, typename Visit>
@@ -53,7 +63,10 @@ bool has_slots(const Store& store, const Set& set, std::uint32_t cell) {
 template <typename Row>
 class RangePass {
  public:
-  RangePass(std::uint64_t from, std::size_t most) : from_(from), most_(most) {}
+  /// No more than `count` rows are left.
+  RangePass(std::uint64_t from, std::size_t most, std::uint64_t count) : from_(from), most_(most) {
+    rows_.reserve(std::min<std::uint64_t>(2 * most, count));
+  }
 
   /// rows_of(cell) gives what makes a row of (source, slot, index in the cell).
   template <typename Set, typename RowsOf>
@@ -96,6 +109,10 @@ void append_rows(ResultWriter& writer, const std::vector<Collision>& rows,
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<std::uint32_t> poses;
+  const std::size_t most = std::min(kRows, rows.size());
+  source.reserve(most);
+  xyz.reserve(most);
+  if (first_pose) poses.reserve(most);
   for (std::size_t first = 0; first < rows.size(); first += kRows) {
     source.clear();
     xyz.clear();
@@ -114,6 +131,10 @@ void append_rows(ResultWriter& writer, const std::vector<ClearanceRow>& rows) {
   std::vector<std::uint64_t> source;
   std::vector<double> distance;
   std::vector<std::uint32_t> pose;
+  const std::size_t most = std::min(kRows, rows.size());
+  source.reserve(most);
+  distance.reserve(most);
+  pose.reserve(most);
   for (std::size_t first = 0; first < rows.size(); first += kRows) {
     source.clear();
     distance.clear();
@@ -131,14 +152,14 @@ void append_rows(ResultWriter& writer, const std::vector<ClearanceRow>& rows) {
 template <typename Row, typename Set, typename RowsOf, typename Append>
 void write_set(const Store& store, const Set& set, std::uint64_t count, std::uint64_t memory_bytes,
                Progress& progress, RowsOf rows_of, Append append) {
-  const std::size_t most = std::max<std::uint64_t>(kRows, memory_bytes / (3 * sizeof(Row)));
+  const std::size_t most = rows_of_pass<Row>(memory_bytes);
   std::vector<std::uint32_t> cells;
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
     if (has_slots(store, set, cell)) cells.push_back(cell);
   }
   std::uint64_t from = 0;
   for (std::uint64_t written = 0; written < count;) {
-    RangePass<Row> pass(from, most);
+    RangePass<Row> pass(from, most, count - written);
     for (const std::uint32_t cell : cells) pass.add_cell(store, set, cell, rows_of);
     const std::vector<Row> rows = pass.take();
     if (rows.empty()) break;  // finish() reports what is missing
@@ -186,6 +207,10 @@ void write_answer(const Store& store, const Answer& answer, const ResultHeader& 
   }
   writer.finish();
   progress.end();
+}
+
+std::uint64_t least_write_bytes() {
+  return kBufferBytes + 2 * kRows * std::max(sizeof(Collision), sizeof(ClearanceRow));
 }
 
 }  // namespace clearway

@@ -1,0 +1,117 @@
+#include "cpu/cell_search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "core/hit_set.hpp"
+#include "core/kd_order.hpp"
+#include "core/page_chunk.hpp"
+#include "core/predicate.hpp"
+
+namespace clearway {
+
+void CellSearch::run(const PageRef& page, std::uint32_t index, const Output& output) {
+  cell_ = &page.cell(index);
+  blocks_ = page.blocks(index);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    chunks_[axis] = packed_chunk(page, cell_->chunks[axis], cloud_.cell_points());
+  }
+  output_ = output;
+  std::fill(output.hits.begin(), output.hits.end(), 0);
+  std::fill(output.first_poses.begin(), output.first_poses.end(), HitSet::kNever);
+  std::fill(output.clearances.begin(), output.clearances.end(), Clearance{});
+  if (!output.clearances.empty()) clearance_search_.emplace(filter_);
+  const std::span nodes(page.nodes(*cell_), cell_->node_count);
+  poses_ = pose_count(filter_.motion(), nodes);
+  search_blocks(0, static_cast<std::uint32_t>(divide_up(cell_->count, kBlockPoints)), nodes, 0);
+}
+
+SweepStatistics CellSearch::take_statistics() { return std::exchange(statistics_, {}); }
+
+std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Question& question,
+                                     std::uint64_t most_poses) {
+  const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
+  // A clearance search notes a bound a node, in a list that may have grown to twice its need.
+  const std::uint64_t of_clearance = question.clearance > 0 ? 48 * most_poses + (1U << 15) : 0;
+  return sizeof(CellSearch) + depths * (sizeof(lists_[0]) + most_poses * sizeof(std::uint32_t)) +
+         of_clearance;
+}
+
+QuantumBox CellSearch::box_of(std::uint32_t first, std::uint32_t count) const {
+  QuantumBox box = decode_block_box(cell_->box, blocks_[first]);
+  for (std::uint32_t i = first + 1; i < first + count; ++i) {
+    box = united(box, decode_block_box(cell_->box, blocks_[i]));
+  }
+  return box;
+}
+
+void CellSearch::search_blocks(std::uint32_t first, std::uint32_t count,
+                               std::span<const std::uint32_t> nodes, std::size_t depth) {
+  if (depth == lists_.size()) lists_.emplace_back();
+  std::vector<std::uint32_t> open = std::move(lists_[depth]);
+  open.clear();
+  open.reserve(poses_);  // disjoint nodes are no more than their poses
+  filter_.narrow(position_box(cloud_.quantisation(), box_of(first, count)), nodes, open,
+                 statistics_);
+  if (!open.empty()) {
+    if (count == 1) {
+      search_points(first, open);
+    } else {
+      const auto left = static_cast<std::uint32_t>(left_count(count, 1));
+      search_blocks(first, left, open, depth + 1);
+      search_blocks(first + left, count - left, open, depth + 1);
+    }
+  }
+  lists_[depth] = std::move(open);
+}
+
+void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_t> nodes) {
+  const std::uint32_t begin = block * kBlockPoints;
+  const std::uint32_t count = std::min(kBlockPoints, cell_->count - begin);
+  std::int32_t q[3][kBlockPoints];
+  for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3 e = position(cloud_.quantisation(), q[0][i], q[1][i], q[2][i]);
+    const bool hit = clearance_search_ && filter_.ref().hits_follow_from_clearance()
+                         ? search_clearance(e, begin + i, nodes)
+                         : search_hit(e, begin + i, nodes);
+    output_.hits[block] |= std::uint64_t{hit} << i;
+  }
+}
+
+/// Whether the point collides.
+bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
+                            std::span<const std::uint32_t> nodes) {
+  const Question& question = filter_.question();
+  bool hit = false;
+  if (question.first_pose) {
+    const std::uint32_t pose = filter_.first_pose(e, nodes, statistics_);
+    output_.first_poses[index] = pose;
+    hit = pose != HitSet::kNever;
+  } else {
+    hit = filter_.touches(e, nodes, statistics_);
+  }
+  // No point is within a clearance of at most the radius that does not collide.
+  if (clearance_search_ && (hit || question.clearance > question.radius)) {
+    search_clearance(e, index, nodes);
+  }
+  return hit;
+}
+
+/// Whether its least d2 makes the point collide.
+bool CellSearch::search_clearance(const Vec3& e, std::uint32_t index,
+                                  std::span<const std::uint32_t> nodes) {
+  const Clearance clearance = clearance_search_->nearest(e, nodes, statistics_);
+  output_.clearances[index] = clearance;
+  const double radius = filter_.question().radius;
+  return clearance.squared < rounded_product(radius, radius);
+}
+
+std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes) {
+  std::uint64_t poses = 0;
+  for (const std::uint32_t node : nodes) poses += motion.nodes()[node].count;
+  return poses;
+}
+
+}  // namespace clearway

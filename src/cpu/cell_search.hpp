@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/clearance_search.hpp"
+#include "core/packed_cloud.hpp"
+#include "core/page.hpp"
+#include "core/sweep_filter.hpp"
+
+namespace clearway {
+
+/// The sweep engine's descent within one cell of a page after the other.
+class CellSearch {
+ public:
+  /// Where the answer of a cell goes: see PageAnswer. Poses and clearances only where asked for.
+  struct Output {
+    std::span<std::uint64_t> hits;
+    std::span<std::uint32_t> first_poses;
+    std::span<Clearance> clearances;
+  };
+
+  /// Both outlive it.
+  CellSearch(const PackedCloud& cloud, const SweepFilter& filter)
+      : cloud_(cloud), filter_(filter) {}
+
+  void run(const PageRef& page, std::uint32_t index, const Output& output);
+
+  /// Of the searches since the last call.
+  SweepStatistics take_statistics();
+
+  /// The most that it allocates, bytes; most_poses: of the nodes of any cell.
+  static std::uint64_t most_bytes(const PackedCloud& cloud, const Question& question,
+                                  std::uint64_t most_poses);
+
+ private:
+  QuantumBox box_of(std::uint32_t first, std::uint32_t count) const;
+  void search_blocks(std::uint32_t first, std::uint32_t count, std::span<const std::uint32_t> nodes,
+                     std::size_t depth);
+  void search_points(std::uint32_t block, std::span<const std::uint32_t> nodes);
+  bool search_hit(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes);
+  bool search_clearance(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes);
+
+  const PackedCloud& cloud_;
+  const SweepFilter& filter_;
+  const PageCell* cell_ = nullptr;
+  const BlockBox* blocks_ = nullptr;
+  std::array<PackedChunk<std::int32_t>, 3> chunks_;
+  Output output_;
+  std::size_t poses_ = 0;                          ///< that the cell's nodes have together
+  std::vector<std::vector<std::uint32_t>> lists_;  ///< of open motion nodes, one a depth
+  std::optional<ClearanceSearch> clearance_search_;
+  SweepStatistics statistics_;
+};
+
+/// How many poses motion nodes have together.
+std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes);
+
+}  // namespace clearway

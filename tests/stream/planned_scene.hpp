@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model_field.hpp"
+#include "core/sweep_filter.hpp"
+#include "stream/plan.hpp"
+#include "support/memory_cloud.hpp"
+#include "support/scenes.hpp"
+
+namespace clearway::test {
+
+inline const Quantisation kTenths{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
+
+/// A small cloud, a model on a path through it, and the plan of the question.
+class PlannedScene {
+ public:
+  explicit PlannedScene(const MemoryCloudOptions& packing = {256, 2000}, std::size_t points = 9000,
+                        std::size_t pose_count = 80, bool first_pose = true, double clearance = 0)
+      : cloud_points(quantise(random_points(random_, kRoom, points), kTenths)),
+        model(random_points(random_, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}, 60)),
+        poses(smooth_path(random_, kWay, pose_count)),
+        cloud(cloud_points, kTenths, packing),
+        question{model, poses, 0.1, first_pose, false, clearance},
+        tree(model),
+        field(tree, question.radius, {.reach = clearance}, 1),
+        motion(poses, tree.box()),
+        filter(question, motion, tree, field, cloud),
+        cells(plan(cloud, motion, filter)) {}
+
+ private:
+  static constexpr Box kRoom{{0, 0, 0}, {12, 6, 3}};
+  static constexpr Box kWay{{1, 1, 1}, {8, 5, 2}};  // one end of the room stays out of reach
+  Random random_{7};
+
+ public:
+  std::vector<Quantum> cloud_points;
+  std::vector<Vec3> model;
+  std::vector<Pose> poses;
+  MemoryCloud cloud;
+  Question question;
+  ModelTree tree;
+  ModelField field;
+  MotionTree motion;
+  SweepFilter filter;
+  std::vector<PlannedCell> cells;
+};
+
+/// Planned cells of a cloud without asking what reaches them: every cell, with a few nodes each.
+inline std::vector<PlannedCell> every_cell(const PackedCloud& cloud) {
+  std::vector<PlannedCell> cells;
+  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
+    cells.push_back({cell, std::vector<std::uint32_t>(1 + cell % 7, 3 * cell)});
+  }
+  return cells;
+}
+
+}  // namespace clearway::test

@@ -1,0 +1,119 @@
+// A store read past its map, cell by cell.
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <thread>
+
+#include "core/error.hpp"
+#include "support/clouds.hpp"
+#include "support/store_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+struct SmallStore {
+  SmallStore() {
+    write_las(folder / "a.las", cube_cloud(3000, -40'000, 40'000, 3));
+    convert_quietly(conversion_of({folder / "a.las"}, path, 100));
+  }
+  void flip(std::uint64_t at) const {
+    std::string bytes = bytes_of(path);
+    bytes[at] = static_cast<char>(bytes[at] ^ 4);
+    put_bytes(path, bytes);
+  }
+  ScratchFolder folder;
+  std::filesystem::path path = folder / "a.h5";
+};
+
+std::vector<std::byte> read(const Store& store, std::uint32_t cell) {
+  std::vector<std::byte> bytes(store.packed_bytes(cell));
+  store.read_packed(cell, bytes);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("cells read from the file are those of the map") {
+  const SmallStore small;
+  const Store store(small.path), mapped(small.path);
+  std::uint64_t wrong = 0;
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    std::vector<std::byte> bytes(store.packed_bytes(cell));
+    const auto chunks = store.read_packed(cell, bytes);
+    const auto expected = mapped.coordinates(cell);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::uint32_t i = 0; i < store.cell_points(); ++i) {
+        wrong += chunks[axis][i] != expected[axis][i];
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(store.touched().cells == store.cells().size());
+  CHECK(store.touched().bytes == mapped.touched().bytes);
+}
+
+TEST_CASE("a cell counts as read once, and only when it was") {
+  const SmallStore small;
+  const Store store(small.path);
+  CHECK(store.touched().cells == 0);
+  read(store, 3);
+  read(store, 3);
+  store.coordinates(3);
+  CHECK(store.touched().cells == 1);
+  CHECK(store.touched().bytes == store.packed_bytes(3));
+}
+
+TEST_CASE("a flipped bit in any of the three chunks is found and named") {
+  for (const std::size_t axis : {0, 1, 2}) {
+    for (const std::uint64_t byte : {0, 4, 12, 30}) {
+      const SmallStore small;
+      std::uint64_t at = 0;
+      {
+        const Store store(small.path);
+        at = store.index().address[4 * 5 + axis] + byte;
+      }
+      small.flip(at);
+      const Store store(small.path);
+      CHECK_NOTHROW(read(store, 4));
+      CHECK_THROWS_WITH(read(store, 5), Contains("a.h5") && Contains("cell 5") &&
+                                            Contains("at byte") && Contains("damaged"));
+      CHECK(store.touched().cells == 1);
+    }
+  }
+}
+
+TEST_CASE("a store that was cut short while open is refused with the byte where it ends") {
+  const SmallStore small;
+  const Store store(small.path);
+  const auto cell = static_cast<std::uint32_t>(store.cells().size() - 1);
+  const std::uint64_t end = store.index().address[4 * cell + 1] + 3;
+  REQUIRE(::truncate(small.path.c_str(), static_cast<off_t>(end)) == 0);
+  CHECK_THROWS_WITH(read(store, cell),
+                    Contains("a.h5") && Contains("ends at byte " + std::to_string(end)));
+}
+
+TEST_CASE("threads read cells at the same time") {
+  const SmallStore small;
+  const Store store(small.path);
+  std::vector<std::thread> threads;
+  std::atomic<int> wrong{0};
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int round = 0; round < 20; ++round) {
+        for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+          try {
+            read(store, cell);
+          } catch (const Error&) {
+            ++wrong;
+          }
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(wrong == 0);
+  CHECK(store.touched().cells == store.cells().size());
+}

@@ -1,0 +1,34 @@
+#include "clearway/memory_budget.hpp"
+
+#include <string>
+
+#include "clearway/options.hpp"
+#include "core/error.hpp"
+
+namespace clearway::tool {
+
+std::uint64_t program_bytes(int threads) {
+  constexpr std::uint64_t kProgram = std::uint64_t{8} << 20;
+  constexpr std::uint64_t kThread = std::uint64_t{256} << 10;
+  return kProgram + kThread * static_cast<std::uint64_t>(threads);
+}
+
+std::uint64_t input_bytes(const Store& store, const Question& question) {
+  return store.allocated_bytes() + question.model.size_bytes() + question.poses.size_bytes();
+}
+
+std::uint64_t answer_bytes(const Store& store, const Question& question) {
+  const std::uint64_t a_slot =
+      (question.first_pose ? sizeof(std::uint32_t) : 0) +
+      (question.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
+  return store.slot_count() / 8 + a_slot * store.slot_count();
+}
+
+void check_memory(std::uint64_t needed, std::uint64_t allowed) {
+  if (needed <= allowed) return;
+  throw ResourceError("--memory " + format_size(allowed) + " is too little: this run needs " +
+                      format_size(needed) + " (--memory " + std::to_string(needed) +
+                      ") beside the mapped store");
+}
+
+}  // namespace clearway::tool

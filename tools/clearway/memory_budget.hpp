@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/question.hpp"
+#include "io/store.hpp"
+
+/// What a run takes of --memory beside the mapped store.
+namespace clearway::tool {
+
+/// The program itself: its libraries' data, stacks of threads, buffers of files.
+std::uint64_t program_bytes(int threads);
+
+/// Index of the store, model and poses.
+std::uint64_t input_bytes(const Store& store, const Question& question);
+
+/// Hits, first poses and clearances of all points.
+std::uint64_t answer_bytes(const Store& store, const Question& question);
+
+/// Throws ResourceError naming what is needed where that is more than `allowed`.
+void check_memory(std::uint64_t needed, std::uint64_t allowed);
+
+}  // namespace clearway::tool

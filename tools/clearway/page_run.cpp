@@ -1,0 +1,131 @@
+#include "clearway/page_run.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "clearway/memory_budget.hpp"
+#include "clearway/options.hpp"
+#include "stream/paginate.hpp"
+#include "stream/run_pages.hpp"
+#include "stream/write_answer.hpp"
+
+namespace clearway::tool {
+namespace {
+
+/// What a model field whose voxel is chosen may take, bytes, from the best to the least.
+constexpr std::uint64_t kFieldBytes[] = {std::uint64_t{64} << 20, std::uint64_t{16} << 20,
+                                         std::uint64_t{4} << 20, std::uint64_t{1} << 20};
+
+/// The layouts of an engine from the best to the least.
+std::vector<SlotLayout> layouts(const PageEngineKind& kind, std::uint64_t least_page_bytes) {
+  const std::uint64_t wanted = std::max(kind.page_bytes, least_page_bytes);
+  std::vector<SlotLayout> out;
+  for (std::uint32_t slots = kind.most_slots; slots > 0; --slots) {
+    out.push_back({slots, wanted, kind.page_cells});
+  }
+  if (wanted > least_page_bytes) out.push_back({1, least_page_bytes, 1});
+  return out;
+}
+
+/// Finds a plan and a layout that fit the memory.
+class Budget {
+ public:
+  Budget(const Store& store, const Question& question, const EngineOptions& options,
+         const PageEngineKind& kind)
+      : store_(store),
+        question_(question),
+        options_(options),
+        kind_(kind),
+        trees_(question),
+        kept_bytes_(program_bytes(options.threads) + input_bytes(store, question) +
+                    answer_bytes(store, question)) {}
+
+  void find() {
+    if (options_.field_voxel > 0) {
+      if (fits_with(kFieldBytes[0], 0, true)) return;
+    } else {
+      const std::uint64_t least = *std::rbegin(kFieldBytes);
+      for (const std::uint64_t field_bytes : kFieldBytes) {
+        // The coarse lattice is a quarter more.
+        const std::uint64_t while_built = field_bytes == least ? 0 : field_bytes + field_bytes / 4;
+        if (fits_with(field_bytes, while_built, field_bytes == least)) return;
+      }
+    }
+    check_memory(smallest_bytes_, options_.memory_bytes);
+  }
+
+  const SearchPlan& plan() const { return *plan_; }
+  const SlotLayout& layout() const { return layout_; }
+  double field_seconds() const { return trees_.model_seconds + field_seconds_; }
+  double plan_seconds() const { return trees_.motion_seconds + plan_seconds_; }
+  std::uint64_t needed_bytes() const { return needed_bytes_; }
+  std::uint64_t write_bytes() const { return options_.memory_bytes - kept_bytes_; }
+
+ private:
+  /// Whether there is a plan with such a field, and a layout, or the best of them only, that fit.
+  bool fits_with(std::uint64_t field_bytes, std::uint64_t while_built, bool any_layout) {
+    const std::uint64_t building = trees_.allocated_bytes() + while_built;
+    if (while_built > 0 && kept_bytes_ + building > options_.memory_bytes) return false;
+    plan_.reset();
+    plan_.emplace(store_, question_, trees_,
+                  ModelFieldOptions{options_.field_voxel, question_.clearance, field_bytes},
+                  options_.threads);
+    field_seconds_ += plan_->field_seconds;
+    plan_seconds_ += plan_->plan_seconds;
+    const std::uint64_t planned =
+        trees_.allocated_bytes() + plan_->allocated_bytes() + run_pages_bytes(plan_->cells.size());
+    for (const SlotLayout& layout : layouts(kind_, plan_->least_page_bytes())) {
+      const std::uint64_t searching = planned + kind_.host_bytes(*plan_, layout);
+      needed_bytes_ = kept_bytes_ + std::max(searching, least_write_bytes());
+      layout_ = layout;
+      const std::uint64_t budget = std::max(needed_bytes_, kept_bytes_ + building);
+      if (budget <= options_.memory_bytes) return true;
+      smallest_bytes_ = std::min(smallest_bytes_, budget);
+      if (!any_layout) break;
+    }
+    return false;
+  }
+
+  const Store& store_;
+  const Question& question_;
+  const EngineOptions& options_;
+  const PageEngineKind& kind_;
+  const QuestionTrees trees_;
+  const std::uint64_t kept_bytes_;  ///< from here to the end of the run
+  std::optional<SearchPlan> plan_;
+  SlotLayout layout_;
+  double field_seconds_ = 0, plan_seconds_ = 0;  ///< of all plans tried
+  std::uint64_t needed_bytes_ = 0;
+  std::uint64_t smallest_bytes_ = std::numeric_limits<std::uint64_t>::max();
+};
+
+}  // namespace
+
+Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
+                       const PageEngineKind& kind, Progress& progress, EngineReport& report) {
+  Budget budget(store, question, options, kind);
+  budget.find();
+  const SearchPlan& plan = budget.plan();
+  report.plan_seconds = budget.plan_seconds();
+  report.field_seconds = budget.field_seconds();
+  report.needed_bytes = budget.needed_bytes();
+  report.write_bytes = budget.write_bytes();
+  spdlog::info("model field: voxel {:.4g} m, {} bricks, {}", plan.field.voxel(),
+               format_count(plan.field.bricks()), format_size(plan.field.allocated_bytes()));
+
+  const std::unique_ptr<PageEngine> engine = kind.make(plan, budget.layout());
+  const std::vector<PlannedPage> pages =
+      paginate(store, plan.cells, budget.layout().page_bytes, budget.layout().cells);
+  report.pages = pages.size();
+  report.page_bytes = budget.layout().page_bytes;
+  report.slots = engine->slots();
+  Answer answer =
+      run_pages(store, plan.cells, pages, *engine, question, kind.threads, progress, report.stages);
+  kind.finished(*engine, report);
+  return answer;
+}
+
+}  // namespace clearway::tool

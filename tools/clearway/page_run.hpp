@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "clearway/engines.hpp"
+#include "clearway/search_plan.hpp"
+#include "core/page_engine.hpp"
+#include "core/page_pool.hpp"
+
+namespace clearway::tool {
+
+/// How an engine that works on pages is made and what it needs.
+struct PageEngineKind {
+  std::uint32_t most_slots = 1;  ///< with less memory, fewer
+  std::uint32_t page_cells = 1;  ///< the most cells of a page
+  std::uint64_t page_bytes = 0;  ///< wanted; more where a cell needs it, less with little memory
+  int threads = 1;               ///< that run the pipeline, those that wait for a device included
+
+  /// Memory on the host with this layout, bytes: what `make` allocates and what the searches do.
+  std::function<std::uint64_t(const SearchPlan&, const SlotLayout&)> host_bytes;
+  std::function<std::unique_ptr<PageEngine>(const SearchPlan&, const SlotLayout&)> make;
+  /// Called once after the last page: for the log, and for what only the engine can report.
+  std::function<void(const PageEngine&, EngineReport&)> finished;
+};
+
+/// Plans the question within options.memory_bytes, makes the engine and runs it. Where memory is
+/// short, first the model field gets coarser, then slots fewer, then pages smaller. Throws
+/// ResourceError, before cells are read, naming the smallest budget that works.
+Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
+                       const PageEngineKind& kind, Progress& progress, EngineReport& report);
+
+}  // namespace clearway::tool

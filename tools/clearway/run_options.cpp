@@ -1,0 +1,113 @@
+#include "clearway/run_options.hpp"
+
+#include <map>
+
+#include "clearway/options.hpp"
+
+namespace clearway::tool {
+namespace {
+
+void add_inputs(CLI::App& command, RunOptions& options) {
+  command.add_option("--env", options.environment, "The environment: a store of clearway convert")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--model", options.model, "The model's points: LAS, PLY or XYZ text, metres")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--radius", options.radius, "Search radius in metres, for example 0.1")
+      ->type_name("METRES")
+      ->required()
+      ->check(positive_length());
+  command.add_option("-o,--output", options.output, "The result, an HDF5 file")
+      ->type_name("FILE")
+      ->required();
+  const std::map<std::string, TrajectoryFormat> formats{{"auto", TrajectoryFormat::kAuto},
+                                                        {"matrix", TrajectoryFormat::kMatrix},
+                                                        {"tum", TrajectoryFormat::kTum},
+                                                        {"euroc", TrajectoryFormat::kEuroc},
+                                                        {"csv", TrajectoryFormat::kCsv}};
+  command
+      .add_option_function<std::string>(
+          "--trajectory-format",
+          [formats, &format = options.trajectory_options.format](const std::string& name) {
+            format = formats.at(name);
+          },
+          "Format of the trajectory where a guess could go wrong (default: auto)")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"auto", "matrix", "tum", "euroc", "csv"}));
+  command.add_flag("--allow-non-rigid", options.trajectory_options.allow_non_rigid,
+                   "Accept matrices that scale or shear");
+}
+
+void add_question(CLI::App& command, RunOptions& options) {
+  command.add_flag("--first-pose", options.first_pose,
+                   "Also the first pose (0-based) that touches each colliding point");
+  command
+      .add_option("--clearance", options.clearance,
+                  "Also distance and pose of the model's nearest approach to every point that it "
+                  "comes closer to than this, for example 0.5; engine sweep only")
+      ->type_name("METRES")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--between-poses", options.between_poses,
+                   "Move every model point on a straight segment from each pose to the next");
+}
+
+void add_device(CLI::App& command, EngineOptions& options) {
+  command
+      .add_option("--device", options.device,
+                  "cpu or cuda; auto takes a GPU where the engine and the machine have one")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  command
+      .add_option("--gpus", options.gpus,
+                  "Numbers of the GPUs to use, for example 0,1 (default: all)")
+      ->delimiter(',')
+      ->type_name("N,...")
+      ->check(CLI::Range(0, 1023));
+  add_size_option(command, "--device-memory", options.device_memory_bytes,
+                  "Bound of the memory of each GPU, without CUDA's own, for example 2G (default: "
+                  "what is free)");
+}
+
+void add_engine(CLI::App& command, EngineOptions& options) {
+  command.add_option("--engine", options.engine, "sweep, grid or kdtree; auto takes sweep")
+      ->check(CLI::IsMember({"auto", "sweep", "grid", "kdtree"}))
+      ->capture_default_str();
+  add_device(command, options);
+  add_threads_option(command, options.threads);
+  add_memory_option(command, options.memory_bytes);
+  command
+      .add_option("--field-voxel", options.field_voxel,
+                  "Voxel of the sweep engine's model field in metres (default: chosen)")
+      ->type_name("METRES")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--grid-cell", options.grid_cell,
+                  "Grid cell of engine grid in metres (default: chosen)")
+      ->type_name("METRES")
+      ->check(positive_length());
+  command
+      .add_option_function<std::string>(
+          "--precision",
+          [&options](const std::string& name) { options.float_precision = name == "float"; },
+          "exact, or float: engine grid decides in float alone, for comparison (default: exact)")
+      ->type_name("PRECISION")
+      ->check(CLI::IsMember({"exact", "float"}));
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  add_inputs(command, options);
+  add_question(command, options);
+  add_engine(command, options.engine);
+  command.add_flag("--force", options.force, "Overwrite an existing result");
+  command.add_flag("--json", options.json, "Print one JSON object about the run");
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,40 @@
+#include "clearway/search_plan.hpp"
+
+#include <algorithm>
+
+#include "clearway/stopwatch.hpp"
+#include "cpu/cell_search.hpp"
+#include "stream/paginate.hpp"
+#include "stream/plan.hpp"
+
+namespace clearway::tool {
+
+SearchPlan::SearchPlan(const Store& cloud, const Question& question, const QuestionTrees& trees,
+                       const ModelFieldOptions& field_options, int threads, const Stopwatch& clock)
+    : store(cloud),
+      motion(trees.motion),
+      field(trees.model, question.radius, field_options, threads),
+      field_seconds(clock.seconds()),
+      filter(question, trees.motion, trees.model, field, cloud),
+      cells(plan(cloud, trees.motion, filter)),
+      plan_seconds(clock.seconds() - field_seconds) {}
+
+std::uint64_t SearchPlan::allocated_bytes() const {
+  constexpr std::uint64_t kHeapBlock = 16;
+  // While cells are sorted, half of them are there twice.
+  std::uint64_t bytes = field.allocated_bytes() + 3 * cells.capacity() * sizeof(PlannedCell) / 2;
+  for (const PlannedCell& cell : cells) {
+    bytes += cell.nodes.capacity() * sizeof(std::uint32_t) + kHeapBlock;
+  }
+  return bytes;
+}
+
+std::uint64_t SearchPlan::least_page_bytes() const { return smallest_page_bytes(store, cells); }
+
+std::uint64_t SearchPlan::most_poses() const {
+  std::uint64_t most = 0;
+  for (const PlannedCell& cell : cells) most = std::max(most, pose_count(motion, cell.nodes));
+  return most;
+}
+
+}  // namespace clearway::tool

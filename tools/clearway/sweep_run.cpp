@@ -1,0 +1,47 @@
+#include "clearway/sweep_run.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "clearway/options.hpp"
+#include "cpu/sweep_engine.hpp"
+
+namespace clearway::tool {
+namespace {
+
+/// Beside those that are searched: pages that are read meanwhile.
+constexpr std::uint32_t kSlotsAhead = 2;
+
+void log_statistics(const SweepStatistics& s) {
+  spdlog::info("tests: {} of boxes, {} of points ({} points), {} exact", format_count(s.node_tests),
+               format_count(s.point_tests), format_count(s.points_tested),
+               format_count(s.exact_tests));
+}
+
+}  // namespace
+
+PageEngineKind cpu_sweep(const Store& store, const Question& question,
+                         const EngineOptions& options) {
+  const auto threads = static_cast<std::uint32_t>(options.threads);
+  return {.most_slots = threads + kSlotsAhead,
+          .page_cells = 1,
+          .page_bytes = 0,
+          .threads = options.threads,
+          .host_bytes =
+              [&store, &question, threads](const SearchPlan& plan, const SlotLayout& layout) {
+                return layout.slots * PagePool::slot_bytes(store, question, layout) +
+                       std::min(layout.slots, threads) *
+                           CellSearch::most_bytes(store, question, plan.most_poses());
+              },
+          .make =
+              [&store](const SearchPlan& plan, const SlotLayout& layout) {
+                return std::make_unique<SweepEngine>(store, plan.filter, layout);
+              },
+          .finished =
+              [](const PageEngine& engine, EngineReport&) {
+                log_statistics(dynamic_cast<const SweepEngine&>(engine).statistics());
+              }};
+}
+
+}  // namespace clearway::tool
