@@ -32,6 +32,12 @@ struct PageAnswer {
   Interval upload{}, compute{};                ///< when the page was sent, and searched
 };
 
+/// Of values that a page has `size` of a cell, those of its cell `index`; none where it has none.
+template <typename Value>
+std::span<Value> part_of_cell(std::span<Value> values, std::size_t index, std::size_t size) {
+  return values.empty() ? values : values.subspan(index * size, size);
+}
+
 /// The one interface by which the pipeline knows an engine that works cell by cell. A slot holds
 /// one page at a time: filled by the pipeline, then start, then finish. Different slots may be used
 /// by different threads at once. The pages and answers of all slots are allocated when the engine

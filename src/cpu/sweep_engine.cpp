@@ -3,15 +3,6 @@
 #include "core/kd_order.hpp"
 
 namespace clearway {
-namespace {
-
-template <typename Value>
-std::span<Value> part(std::span<Value> values, std::size_t index, std::size_t size) {
-  return values.empty() ? values : values.subspan(index * size, size);
-}
-
-}  // namespace
-
 SweepEngine::SweepEngine(const PackedCloud& cloud, const SweepFilter& filter,
                          const SlotLayout& layout)
     : cloud_(cloud),
@@ -25,9 +16,10 @@ PageAnswer SweepEngine::finish(std::uint32_t slot) {
   const std::size_t blocks = cloud_.blocks_per_cell(), slots = cloud_.cell_slots();
   std::unique_ptr<CellSearch> search = take_search();
   for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
-    search->run(page, i,
-                {part(pool_.hits(slot), i, blocks), part(pool_.first_poses(slot), i, slots),
-                 part(pool_.clearances(slot), i, slots)});
+    search->run(
+        page, i,
+        {part_of_cell(pool_.hits(slot), i, blocks), part_of_cell(pool_.first_poses(slot), i, slots),
+         part_of_cell(pool_.clearances(slot), i, slots)});
   }
   give_back(std::move(search));
   const std::size_t cells = page.shape.cells;

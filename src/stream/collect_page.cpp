@@ -3,31 +3,21 @@
 #include <cassert>
 
 namespace clearway {
-namespace {
-
-/// The part of a page's values that belongs to its cell `index`; nothing where there are none.
-template <typename Value>
-std::span<const Value> part(std::span<const Value> values, std::size_t index, std::size_t size) {
-  return values.empty() ? values : values.subspan(index * size, size);
-}
-
-}  // namespace
-
 void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                   const PageAnswer& answer, Answer& all) {
   assert(answer.hits.size() == cells.size() * cloud.blocks_per_cell());
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto hits = part(answer.hits, i, cloud.blocks_per_cell());
+    const auto hits = part_of_cell(answer.hits, i, cloud.blocks_per_cell());
     const std::uint64_t first_word = std::uint64_t{cells[i].cell} * cloud.blocks_per_cell();
     for (std::size_t block = 0; block < hits.size(); ++block) {
       if (hits[block] != 0) all.hits.mark_word(first_word + block, hits[block]);
     }
     const std::uint64_t first_slot = std::uint64_t{cells[i].cell} * cloud.cell_slots();
-    const auto poses = part(answer.first_poses, i, cloud.cell_slots());
+    const auto poses = part_of_cell(answer.first_poses, i, cloud.cell_slots());
     for (std::size_t slot = 0; slot < poses.size(); ++slot) {
       if (poses[slot] != HitSet::kNever) all.hits.mark(first_slot + slot, poses[slot]);
     }
-    const auto clearances = part(answer.clearances, i, cloud.cell_slots());
+    const auto clearances = part_of_cell(answer.clearances, i, cloud.cell_slots());
     for (std::size_t slot = 0; slot < clearances.size(); ++slot) {
       if (clearances[slot].found()) all.clearances.set(first_slot + slot, clearances[slot]);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "core/error.hpp"
@@ -9,7 +10,12 @@
 namespace clearway {
 namespace {
 
-PageShape with_cell(PageShape shape, const PackedCloud& cloud, const PlannedCell& cell) {
+constexpr std::uint64_t kMostNodes = std::numeric_limits<std::uint32_t>::max();
+
+/// The shape with one cell more, where that is a page at all.
+std::optional<PageShape> with_cell(PageShape shape, const PackedCloud& cloud,
+                                   const PlannedCell& cell) {
+  if (shape.nodes + cell.nodes.size() > kMostNodes) return std::nullopt;
   ++shape.cells;
   shape.nodes += static_cast<std::uint32_t>(cell.nodes.size());
   shape.payload_bytes += cloud.packed_bytes(cell.cell);
@@ -18,31 +24,37 @@ PageShape with_cell(PageShape shape, const PackedCloud& cloud, const PlannedCell
 
 }  // namespace
 
+PageShape page_shape(const PackedCloud& cloud, std::span<const PlannedCell> cells) {
+  PageShape shape{.blocks_per_cell = cloud.blocks_per_cell()};
+  for (const PlannedCell& cell : cells) {
+    const std::optional<PageShape> longer = with_cell(shape, cloud, cell);
+    if (!longer) throw ResourceError("cells with too many motion nodes for one page");
+    shape = *longer;
+  }
+  return shape;
+}
+
 std::uint64_t smallest_page_bytes(const PackedCloud& cloud, std::span<const PlannedCell> cells) {
   std::uint64_t bytes = 0;
-  for (const PlannedCell& cell : cells) {
-    const PageShape empty{.blocks_per_cell = cloud.blocks_per_cell()};
-    bytes = std::max(bytes, with_cell(empty, cloud, cell).bytes());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    bytes = std::max(bytes, page_shape(cloud, cells.subspan(i, 1)).bytes());
   }
   return bytes;
 }
 
 std::vector<PlannedPage> paginate(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                                   std::uint64_t page_bytes, std::uint32_t most_cells) {
-  const PageShape empty{.blocks_per_cell = cloud.blocks_per_cell()};
-  constexpr std::uint64_t kMostNodes = std::numeric_limits<std::uint32_t>::max();
   std::vector<PlannedPage> pages;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (!pages.empty()) {
+    if (!pages.empty() && pages.back().shape.cells < most_cells) {
       PageShape& shape = pages.back().shape;
-      const PageShape longer = with_cell(shape, cloud, cells[i]);
-      if (longer.cells <= most_cells && longer.bytes() <= page_bytes &&
-          std::uint64_t{shape.nodes} + cells[i].nodes.size() <= kMostNodes) {
-        shape = longer;
+      const std::optional<PageShape> longer = with_cell(shape, cloud, cells[i]);
+      if (longer && longer->bytes() <= page_bytes) {
+        shape = *longer;
         continue;
       }
     }
-    pages.push_back({i, with_cell(empty, cloud, cells[i])});
+    pages.push_back({i, page_shape(cloud, cells.subspan(i, 1))});
     if (pages.back().shape.bytes() > page_bytes) {
       throw ResourceError("a page of " + std::to_string(page_bytes) +
                           " bytes is too small for these cells, expected at least " +

@@ -19,6 +19,10 @@ struct PlannedPage {
   }
 };
 
+/// Of the page that these cells fill. Throws ResourceError where their motion nodes are too many
+/// for any page.
+PageShape page_shape(const PackedCloud& cloud, std::span<const PlannedCell> cells);
+
 /// The smallest page that holds any one of the cells, with its motion nodes, bytes; 0 for none.
 std::uint64_t smallest_page_bytes(const PackedCloud& cloud, std::span<const PlannedCell> cells);
 

@@ -4,18 +4,10 @@
 #include <cassert>
 #include <cstring>
 
+#include "stream/paginate.hpp"
+
 namespace clearway {
 namespace {
-
-PageShape shape_of(const PackedCloud& cloud, std::span<const PlannedCell> cells) {
-  PageShape shape{.cells = static_cast<std::uint32_t>(cells.size()),
-                  .blocks_per_cell = cloud.blocks_per_cell()};
-  for (const PlannedCell& cell : cells) {
-    shape.nodes += static_cast<std::uint32_t>(cell.nodes.size());
-    shape.payload_bytes += cloud.packed_bytes(cell.cell);
-  }
-  return shape;
-}
 
 /// Appends to a section of a page; what is left of it is zero in the end.
 class Section {
@@ -47,7 +39,7 @@ class Section {
 
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                      std::span<std::byte> page) {
-  const PageShape shape = shape_of(cloud, cells);
+  const PageShape shape = page_shape(cloud, cells);
   assert(shape.bytes() <= page.size());
   Section headers(page, 0, shape.nodes_at());
   Section nodes(page, shape.nodes_at(), shape.blocks_at());

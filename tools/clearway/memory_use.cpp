@@ -1,21 +1,25 @@
 #include "clearway/memory_use.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
+#include <cstdio>
 
 namespace clearway::tool {
 
-std::uint64_t anonymous_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t total = 0, resident = 0, shared = 0;
-  if (!(statm >> total >> resident >> shared) || resident < shared) return 0;
-  return (resident - shared) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+std::uint64_t MemoryWatch::anonymous_bytes() const {
+  char text[128] = {};
+  if (::pread(statm_, text, sizeof text - 1, 0) <= 0) return 0;
+  unsigned long long total = 0, resident = 0, shared = 0;
+  if (std::sscanf(text, "%llu %llu %llu", &total, &resident, &shared) != 3) return 0;
+  return resident < shared ? 0 : (resident - shared) * page_bytes_;
 }
 
 MemoryWatch::MemoryWatch()
-    : thread_([this] {
+    : statm_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)),
+      page_bytes_(static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))),
+      thread_([this] {
         while (!stopped_) {
           look();
           std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -25,6 +29,7 @@ MemoryWatch::MemoryWatch()
 MemoryWatch::~MemoryWatch() {
   stopped_ = true;
   thread_.join();
+  if (statm_ >= 0) ::close(statm_);
 }
 
 std::uint64_t MemoryWatch::peak_bytes() {

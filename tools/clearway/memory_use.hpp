@@ -6,11 +6,8 @@
 
 namespace clearway::tool {
 
-/// Resident memory of this process without mapped files, bytes; 0 where the system does not tell.
-/// Source: /proc/self/statm.
-std::uint64_t anonymous_bytes();
-
-/// Watches anonymous_bytes() from a thread of its own, every few milliseconds, as long as it lives.
+/// Watches the resident memory of this process without mapped files from a thread of its own, every
+/// few milliseconds, as long as it lives. Source: /proc/self/statm.
 class MemoryWatch {
  public:
   MemoryWatch();
@@ -18,12 +15,15 @@ class MemoryWatch {
   MemoryWatch(const MemoryWatch&) = delete;
   MemoryWatch& operator=(const MemoryWatch&) = delete;
 
-  /// The most that was seen, now included.
+  /// The most that was seen, now included, bytes; 0 where the system does not tell.
   std::uint64_t peak_bytes();
 
  private:
+  std::uint64_t anonymous_bytes() const;
   void look();
 
+  int statm_;
+  std::uint64_t page_bytes_;
   std::atomic<std::uint64_t> peak_{0};
   std::atomic<bool> stopped_{false};
   std::thread thread_;

@@ -30,6 +30,11 @@ std::vector<SlotLayout> layouts(const PageEngineKind& kind, std::uint64_t least_
   return out;
 }
 
+/// While the trees over model and poses are built: 48 bytes a model point, and 144 a pose.
+std::uint64_t tree_building_bytes(const Question& question) {
+  return 48 * question.model.size() + 144 * question.poses.size();
+}
+
 /// Finds a plan and a layout that fit the memory.
 class Budget {
  public:
@@ -67,7 +72,8 @@ class Budget {
  private:
   /// Whether there is a plan with such a field, and a layout, or the best of them only, that fit.
   bool fits_with(std::uint64_t field_bytes, std::uint64_t while_built, bool any_layout) {
-    const std::uint64_t building = trees_.allocated_bytes() + while_built;
+    const std::uint64_t building =
+        std::max(trees_.allocated_bytes() + while_built, tree_building_bytes(question_));
     if (while_built > 0 && kept_bytes_ + building > options_.memory_bytes) return false;
     plan_.reset();
     plan_.emplace(store_, question_, trees_,
