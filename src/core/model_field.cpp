@@ -40,7 +40,7 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
     fill_coarse(options.reach > 0, threads);
     const double band = this->band(radius, options.reach);
     const std::uint64_t bytes = mark_bricks(band, threads) * kBrickNodes * 8;
-    if (options.voxel > 0 || bytes <= options.most_bytes) break;
+    if (bytes <= options.most_bytes) break;
   }
   fill_bricks(threads);
 }

@@ -105,7 +105,10 @@ TEST_CASE("field bounds hold and are tight near the model") {
 TEST_CASE("a field keeps within its memory by larger voxels") {
   const auto model = shell(2000, {0, 0, 0});
   const ModelTree tree(model);
-  const ModelField small(tree, 0.01, {.voxel = 0, .most_bytes = 1 << 20}, 1);
-  CHECK(small.allocated_bytes() < 3 << 20);
-  CHECK(small.voxel() > 0.005);
+  for (const double voxel : {0.0, 1e-3, 1e-9}) {
+    CAPTURE(voxel);
+    const ModelField small(tree, 0.01, {.voxel = voxel, .most_bytes = 1 << 20}, 1);
+    CHECK(small.allocated_bytes() < 3 << 20);
+    CHECK(small.voxel() > 0.005);
+  }
 }
