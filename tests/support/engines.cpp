@@ -9,6 +9,7 @@
 #include "cpu/sweep_engine.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_cells.hpp"
+#include "support/grid_runs.hpp"
 
 namespace clearway {
 namespace {
@@ -35,7 +36,12 @@ HitSet sweep(const PackedCloud& cloud, const Question& question, int threads) {
   return sweep_with_clearances(cloud, question, threads).hits;
 }
 
-const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep}};
+HitSet grid(const PackedCloud& cloud, const Question& question, int) {
+  return run_grid(cloud, question, {});
+}
+
+const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep},
+                          Engine{"grid", grid, false}};
 
 constexpr int kThreads = 3;
 
@@ -56,6 +62,7 @@ std::uint64_t check_answers(const MemoryCloud& cloud, const std::vector<std::uin
   std::uint64_t colliding = 0;
   for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
   for (const Engine& engine : engines()) {
+    if (question.between_poses && !engine.between_poses) continue;
     for (const bool first_pose : {false, true}) {
       question.first_pose = first_pose;
       const HitSet hits = engine.run(cloud, question, kThreads);

@@ -14,6 +14,7 @@ namespace clearway {
 struct Engine {
   std::string name;
   HitSet (*run)(const PackedCloud& cloud, const Question& question, int threads);
+  bool between_poses = true;  ///< whether it answers such questions
 };
 
 std::span<const Engine> engines();
