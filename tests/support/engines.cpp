@@ -1,7 +1,7 @@
 #include "support/engines.hpp"
 
-#include <array>
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "core/answer.hpp"
 #include "cpu/brute_force.hpp"
@@ -40,8 +40,7 @@ HitSet grid(const PackedCloud& cloud, const Question& question, int) {
   return run_grid(cloud, question, {});
 }
 
-const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep},
-                          Engine{"grid", grid, false}};
+std::vector<Engine> under_test{{"kdtree", kdtree}, {"sweep", sweep}, {"grid", grid, false}};
 
 constexpr int kThreads = 3;
 
@@ -131,7 +130,9 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Q
 
 }  // namespace
 
-std::span<const Engine> engines() { return kEngines; }
+std::span<const Engine> engines() { return under_test; }
+
+void test_only(std::vector<Engine> engines) { under_test = std::move(engines); }
 
 std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
                                                const Quantisation& quantisation,

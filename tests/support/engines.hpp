@@ -19,9 +19,13 @@ struct Engine {
 
 std::span<const Engine> engines();
 
+/// From now on engines() are these.
+void test_only(std::vector<Engine> engines);
+
 /// Runs every engine on the points, packed in several ways, as a set and with first poses, at
-/// poses and between them, and checks the answers against brute force; likewise clearances below and
-/// above the radius, where an engine has them. Returns the number of points that collide at a pose.
+/// poses and between them, and checks the answers against brute force; likewise clearances below
+/// and above the radius, where an engine has them. Returns the number of points that collide at a
+/// pose.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question);
 

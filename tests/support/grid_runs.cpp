@@ -37,27 +37,35 @@ std::vector<PlannedCell> plan_everything(const PackedCloud& cloud, const MotionT
 
 }  // namespace
 
-HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run) {
+HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+                GridStatistics* statistics) {
+  return run_grid(cloud, question, run,
+                  [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+                    GridCpuEngine engine(
+                        scene, {.slots = run.slots,
+                                .page_bytes = page_bytes,
+                                .page_cells = static_cast<std::uint32_t>(run.cells_a_page),
+                                .work_list = run.work_list});
+                    HitSet hits = run_in(engine);
+                    if (statistics != nullptr) statistics->add(engine.statistics());
+                    return hits;
+                  });
+}
+
+HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+                const RunPages& run_pages) {
   if (question.model.empty()) return HitSet(cloud.slot_count(), question.first_pose);
-  Box box{question.model[0], question.model[0]};
-  for (const Vec3& m : question.model) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], m[k]);
-      box.hi[k] = std::max(box.hi[k], m[k]);
-    }
-  }
-  const MotionTree motion(question.poses, box);
+  const MotionTree motion(question.poses, ModelGroups(question.model).box());
   const std::vector<PlannedCell> cells = plan_everything(cloud, motion);
-  GridCpuOptions options{.slots = run.slots,
-                         .page_cells = static_cast<std::uint32_t>(run.cells_a_page),
-                         .work_list = run.work_list};
+  std::uint64_t page_bytes = 0;
   for (std::size_t i = 0; i < cells.size(); i += run.cells_a_page) {
     const auto page = std::span(cells).subspan(i, std::min(run.cells_a_page, cells.size() - i));
-    options.page_bytes = std::max(options.page_bytes, shape_of(cloud, page).bytes());
+    page_bytes = std::max(page_bytes, shape_of(cloud, page).bytes());
   }
   const GridScene scene(question, motion, cloud, run.options);
-  GridCpuEngine engine(scene, options);
-  return run_page_engine(cloud, cells, run.cells_a_page, question.first_pose, engine);
+  return run_pages(scene, page_bytes, [&](PageEngine& engine) {
+    return run_page_engine(cloud, cells, run.cells_a_page, question.first_pose, engine);
+  });
 }
 
 }  // namespace clearway
