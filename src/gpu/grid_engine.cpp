@@ -43,10 +43,11 @@ std::uint32_t sorted_slots(const GridScene& scene, const CudaGridOptions& option
 
 struct Slot {
   Slot(const GridScene& scene, const CudaGridOptions& options)
-      : Slot(scene.view(), options, largest_layout(scene, options), sorted_slots(scene, options)) {}
+      : Slot(scene.view(), options, largest_layout(scene, options), sorted_slots(scene, options),
+             scene.first_pose()) {}
 
   Slot(const GridSceneView& scene, const CudaGridOptions& options, const Layout& layout,
-       std::uint32_t points)
+       std::uint32_t points, bool first_pose)
       : host_page(options.page_bytes),
         host_plan(layout.plan_bytes),
         host_answer(layout.answer_bytes),
@@ -61,6 +62,8 @@ struct Slot {
         buckets(std::size_t{options.page_cells} * scene.bucket_count),
         occupancy(std::size_t{options.page_cells} * scene.word_count),
         group_occupancy(std::size_t{options.page_cells} * scene.word_count),
+        done(first_pose ? 0 : divide_up(points, 64)),
+        latest(first_pose ? std::size_t{options.page_cells} * scene.bucket_count : 0),
         next_task(1),
         sort_scratch(grid_sort_bytes(points)) {}
 
@@ -73,7 +76,9 @@ struct Slot {
   DeviceBuffer<std::uint32_t> keys, order, sorted_keys, sorted_order;
   DeviceBuffer<GridPoint> grid_points;
   DeviceBuffer<BucketRange> buckets;
-  DeviceBuffer<std::uint64_t> occupancy, group_occupancy, next_task;
+  DeviceBuffer<std::uint64_t> occupancy, group_occupancy, done;
+  DeviceBuffer<std::uint32_t> latest;
+  DeviceBuffer<std::uint64_t> next_task;
   DeviceBuffer<std::byte> sort_scratch;
   CudaStream stream;
   CudaEvent begun, uploaded, searched, finished;
@@ -184,6 +189,8 @@ class CudaGridEngine::Impl {
             .buckets = slot.buckets.data(),
             .occupancy = slot.occupancy.data(),
             .group_occupancy = slot.group_occupancy.data(),
+            .done = slot.done.data(),
+            .latest = slot.latest.data(),
             .hits = reinterpret_cast<std::uint64_t*>(answer),
             .first_poses = scene_.first_pose() ? first_poses : nullptr};
   }
@@ -226,7 +233,8 @@ std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const CudaGridOptions
   const GridSceneView& view = scene.view();
   const std::uint64_t a_point = 4 * sizeof(std::uint32_t) + sizeof(GridPoint);
   const std::uint64_t a_cell =
-      view.bucket_count * sizeof(BucketRange) + 2 * view.word_count * sizeof(std::uint64_t);
+      view.bucket_count * sizeof(BucketRange) + 2 * view.word_count * sizeof(std::uint64_t) +
+      (scene.first_pose() ? view.bucket_count * sizeof(std::uint32_t) : view.slots / 8);
   return options.page_bytes + layout.plan_bytes + layout.answer_bytes + layout.points * a_point +
          options.page_cells * a_cell + sizeof(std::uint64_t) +
          grid_sort_bytes(sorted_slots(scene, options));

@@ -175,8 +175,11 @@ void search_grids(const GridSceneView& scene, const GridPageView& page, std::uin
                   std::uint64_t* next_task, GridStatistics* statistics, cudaStream_t stream) {
   const std::size_t count = slot_count(scene, page);
   check_cuda(cudaMemsetAsync(page.hits, 0, count / 8, stream));
+  if (page.done != nullptr) check_cuda(cudaMemsetAsync(page.done, 0, count / 8, stream));
   if (page.first_poses != nullptr) {
+    const std::size_t buckets = std::size_t{page.page.shape.cells} * scene.bucket_count;
     check_cuda(cudaMemsetAsync(page.first_poses, 0xff, count * sizeof(std::uint32_t), stream));
+    check_cuda(cudaMemsetAsync(page.latest, 0xff, buckets * sizeof(std::uint32_t), stream));
   }
   if (tasks == 0) return;
   check_cuda(cudaMemsetAsync(next_task, 0, sizeof(*next_task), stream));

@@ -24,7 +24,12 @@ struct GridCpuEngine::Slot {
     occupancy.resize(n * all.word_count);
     group_occupancy.resize(n * all.word_count);
     hits.resize(n * all.slots / kBlockPoints);
-    if (scene.first_pose()) first_poses.resize(n * all.slots);
+    if (scene.first_pose()) {
+      first_poses.resize(n * all.slots);
+      latest.resize(n * all.bucket_count);
+    } else {
+      done.resize(n * all.slots / 64);
+    }
     open.reserve(options.work_list);
   }
 
@@ -46,7 +51,8 @@ struct GridCpuEngine::Slot {
   std::vector<BucketRange> buckets;
   std::vector<std::uint64_t> occupancy, group_occupancy;
   std::vector<std::uint64_t> hits;
-  std::vector<std::uint32_t> first_poses;
+  std::vector<std::uint64_t> done;
+  std::vector<std::uint32_t> first_poses, latest;
   std::vector<std::uint32_t> open;  ///< pairs
   PageShape shape;
   GridPageView view{};
@@ -61,7 +67,9 @@ void GridCpuEngine::Slot::build(const GridScene& scene) {
   std::fill(occupancy.begin(), occupancy.end(), 0);
   std::fill(group_occupancy.begin(), group_occupancy.end(), 0);
   std::fill(hits.begin(), hits.end(), 0);
+  std::fill(done.begin(), done.end(), 0);
   std::fill(first_poses.begin(), first_poses.end(), HitSet::kNever);
+  std::fill(latest.begin(), latest.end(), HitSet::kNever);
   const std::uint32_t count = shape.cells * all.slots;
   for (std::uint32_t slot = 0; slot < count; ++slot) {
     sorted[slot] = std::uint64_t{sort_key(all, view, slot)} << 32 | slot;
@@ -108,7 +116,7 @@ std::uint64_t GridCpuEngine::Slot::allocated_bytes() const {
     return (std::uint64_t{0} + ... + (vectors.capacity() * sizeof(vectors[0])));
   };
   return bytes(page, entry_runs, cells, cell_runs, sorted, keys, order, points, buckets, occupancy,
-               group_occupancy, hits, first_poses, open);
+               group_occupancy, hits, done, first_poses, latest, open);
 }
 
 GridCpuEngine::GridCpuEngine(const GridScene& scene, const GridCpuOptions& options)
@@ -147,6 +155,8 @@ PageAnswer GridCpuEngine::finish(std::uint32_t index) {
                .buckets = slot.buckets.data(),
                .occupancy = slot.occupancy.data(),
                .group_occupancy = slot.group_occupancy.data(),
+               .done = scene_.first_pose() ? nullptr : slot.done.data(),
+               .latest = scene_.first_pose() ? slot.latest.data() : nullptr,
                .hits = slot.hits.data(),
                .first_poses = scene_.first_pose() ? slot.first_poses.data() : nullptr};
   const std::uint64_t tasks =

@@ -21,6 +21,15 @@ CLEARWAY_HD inline void or_bits(std::uint64_t& word, std::uint64_t bits) {
 #endif
 }
 
+/// Place of the lowest set bit of a word that is not 0.
+CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t word) {
+#ifdef __CUDA_ARCH__
+  return static_cast<std::uint32_t>(__ffsll(static_cast<long long>(word)) - 1);
+#else
+  return static_cast<std::uint32_t>(__builtin_ctzll(word));
+#endif
+}
+
 /// Monotone in x; |x * per_metre| < 2^22.
 CLEARWAY_HD inline int grid_step(float x, float per_metre) {
   return static_cast<int>(floorf(x * per_metre));

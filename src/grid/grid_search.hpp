@@ -123,29 +123,71 @@ CLEARWAY_HD inline bool is_hit(const GridSceneView& scene, const GridPageView& p
   return collides_in_float(e, scene.poses[pose], scene.points[model_point], scene.radius);
 }
 
-/// Tests one point of the cell against the moved model point x, in float first.
+/// A model point at a pose: as the predicate has it, and in the cell's floats.
+struct MovedPoint {
+  std::uint32_t pose;
+  std::uint32_t model_point;
+  Vec3 m;
+  GridPoint x;
+};
+
+/// Tests place `at` of the page's points against a moved model point, in float first.
 CLEARWAY_HD inline void test_pair(const GridSceneView& scene, const GridPageView& page,
-                                  std::uint32_t cell, std::uint32_t pose, std::uint32_t model_point,
-                                  const Vec3& m, const GridPoint& x, const GridPoint& p,
+                                  std::uint32_t cell, std::uint32_t at, const MovedPoint& moved,
                                   GridStatistics& statistics) {
   const GridCell& grid = page.cells[cell];
-  const float dx = p.x - x.x, dy = p.y - x.y, dz = p.z - x.z;
+  const GridPoint p = page.points[at];
+  ++statistics.point_tests;
+  const float dx = p.x - moved.x.x, dy = p.y - moved.x.y, dz = p.z - moved.x.z;
   const float squared = dx * dx + dy * dy + dz * dz;
-  if (squared > grid.outer_squared || !is_wanted(scene, page, cell, p.index, pose)) return;
+  if (squared > grid.outer_squared) return;
+  if (!is_wanted(scene, page, cell, p.index, moved.pose)) return;
   if (!(squared < grid.inner_squared)) {
     ++statistics.exact_tests;
-    if (!is_hit(scene, page, cell, p.index, pose, model_point, m)) return;
+    if (!is_hit(scene, page, cell, p.index, moved.pose, moved.model_point, moved.m)) return;
   }
-  mark_hit(scene, page, cell, p.index, pose);
+  mark_hit(scene, page, cell, p.index, moved.pose);
+  if (page.done != nullptr) or_bits(page.done[at / 64], std::uint64_t{1} << (at % 64));
 }
 
-/// Tests the points of all grid cells within reach of x.
+/// Tests the points begin .. end - 1 that are not hit yet.
+CLEARWAY_HD inline void test_open(const GridSceneView& scene, const GridPageView& page,
+                                  std::uint32_t cell, const BucketRange& range,
+                                  const MovedPoint& moved, GridStatistics& statistics) {
+  for (std::uint32_t first = range.begin; first < range.end;) {
+    const std::uint32_t next = (first / 64 + 1) * 64;
+    std::uint64_t open = ~page.done[first / 64] >> (first % 64);
+    if (range.end < next) open &= (std::uint64_t{1} << (range.end - first)) - 1;
+    for (; open != 0; open &= open - 1) {
+      test_pair(scene, page, cell, first + lowest_bit(open), moved, statistics);
+    }
+    first = next;
+  }
+}
+
+/// Tests all points of a bucket, unless each has been hit at an earlier pose. Their latest first
+/// pose only ever falls, so one that another lane notes late is still a bound.
+CLEARWAY_HD inline void test_earlier(const GridSceneView& scene, const GridPageView& page,
+                                     std::uint32_t cell, std::uint64_t bucket,
+                                     const BucketRange& range, const MovedPoint& moved,
+                                     GridStatistics& statistics) {
+  if (moved.pose >= page.latest[bucket]) return;
+  std::uint32_t latest = 0;
+  for (std::uint32_t at = range.begin; at < range.end; ++at) {
+    test_pair(scene, page, cell, at, moved, statistics);
+    const std::uint64_t slot = std::uint64_t{cell} * scene.slots + page.points[at].index;
+    const std::uint32_t first = page.first_poses[slot];
+    if (first > latest) latest = first;
+  }
+  if (latest != HitSet::kNever) page.latest[bucket] = latest;
+}
+
+/// Tests the points of all grid cells within reach of the moved model point.
 CLEARWAY_HD inline void search_buckets(const GridSceneView& scene, const GridPageView& page,
-                                       std::uint32_t cell, std::uint32_t pose,
-                                       std::uint32_t model_point, const Vec3& m, const GridPoint& x,
+                                       std::uint32_t cell, const MovedPoint& moved,
                                        GridStatistics& statistics) {
   const GridCell& grid = page.cells[cell];
-  const float at[3] = {x.x, x.y, x.z};
+  const float at[3] = {moved.x.x, moved.x.y, moved.x.z};
   int lo[3], hi[3];
   for (int k = 0; k < 3; ++k) {
     const int last = grid_step(grid.extent[k], grid.per_bucket);
@@ -154,15 +196,18 @@ CLEARWAY_HD inline void search_buckets(const GridSceneView& scene, const GridPag
     if (lo[k] < 0) lo[k] = 0;
     if (hi[k] > last) hi[k] = last;
   }
-  const BucketRange* buckets = page.buckets + std::uint64_t{cell} * scene.bucket_count;
-  for (int k = lo[2]; k <= hi[2]; ++k) {
-    for (int j = lo[1]; j <= hi[1]; ++j) {
-      for (int i = lo[0]; i <= hi[0]; ++i) {
-        const BucketRange range = buckets[bucket_of(i, j, k, scene.bucket_count)];
+  const std::uint64_t first = std::uint64_t{cell} * scene.bucket_count;
+  for (int z = lo[2]; z <= hi[2]; ++z) {
+    for (int y = lo[1]; y <= hi[1]; ++y) {
+      for (int x = lo[0]; x <= hi[0]; ++x) {
+        const std::uint64_t bucket = first + bucket_of(x, y, z, scene.bucket_count);
+        const BucketRange range = page.buckets[bucket];
         ++statistics.bucket_tests;
-        statistics.point_tests += range.end - range.begin;
-        for (std::uint32_t p = range.begin; p < range.end; ++p) {
-          test_pair(scene, page, cell, pose, model_point, m, x, page.points[p], statistics);
+        if (range.begin == range.end) continue;
+        if (page.done != nullptr) {
+          test_open(scene, page, cell, range, moved, statistics);
+        } else {
+          test_earlier(scene, page, cell, bucket, range, moved, statistics);
         }
       }
     }
@@ -196,7 +241,7 @@ CLEARWAY_HD inline void search_point(const GridSceneView& scene, const GridPageV
     return;
   }
   ++statistics.searches;
-  search_buckets(scene, page, cell, pose, model_point, m, x, statistics);
+  search_buckets(scene, page, cell, {pose, model_point, m, x}, statistics);
 }
 
 /// An open pair of group and pose in one word.

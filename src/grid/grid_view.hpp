@@ -108,8 +108,10 @@ struct GridPageView {
   BucketRange* buckets;             ///< bucket_count a cell, zero at first
   std::uint64_t* occupancy;         ///< word_count a cell, zero at first
   std::uint64_t* group_occupancy;   ///< likewise
-  std::uint64_t* hits;              ///< blocks_per_cell a cell, zero at first
-  std::uint32_t* first_poses;       ///< slots a cell, kNever at first; null where not asked for
+  std::uint64_t* done;         ///< a bit a point in grid order: hit already; null with first poses
+  std::uint32_t* latest;       ///< a bucket: no point's first pose is above; null without them
+  std::uint64_t* hits;         ///< blocks_per_cell a cell, zero at first
+  std::uint32_t* first_poses;  ///< slots a cell, kNever at first; null where not asked for
 };
 
 }  // namespace clearway
