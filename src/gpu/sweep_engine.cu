@@ -151,19 +151,20 @@ struct AnswerLayout {
   std::uint64_t bytes() const { return first_poses_at() + 4 * first_poses; }
 };
 
-std::uint64_t most_blocks(const SlotOptions& options) {
-  return std::uint64_t{options.page_cells} * options.blocks_per_cell;
+std::uint64_t page_bytes_of(const SlotLayout& layout) {
+  return PageShape::aligned(layout.page_bytes);
 }
 
-std::uint64_t answer_bytes(const SweepRef& sweep, const SlotOptions& options) {
-  return AnswerLayout(sweep, most_blocks(options)).bytes();
+/// Blocks of a page at the most.
+std::uint64_t most_blocks(const PackedCloud& cloud, const SlotLayout& layout) {
+  return std::uint64_t{layout.cells} * cloud.blocks_per_cell();
 }
 
 /// The lists of open work; clearances are searched without.
 struct WorkBuffers {
-  WorkBuffers(const SweepRef& sweep, const SlotOptions& options)
-      : pairs(sweep.clearance > 0 ? 0 : (kPairsPerBlock + 2) * most_blocks(options)),
-        items(sweep.clearance > 0 ? 0 : kItemsPerBlock * most_blocks(options)),
+  WorkBuffers(const SweepRef& sweep, std::uint64_t most_blocks)
+      : pairs(sweep.clearance > 0 ? 0 : (kPairsPerBlock + 2) * most_blocks),
+        items(sweep.clearance > 0 ? 0 : kItemsPerBlock * most_blocks),
         counts(1) {}
 
   SweepWork ref(std::uint64_t blocks) const {
@@ -172,10 +173,10 @@ struct WorkBuffers {
             static_cast<std::uint32_t>(items.size())};
   }
 
-  static std::uint64_t bytes(const SweepRef& sweep, const SlotOptions& options) {
+  static std::uint64_t bytes(const SweepRef& sweep, std::uint64_t most_blocks) {
     const std::uint64_t a_block =
         (kPairsPerBlock + 2) * sizeof(SweepWork::Pair) + kItemsPerBlock * sizeof(SweepWork::Item);
-    return sizeof(SweepWork::Counts) + (sweep.clearance > 0 ? 0 : a_block * most_blocks(options));
+    return sizeof(SweepWork::Counts) + (sweep.clearance > 0 ? 0 : a_block * most_blocks);
   }
 
   DeviceBuffer<SweepWork::Pair> pairs;
@@ -184,12 +185,12 @@ struct WorkBuffers {
 };
 
 struct Slot {
-  Slot(const SweepRef& sweep, const SlotOptions& options)
-      : host_page(options.page_bytes),
-        host_answer(answer_bytes(sweep, options)),
-        page(options.page_bytes),
-        answer(answer_bytes(sweep, options)),
-        work(sweep, options) {}
+  Slot(const SweepRef& sweep, std::uint64_t most_blocks, std::uint64_t page_bytes)
+      : host_page(page_bytes),
+        host_answer(AnswerLayout(sweep, most_blocks).bytes()),
+        page(page_bytes),
+        answer(host_answer.size()),
+        work(sweep, most_blocks) {}
 
   PinnedBuffer<std::byte> host_page, host_answer;
   DeviceBuffer<std::byte> page, answer;
@@ -203,18 +204,18 @@ struct Slot {
 
 class CudaSweepEngine::Impl {
  public:
-  Impl(int device, const SweepRef& sweep, const Quantisation& quantisation,
-       const SlotOptions& options)
+  Impl(int device, const SweepRef& sweep, const PackedCloud& cloud, const SlotLayout& layout)
       : device_(on(device)),
         resident_(resident_blocks(device)),
-        quantisation_(quantisation),
+        quantisation_(cloud.quantisation()),
         sweep_(sweep),
         tallies_(4 * kTallies),
         device_bytes_(cuda_sweep_bytes(sweep)),
         pinned_bytes_(0) {
-    for (std::uint32_t i = 0; i < options.slots; ++i) {
-      slots_.emplace_back(sweep, options);
-      device_bytes_ += cuda_sweep_slot_bytes(sweep, options);
+    slots_.reserve(layout.slots);
+    for (std::uint32_t i = 0; i < layout.slots; ++i) {
+      slots_.emplace_back(sweep, most_blocks(cloud, layout), page_bytes_of(layout));
+      device_bytes_ += cuda_sweep_slot_bytes(sweep, cloud, layout);
       pinned_bytes_ += slots_.back().host_page.bytes() + slots_.back().host_answer.bytes();
     }
     check_cuda(cudaMemset(tallies_.data(), 0, tallies_.bytes()));
@@ -340,9 +341,9 @@ class CudaSweepEngine::Impl {
   std::uint64_t device_bytes_, pinned_bytes_;
 };
 
-CudaSweepEngine::CudaSweepEngine(int device, const SweepRef& sweep,
-                                 const Quantisation& quantisation, const SlotOptions& options)
-    : impl_(std::make_unique<Impl>(device, sweep, quantisation, options)) {}
+CudaSweepEngine::CudaSweepEngine(int device, const SweepRef& sweep, const PackedCloud& cloud,
+                                 const SlotLayout& layout)
+    : impl_(std::make_unique<Impl>(device, sweep, cloud, layout)) {}
 CudaSweepEngine::~CudaSweepEngine() = default;
 std::uint32_t CudaSweepEngine::slots() const { return impl_->slots(); }
 std::span<std::byte> CudaSweepEngine::page(std::uint32_t slot) { return impl_->page(slot); }
@@ -356,8 +357,11 @@ std::uint64_t CudaSweepEngine::pinned_bytes() const { return impl_->pinned_bytes
 
 std::uint64_t cuda_sweep_bytes(const SweepRef& sweep) { return SweepOnDevice::bytes(sweep); }
 
-std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const SlotOptions& options) {
-  return options.page_bytes + answer_bytes(sweep, options) + WorkBuffers::bytes(sweep, options);
+std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const PackedCloud& cloud,
+                                    const SlotLayout& layout) {
+  const std::uint64_t blocks = most_blocks(cloud, layout);
+  return page_bytes_of(layout) + AnswerLayout(sweep, blocks).bytes() +
+         WorkBuffers::bytes(sweep, blocks);
 }
 
 }  // namespace clearway

@@ -3,28 +3,21 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/packed_cloud.hpp"
 #include "core/page_engine.hpp"
-#include "core/quantisation.hpp"
+#include "core/page_pool.hpp"
 #include "core/sweep_ref.hpp"
 
 namespace clearway {
-
-/// The pages of an engine and what they are answered for.
-struct SlotOptions {
-  std::uint32_t slots = 1;
-  std::uint64_t page_bytes = 0;
-  std::uint32_t page_cells = 0;  ///< at most
-  std::uint32_t blocks_per_cell = 0;
-};
 
 /// The sweep engine on one CUDA device: model field, model and motion tree stay there; a warp
 /// searches a block of points (gpu/sweep_block.hpp). All memory is taken when it is made.
 class CudaSweepEngine final : public PageEngine {
  public:
-  /// Uploads what `sweep` refers to, which may go afterwards. Throws ResourceError with CUDA's
-  /// reason.
-  CudaSweepEngine(int device, const SweepRef& sweep, const Quantisation& quantisation,
-                  const SlotOptions& options);
+  /// Uploads what `sweep` refers to; nothing of the arguments is needed afterwards. Throws
+  /// ResourceError with CUDA's reason.
+  CudaSweepEngine(int device, const SweepRef& sweep, const PackedCloud& cloud,
+                  const SlotLayout& layout);
   ~CudaSweepEngine() override;
 
   std::uint32_t slots() const override;
@@ -46,6 +39,7 @@ class CudaSweepEngine final : public PageEngine {
 
 /// Device memory that a CudaSweepEngine takes beside its slots, and for each of them.
 std::uint64_t cuda_sweep_bytes(const SweepRef& sweep);
-std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const SlotOptions& options);
+std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const PackedCloud& cloud,
+                                    const SlotLayout& layout);
 
 }  // namespace clearway

@@ -1,7 +1,7 @@
 #include "support/engines.hpp"
 
-#include <array>
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "core/answer.hpp"
 #include "cpu/brute_force.hpp"
@@ -9,40 +9,43 @@
 #include "cpu/sweep_engine.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "support/grid_runs.hpp"
+#include "support/host_sweep.hpp"
 
 namespace clearway {
 namespace {
 
-HitSet kdtree(const PackedCloud& cloud, const Question& question, int threads) {
+Answer kdtree(const PackedCloud& cloud, const Question& question, int threads) {
   NoProgress progress;
-  return run_kdtree(cloud, question, {threads}, progress);
+  return {run_kdtree(cloud, question, {threads}, progress), ClearanceSet()};
 }
 
-Answer sweep_with_clearances(const PackedCloud& cloud, const Question& question, int threads) {
-  NoProgress progress;
-  if (question.model.empty()) {
-    return {HitSet(cloud.slot_count(), question.first_pose), ClearanceSet(cloud.slot_count())};
-  }
-  const ModelTree model(question.model);
-  const ModelField field(model, question.radius, {.reach = question.clearance}, threads);
-  const MotionTree motion(question.poses, model.box(), question.between_poses);
-  const SweepFilter filter(question, motion, model, field, cloud);
-  const std::vector<PlannedCell> cells = plan(cloud, motion, filter);
-  // As many cells a page and pages in flight as the cloud's size makes them, so that all occur.
-  const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
-                          .page_bytes = 2 * smallest_page_bytes(cloud, cells),
-                          .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
-  SweepEngine engine(cloud, filter, layout);
-  StageTimes times;
-  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), engine,
-                   question, threads, progress, times);
+Answer sweep(const PackedCloud& cloud, const Question& question, int threads) {
+  return run_sweep(cloud, question, threads,
+                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
+                     return std::make_unique<SweepEngine>(of, filter, layout);
+                   });
 }
 
-HitSet sweep(const PackedCloud& cloud, const Question& question, int threads) {
-  return sweep_with_clearances(cloud, question, threads).hits;
+/// The bodies of the CUDA engine as loops, with lists of open work from ample to none.
+Answer sweep_as_on_cuda(const PackedCloud& cloud, const Question& question, int threads) {
+  return run_sweep(cloud, question, threads,
+                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
+                     const std::uint32_t entries = layout.slots % 3 == 0   ? 0
+                                                   : layout.slots % 3 == 1 ? 50
+                                                                           : 100'000;
+                     return std::make_unique<HostSweep>(of, filter.ref(), layout, entries);
+                   });
 }
 
-const std::array kEngines{Engine{"kdtree", kdtree}, Engine{"sweep", sweep}};
+Answer grid(const PackedCloud& cloud, const Question& question, int) {
+  return {run_grid(cloud, question, {}), ClearanceSet()};
+}
+
+std::vector<Engine> under_test{{"kdtree", kdtree, true, false},
+                               {"sweep", sweep, true, true},
+                               {"sweep as on CUDA", sweep_as_on_cuda, true, true},
+                               {"grid", grid, false, false}};
 
 constexpr int kThreads = 3;
 
@@ -63,9 +66,10 @@ std::uint64_t check_answers(const MemoryCloud& cloud, const std::vector<std::uin
   std::uint64_t colliding = 0;
   for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
   for (const Engine& engine : engines()) {
+    if (question.between_poses && !engine.between_poses) continue;
     for (const bool first_pose : {false, true}) {
       question.first_pose = first_pose;
-      const HitSet hits = engine.run(cloud, question, kThreads);
+      const HitSet hits = engine.run(cloud, question, kThreads).hits;
       CAPTURE(engine.name, first_pose, question.between_poses, cloud.cell_points(),
               cloud.cells().size());
       std::uint64_t wrong = 0;
@@ -88,12 +92,13 @@ std::uint64_t check_answers(const MemoryCloud& cloud, const std::vector<std::uin
 using Oracle = std::vector<Clearance>;
 
 /// Every clearance and every hit, a set or with first poses.
-std::uint64_t check_clearances(const MemoryCloud& cloud, const Oracle& least,
+std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, const Oracle& least,
                                const std::vector<std::uint32_t>& first_poses,
                                const Question& question) {
   const double limit = question.clearance * question.clearance;
-  const Answer answer = sweep_with_clearances(cloud, question, kThreads);
-  CAPTURE(question.clearance, question.radius, question.first_pose, cloud.cell_points());
+  const Answer answer = engine.run(cloud, question, kThreads);
+  CAPTURE(engine.name, question.clearance, question.radius, question.first_pose,
+          cloud.cell_points());
   std::uint64_t wrong = 0, wrong_hits = 0, found = 0;
   for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
     Clearance expected;
@@ -114,6 +119,16 @@ std::uint64_t check_clearances(const MemoryCloud& cloud, const Oracle& least,
   return found;
 }
 
+std::uint64_t check_clearances(const MemoryCloud& cloud, const Oracle& least,
+                               const std::vector<std::uint32_t>& first_poses,
+                               const Question& question) {
+  std::uint64_t found = 0;
+  for (const Engine& engine : engines()) {
+    if (engine.clearances) found = check_clearances(engine, cloud, least, first_poses, question);
+  }
+  return found;
+}
+
 Question with_clearance(Question question, double clearance, bool first_pose) {
   question.clearance = clearance;
   question.first_pose = first_pose;
@@ -131,7 +146,29 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Q
 
 }  // namespace
 
-std::span<const Engine> engines() { return kEngines; }
+std::span<const Engine> engines() { return under_test; }
+
+Answer run_sweep(const PackedCloud& cloud, const Question& question, int threads,
+                 const MakeSweep& make) {
+  NoProgress progress;
+  if (question.model.empty()) {
+    return {HitSet(cloud.slot_count(), question.first_pose), ClearanceSet(cloud.slot_count())};
+  }
+  const ModelTree model(question.model);
+  const ModelField field(model, question.radius, {.reach = question.clearance}, threads);
+  const MotionTree motion(question.poses, model.box(), question.between_poses);
+  const SweepFilter filter(question, motion, model, field, cloud);
+  const std::vector<PlannedCell> cells = plan(cloud, motion, filter);
+  const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
+                          .page_bytes = 2 * smallest_page_bytes(cloud, cells),
+                          .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
+  const std::unique_ptr<PageEngine> engine = make(filter, cloud, layout);
+  StageTimes times;
+  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), *engine,
+                   question, threads, progress, times);
+}
+
+void test_only(std::vector<Engine> engines) { under_test = std::move(engines); }
 
 std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
                                                const Quantisation& quantisation,

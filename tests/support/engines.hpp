@@ -1,11 +1,15 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "core/hit_set.hpp"
+#include "core/answer.hpp"
+#include "core/page_pool.hpp"
 #include "core/question.hpp"
+#include "core/sweep_filter.hpp"
 #include "support/memory_cloud.hpp"
 
 namespace clearway {
@@ -13,14 +17,29 @@ namespace clearway {
 /// An engine under test. Every one runs through the same cases, against brute force.
 struct Engine {
   std::string name;
-  HitSet (*run)(const PackedCloud& cloud, const Question& question, int threads);
+  Answer (*run)(const PackedCloud& cloud, const Question& question, int threads);
+  bool between_poses;  ///< whether it answers such questions
+  bool clearances;     ///< likewise
 };
 
 std::span<const Engine> engines();
 
+/// Makes a sweep engine; what it is given outlives it.
+using MakeSweep = std::function<std::unique_ptr<PageEngine>(
+    const SweepFilter& filter, const PackedCloud& cloud, const SlotLayout& layout)>;
+
+/// Plans the question, and runs it in an engine of as many slots and cells a page as the cloud's
+/// size makes them, so that all occur.
+Answer run_sweep(const PackedCloud& cloud, const Question& question, int threads,
+                 const MakeSweep& make);
+
+/// From now on engines() are these.
+void test_only(std::vector<Engine> engines);
+
 /// Runs every engine on the points, packed in several ways, as a set and with first poses, at
-/// poses and between them, and checks the answers against brute force; likewise clearances below and
-/// above the radius, where an engine has them. Returns the number of points that collide at a pose.
+/// poses and between them, and checks the answers against brute force; likewise clearances below
+/// and above the radius, where an engine has them. Returns the number of points that collide at a
+/// pose.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question);
 

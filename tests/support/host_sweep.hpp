@@ -1,81 +1,85 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/page_engine.hpp"
-#include "core/quantisation.hpp"
+#include "core/page_pool.hpp"
 #include "gpu/sweep_block.hpp"
 
 namespace clearway {
 
-/// The CUDA sweep engine's kernel body with the lanes of a warp as a loop.
+/// The CUDA sweep engine's bodies in the order of its kernels, with the lanes of a warp as a loop.
 class HostSweep final : public PageEngine {
  public:
-  HostSweep(const SweepRef& sweep, const Quantisation& quantisation, std::uint32_t slots,
-            std::uint64_t page_bytes)
+  /// entries: room on each list of open work.
+  HostSweep(const PackedCloud& cloud, const SweepRef& sweep, const SlotLayout& layout,
+            std::uint32_t entries)
       : sweep_(sweep),
-        quantisation_(quantisation),
-        slots_(slots) {
-    for (Slot& slot : slots_) slot.page.resize(page_bytes / sizeof(Word) + 1);
-  }
+        quantisation_(cloud.quantisation()),
+        pool_(cloud, question_of(sweep), layout),
+        shapes_(layout.slots),
+        entries_(entries) {}
 
-  std::uint32_t slots() const override { return static_cast<std::uint32_t>(slots_.size()); }
+  std::uint32_t slots() const override { return pool_.layout().slots; }
+  std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
+  void start(std::uint32_t slot, const PageShape& shape) override { shapes_[slot] = shape; }
 
-  std::span<std::byte> page(std::uint32_t slot) override {
-    return std::as_writable_bytes(std::span(slots_[slot].page));
-  }
-
-  void start(std::uint32_t slot, const PageShape& shape) override { slots_[slot].shape = shape; }
-
-  PageAnswer finish(std::uint32_t index) override {
-    Slot& slot = slots_[index];
-    const PageRef page{this->page(index).data(), slot.shape};
-    const std::size_t blocks = std::size_t{slot.shape.cells} * slot.shape.blocks_per_cell;
-    slot.hits.assign(blocks, 0xdead);
-    slot.first_poses.assign(sweep_.first_pose ? blocks * kBlockPoints : 0, 7);
-    slot.clearances.assign(sweep_.clearance > 0 ? blocks * kBlockPoints : 0, Clearance{0, 7});
-    const SweepAnswerRef answer{slot.hits.data(),
-                                sweep_.first_pose ? slot.first_poses.data() : nullptr,
-                                sweep_.clearance > 0 ? slot.clearances.data() : nullptr};
-    for (std::uint32_t cell = 0; cell < slot.shape.cells; ++cell) {
-      for (std::uint32_t block = 0; block < slot.shape.blocks_per_cell; ++block) {
-        if (sweep_.clearance > 0) {
-          search<true>(page, cell, block, answer);
-        } else {
-          search<false>(page, cell, block, answer);
-        }
-      }
-    }
-    return {.hits = slot.hits, .first_poses = slot.first_poses, .clearances = slot.clearances};
+  PageAnswer finish(std::uint32_t slot) override {
+    const std::span hits = pool_.hits(slot);
+    const std::span first_poses = pool_.first_poses(slot);
+    const std::span clearances = pool_.clearances(slot);
+    SweepPage job{.sweep = sweep_,
+                  .page = {pool_.page(slot).data(), shapes_[slot]},
+                  .quantisation = quantisation_,
+                  .hits = hits.data(),
+                  .first_poses = first_poses.empty() ? nullptr : first_poses.data(),
+                  .clearances = clearances.empty() ? nullptr : clearances.data(),
+                  .work = {}};
+    const std::uint32_t blocks = job.block_count();
+    std::vector<SweepWork::Pair> pairs(entries_ + 2 * blocks);
+    std::vector<SweepWork::Item> items(entries_);
+    SweepWork::Counts counts{};
+    job.work = {pairs.data(), items.data(), &counts, entries_, entries_};
+    run(job);
+    const std::size_t points = std::size_t{blocks} * kBlockPoints;
+    return {.hits = hits.first(blocks),
+            .first_poses = first_poses.first(first_poses.empty() ? 0 : points),
+            .clearances = clearances.first(clearances.empty() ? 0 : points)};
   }
 
  private:
-  struct alignas(kPageAlignment) Word {
-    std::byte bytes[kPageAlignment];
-  };
+  static Question question_of(const SweepRef& sweep) {
+    Question question;
+    question.first_pose = sweep.first_pose;
+    question.clearance = sweep.clearance;
+    return question;
+  }
 
-  struct Slot {
-    std::vector<Word> page;
-    PageShape shape;
-    std::vector<std::uint64_t> hits;
-    std::vector<std::uint32_t> first_poses;
-    std::vector<Clearance> clearances;
-  };
-
-  template <bool kClearance>
-  void search(const PageRef& page, std::uint32_t cell, std::uint32_t block,
-              const SweepAnswerRef& answer) const {
-    using Block = SweepBlock<HostWarp, kClearance>;
-    std::uint32_t queue[Block::kQueue];
-    Block(sweep_, page, quantisation_, cell, block, answer, queue);
+  static void run(const SweepPage& job) {
+    HostWarp::PerLane<SweepStatistics> statistics;
+    std::uint32_t queue[SweepBlock<HostWarp, false>::kQueue];
+    for (std::uint32_t block = 0; block < job.block_count(); ++block) {
+      if (job.clearances != nullptr) {
+        SweepBlock<HostWarp, true>(job, block, queue, statistics).search();
+      } else {
+        SweepBlock<HostWarp, false>(job, block, queue, statistics).search();
+      }
+    }
+    for (std::uint32_t i = 0; i < job.work.pair_count(); ++i) {
+      search_pair<HostWarp>(job, job.work.pair(i), statistics);
+    }
+    for (std::uint32_t i = 0; i < job.work.item_count(); ++i) {
+      search_item(job, job.work.items[i], statistics[0]);
+    }
   }
 
   SweepRef sweep_;
   Quantisation quantisation_;
-  std::vector<Slot> slots_;
+  PagePool pool_;
+  std::vector<PageShape> shapes_;
+  std::uint32_t entries_;
 };
 
 }  // namespace clearway

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/page_engine.hpp"
+#include "grid/grid_scene.hpp"
+
+namespace clearway {
+
+/// Pages in flight on one device, and how large they are.
+struct CudaGridOptions {
+  std::uint32_t slots = 1;
+  std::uint64_t page_bytes = 0;  ///< at most, of a page
+  std::uint32_t page_cells = 0;  ///< likewise
+};
+
+/// The engine `grid` on one CUDA device: per page the points sorted into regular grids, then the
+/// model searched in them group by group, a warp a pair of group and pose. All memory is taken when
+/// it is made. Source: Schauer et al. (the paper), section 3.2.
+class CudaGridEngine final : public PageEngine {
+ public:
+  /// Uploads the scene, which outlives the engine. Throws ResourceError with CUDA's reason.
+  CudaGridEngine(int device, const GridScene& scene, const CudaGridOptions& options);
+  ~CudaGridEngine() override;
+
+  std::uint32_t slots() const override;
+  std::span<std::byte> page(std::uint32_t slot) override;
+  void start(std::uint32_t slot, const PageShape& shape) override;
+  PageAnswer finish(std::uint32_t slot) override;
+
+  /// Of all pages finished. Not during a search.
+  GridStatistics statistics() const;
+
+  /// Taken on the device, without CUDA's context, and of page-locked memory on the host.
+  std::uint64_t device_bytes() const;
+  std::uint64_t pinned_bytes() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Device memory that a CudaGridEngine takes beside its slots, and for each of them. The latter
+/// asks the current device how much sorting needs.
+std::uint64_t cuda_grid_bytes(const GridScene& scene);
+std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const CudaGridOptions& options);
+
+/// At most `wanted.slots` slots with at most `wanted.page_cells` cells a page that together fit
+/// `device_memory_bytes`: pages become smaller before they become fewer. wanted.page_bytes: of a
+/// page of wanted.page_cells cells; cell_page_bytes: of a page of any one cell. Throws
+/// ResourceError naming the smallest budget where not even one slot of one cell fits.
+CudaGridOptions fit_cuda_grid(const GridScene& scene, std::uint64_t device_memory_bytes,
+                              const CudaGridOptions& wanted, std::uint64_t cell_page_bytes);
+
+}  // namespace clearway

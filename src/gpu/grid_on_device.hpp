@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+
+#include "gpu/device_buffer.hpp"
+#include "grid/grid_scene.hpp"
+
+namespace clearway {
+
+/// A GridScene's arrays on the current device.
+class GridOnDevice {
+ public:
+  explicit GridOnDevice(const GridScene& scene)
+      : points_(copied(scene.model().points())),
+        groups_(copied(scene.model().groups())),
+        parts_(copied(scene.model().parts())),
+        poses_(copied(scene.poses())),
+        bounds_(copied(scene.bounds())),
+        nodes_(copied(scene.nodes())),
+        runs_(copied(scene.runs())),
+        view_(scene.view_over(points_.data(), groups_.data(), parts_.data(), poses_.data(),
+                              bounds_.data(), nodes_.data(), runs_.data())) {}
+
+  const GridSceneView& view() const { return view_; }
+
+  static std::uint64_t bytes(const GridScene& scene) {
+    return scene.model().points().size_bytes() + scene.model().groups().size_bytes() +
+           scene.model().parts().size_bytes() + scene.poses().size_bytes() +
+           scene.bounds().size_bytes() + scene.nodes().size_bytes() + scene.runs().size_bytes();
+  }
+
+ private:
+  template <typename Value>
+  static DeviceBuffer<Value> copied(std::span<const Value> values) {
+    DeviceBuffer<Value> out(values.size());
+    if (!values.empty()) {
+      check_cuda(cudaMemcpy(out.data(), values.data(), out.bytes(), cudaMemcpyHostToDevice));
+    }
+    return out;
+  }
+
+  DeviceBuffer<Vec3> points_;
+  DeviceBuffer<GridSphere> groups_, parts_;
+  DeviceBuffer<Pose> poses_;
+  DeviceBuffer<PoseBound> bounds_;
+  DeviceBuffer<GridNode> nodes_;
+  DeviceBuffer<std::uint32_t> runs_;
+  GridSceneView view_;
+};
+
+}  // namespace clearway

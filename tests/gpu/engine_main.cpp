@@ -1,0 +1,53 @@
+// The engines' suite with the CUDA engines in place of the CPU's. Skips where there is no device.
+#define CATCH_CONFIG_RUNNER
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <iostream>
+
+#include "gpu/grid_engine.hpp"
+#include "gpu/predicate_check.hpp"
+#include "gpu/sweep_engine.hpp"
+#include "support/engines.hpp"
+#include "support/grid_runs.hpp"
+
+namespace clearway {
+namespace {
+
+Answer grid_on_cuda(const PackedCloud& cloud, const Question& question, int) {
+  const GridRun run;
+  HitSet hits = run_grid(
+      cloud, question, run,
+      [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+        CudaGridEngine engine(
+            0, scene,
+            {.slots = run.slots, .page_bytes = page_bytes, .page_cells = run.cells_a_page});
+        return run_in(engine);
+      });
+  return {std::move(hits), ClearanceSet()};
+}
+
+Answer sweep_on_cuda(const PackedCloud& cloud, const Question& question, int threads) {
+  return run_sweep(cloud, question, threads,
+                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
+                     return std::make_unique<CudaSweepEngine>(0, filter.ref(), of, layout);
+                   });
+}
+
+bool only_lists_tests(int count, char** arguments) {
+  return std::any_of(arguments, arguments + count,
+                     [](const char* a) { return std::string(a).starts_with("--list"); });
+}
+
+}  // namespace
+}  // namespace clearway
+
+int main(int count, char** arguments) {
+  constexpr int kSkipped = 77;
+  if (!clearway::only_lists_tests(count, arguments) && !clearway::has_cuda_device()) {
+    std::cout << "skipped: no CUDA device here\n";
+    return kSkipped;
+  }
+  clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true},
+                       {"grid on CUDA", clearway::grid_on_cuda, false, false}});
+  return Catch::Session().run(count, arguments);
+}

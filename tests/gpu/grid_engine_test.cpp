@@ -1,0 +1,84 @@
+// Budgets of device memory, and what the CUDA grid engine takes of it. Runs on a device only.
+#include "gpu/grid_engine.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/error.hpp"
+#include "cpu/brute_force.hpp"
+#include "support/grid_runs.hpp"
+#include "support/memory_cloud.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+
+namespace {
+
+const Quantisation kMillimetre{{1e-3, 1e-3, 1e-3}, {0, 0, 0}};
+
+struct Scene {
+  Random random{5};
+  std::vector<Quantum> points =
+      quantise(random_points(random, {{-4, -3, -1}, {5, 4, 2}}, 20'000), kMillimetre);
+  std::vector<Vec3> model = random_points(random, {{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}}, 2000);
+  std::vector<Pose> poses = smooth_path(random, {{-4, -3, -1}, {5, 4, 2}}, 200);
+  MemoryCloud cloud{points, kMillimetre, {1000, 0}};
+
+  /// How many points an engine of these options answers wrongly; 0 bytes: no budget.
+  std::uint64_t wrong(bool first_pose, std::uint64_t budget, std::uint32_t slots) const {
+    const Question question{
+        .model = model, .poses = poses, .radius = 0.1, .first_pose = first_pose};
+    const GridRun run{.cells_a_page = budget == 0 ? std::size_t{4} : std::size_t{1}};
+    const HitSet hits =
+        run_grid(cloud, question, run,
+                 [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+                   const CudaGridOptions wanted{slots, page_bytes,
+                                                static_cast<std::uint32_t>(run.cells_a_page)};
+                   const CudaGridOptions options =
+                       budget == 0 ? wanted : fit_cuda_grid(scene, budget, wanted, page_bytes);
+                   CudaGridEngine engine(0, scene, options);
+                   CHECK(engine.slots() == options.slots);
+                   if (budget > 0) CHECK(engine.device_bytes() <= budget);
+                   HitSet found = run_in(engine);
+                   CHECK(engine.statistics().searches > 0);
+                   return found;
+                 });
+    const auto expected = brute_force_first_poses(positions_of(points, kMillimetre), question);
+    std::uint64_t count = 0;
+    for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
+      if (!cloud.is_used(slot)) continue;
+      const std::uint32_t pose = expected[cloud.source(slot)];
+      count += hits.contains(slot) != (pose != HitSet::kNever);
+      if (first_pose) count += hits.first_pose(slot) != pose;
+    }
+    return count;
+  }
+};
+
+std::uint64_t named_in(const std::string& message) {
+  return std::stoull(message.substr(message.find("at least ") + 9));
+}
+
+}  // namespace
+
+TEST_CASE("several slots in flight") {
+  const Scene scene;
+  for (const std::uint32_t slots : {1, 3}) {
+    CHECK(scene.wrong(false, 0, slots) == 0);
+    CHECK(scene.wrong(true, 0, slots) == 0);
+  }
+}
+
+TEST_CASE("the smallest budget works, one byte less is refused") {
+  const Scene scene;
+  for (const bool first_pose : {false, true}) {
+    std::uint64_t least = 0;
+    try {
+      scene.wrong(first_pose, 1, 3);
+    } catch (const ResourceError& error) {
+      least = named_in(error.what());
+    }
+    REQUIRE(least > 1);
+    CHECK(scene.wrong(first_pose, least, 3) == 0);
+    CHECK_THROWS_AS(scene.wrong(first_pose, least - 1, 3), ResourceError);
+  }
+}

@@ -1,0 +1,67 @@
+#include "support/grid_runs.hpp"
+
+#include "core/error.hpp"
+#include "grid/grid_cpu_engine.hpp"
+#include "stream/run_pages.hpp"
+
+namespace clearway {
+namespace {
+
+void add_nodes(const MotionTree& motion, std::uint32_t index, std::uint32_t most,
+               std::vector<std::uint32_t>& out) {
+  const MotionNode& node = motion.nodes()[index];
+  if (node.count <= most) {
+    out.push_back(index);
+    return;
+  }
+  add_nodes(motion, index + 1, most, out);
+  add_nodes(motion, node.later, most, out);
+}
+
+std::vector<PlannedCell> plan_everything(const PackedCloud& cloud, const MotionTree& motion) {
+  std::vector<PlannedCell> cells;
+  if (motion.nodes().empty()) return cells;
+  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
+    std::vector<std::uint32_t> nodes;
+    const std::uint32_t most = cell % 4 == 0   ? 0xffffffff
+                               : cell % 4 == 1 ? 20
+                               : cell % 4 == 2 ? 7
+                                               : 1;
+    add_nodes(motion, 0, most, nodes);
+    cells.push_back({cell, std::move(nodes)});
+  }
+  return cells;
+}
+
+}  // namespace
+
+HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+                GridStatistics* statistics) {
+  return run_grid(cloud, question, run,
+                  [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+                    GridCpuEngine engine(scene, {.slots = run.slots,
+                                                 .page_bytes = page_bytes,
+                                                 .page_cells = run.cells_a_page,
+                                                 .work_list = run.work_list});
+                    HitSet hits = run_in(engine);
+                    if (statistics != nullptr) statistics->add(engine.statistics());
+                    return hits;
+                  });
+}
+
+HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+                const RunPages& run_pages) {
+  if (question.model.empty()) return HitSet(cloud.slot_count(), question.first_pose);
+  const MotionTree motion(question.poses, ModelGroups(question.model).box());
+  const std::vector<PlannedCell> cells = plan_everything(cloud, motion);
+  const std::uint64_t page_bytes = run.cells_a_page * smallest_page_bytes(cloud, cells);
+  const GridScene scene(question, motion, cloud, run.options);
+  return run_pages(scene, page_bytes, [&](PageEngine& engine) {
+    NoProgress progress;
+    StageTimes times;
+    const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page);
+    return run_pages(cloud, cells, pages, engine, question, 3, progress, times).hits;
+  });
+}
+
+}  // namespace clearway

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+
+#include "core/hit_set.hpp"
+#include "core/packed_cloud.hpp"
+#include "core/question.hpp"
+#include "grid/grid_scene.hpp"
+
+namespace clearway {
+
+class PageEngine;
+
+struct GridRun {
+  GridOptions options = {};
+  std::uint32_t slots = 2;
+  std::uint32_t cells_a_page = 3;
+  std::uint32_t work_list = 1024;
+};
+
+/// The engine `grid` on the CPU over a whole cloud. Every cell is searched, with nodes of the
+/// motion tree that together hold every pose: whole ranges for one cell, finer ones for the next.
+/// statistics: added to.
+HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+                GridStatistics* statistics = nullptr);
+
+/// What an engine made for the scene answers to cells staged in its pages.
+using RunPages = std::function<HitSet(const GridScene& scene, std::uint64_t page_bytes,
+                                      const std::function<HitSet(PageEngine& engine)>& run_in)>;
+
+/// The same with another engine.
+HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+                const RunPages& run_pages);
+
+}  // namespace clearway
