@@ -49,10 +49,10 @@ SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, con
       motion_(motion),
       model_(model),
       field_(field),
-      rounding_(motion.rounding(largest_coordinate(cloud) +
-                                std::max(question.radius, question.clearance) +
-                                32 * field.voxel()) +
-                1e-150) {
+      rounding_(
+          motion.rounding(largest_coordinate(cloud) + std::max(question.radius, question.clearance),
+                          32 * field.voxel() + question.clearance) +
+          1e-150) {
   if (question.clearance > 0) first_equal_pose_ = first_equal_poses(question.poses);
   // The part of a computed hit's error between poses that does not grow with the step.
   if (question.between_poses) rounding_ += 8 * kUnitRoundoff * question.radius;
