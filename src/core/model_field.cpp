@@ -82,6 +82,7 @@ double ModelField::margin_steps(double reach) const {
 
 void ModelField::lay_out(double margin) {
   coarse_ = kBrick * voxel_;
+  margin_ = (margin + 1) * coarse_;
   const Box& box = tree_.box();
   for (int k = 0; k < 3; ++k) {
     origin_[k] = box.lo[k] - margin * coarse_;

@@ -35,6 +35,8 @@ class ModelField {
   Bounds bounds(const Vec3& x) const { return ref().bounds(x); }
 
   double voxel() const { return voxel_; }
+  /// How far the lattice goes beyond the model at the most, metres.
+  double margin() const { return margin_; }
   std::uint64_t bricks() const { return distances_.size() / kBrickNodes; }
   std::uint64_t allocated_bytes() const;
 
@@ -55,6 +57,7 @@ class ModelField {
   const ModelTree& tree_;
   double voxel_ = 0;                           // fine
   double coarse_ = 0;                          // kBrick * voxel_
+  double margin_ = 0;
   Vec3 origin_{};                              // of the coarse lattice
   std::uint32_t size_[3]{};                    // coarse nodes along each axis
   std::vector<float> coarse_squared_;          // [z][y][x]

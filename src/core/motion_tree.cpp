@@ -14,6 +14,10 @@ namespace {
 constexpr std::uint32_t kExactPoses = 8;
 constexpr int kLevels = 4;
 
+/// Where the determinant lies within this and its reciprocal, nothing that matters to the bound of
+/// the inverse's rounding under- or overflows.
+constexpr double kLeastDeterminant = 1e-270;
+
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 PullBack pull_back_of(const Pose& pose) {
@@ -29,6 +33,8 @@ PullBack pull_back_of(const Pose& pose) {
   const double inverse_greatest = greatest_stretch_bound(inverse_pose);
   const double condition = out.greatest * inverse_greatest;
   out.least = 1 / (inverse_greatest * (1 + 64 * kUnitRoundoff * (1 + condition * condition)));
+  const double determinant = std::abs(Eigen::Map<const RowMajor>(pose.rotation).determinant());
+  if (!(determinant > kLeastDeterminant && determinant < 1 / kLeastDeterminant)) out.least = 0;
   return out;
 }
 
@@ -46,10 +52,9 @@ MotionTree::MotionTree(std::span<const Pose> poses, const Box& model, bool betwe
     condition_ = std::max(condition_, pull_backs_[i].greatest / pull_backs_[i].least);
     for (const double p : poses[i].translation) magnitude_ = std::max(magnitude_, std::abs(p));
   }
-  double greatest = 1;
-  for (const PullBack& p : pull_backs_) greatest = std::max(greatest, p.greatest);
+  for (const PullBack& p : pull_backs_) greatest_ = std::max(greatest_, p.greatest);
   const Vec3 reach = reach_of(model);
-  magnitude_ += 2 * greatest * std::max({reach.x, reach.y, reach.z});
+  magnitude_ += 2 * greatest_ * std::max({reach.x, reach.y, reach.z});
   nodes_.reserve(2 * poses.size());
   add(0, static_cast<std::uint32_t>(poses.size()));
   for (auto node = static_cast<std::uint32_t>(nodes_.size()); node-- > 0;) {
@@ -99,8 +104,9 @@ double MotionTree::delta_below(std::uint32_t node, std::uint32_t mid, int levels
   return (n.delta + between) * (1 + 4 * kUnitRoundoff);
 }
 
-double MotionTree::rounding(double reach) const {
-  return 256 * kUnitRoundoff * (reach + magnitude_) * (1 + condition_) * (1 + condition_);
+double MotionTree::rounding(double reach, double lattice) const {
+  const double magnitude = reach + greatest_ * lattice + magnitude_;
+  return 256 * kUnitRoundoff * magnitude * (1 + condition_) * (1 + condition_);
 }
 
 std::uint64_t MotionTree::allocated_bytes() const {

@@ -32,8 +32,9 @@ class MotionTree {
   }
 
   /// What all roundings of a test at a node, predicate and pull-back, amount to at the most in
-  /// metres, for environment points with coordinates of at most `reach` (docs/numerics.md).
-  double rounding(double reach) const;
+  /// metres, for environment points with coordinates of at most `reach`, looked up in a lattice
+  /// that goes `lattice` metres of the model's frame beyond the model (docs/numerics.md).
+  double rounding(double reach, double lattice = 0) const;
 
   std::uint64_t allocated_bytes() const;
 
@@ -48,6 +49,7 @@ class MotionTree {
   std::vector<MotionNode> nodes_;
   std::vector<PullBack> pull_backs_;
   double condition_ = 1;  ///< greatest of all poses
+  double greatest_ = 1;   ///< at least 1 and every pose's greatest stretch
   double magnitude_ = 0;  ///< of translations and moved model points
 };
 

@@ -24,7 +24,7 @@ struct MotionNode {
 struct PullBack {
   double inverse[9];      ///< row-major
   double translation[3];  ///< of the pose itself
-  double least;           ///< at most the least singular value of the rotation
+  double least;           ///< at most the least singular value of the rotation; 0 where none is proven
   double greatest;        ///< at least the greatest
 
   /// x with transform(pose, x) = e, up to the rounding that docs/numerics.md ("Sweep") bounds.

@@ -31,9 +31,8 @@ std::vector<std::uint32_t> first_equal_poses(std::span<const Pose> poses) {
 
 double rounding_of(const Question& question, const MotionTree& motion, const ModelField& field,
                    const PackedCloud& cloud) {
-  const double farthest = std::max(question.radius, question.clearance);
   const double rounding =
-      motion.rounding(largest_coordinate(cloud) + farthest + 32 * field.voxel()) + 1e-150;
+      motion.rounding(largest_coordinate(cloud) + question.radius, field.margin()) + 1e-150;
   // Between poses, the part of a computed hit's error that does not grow with the step.
   return question.between_poses ? rounding + 8 * kUnitRoundoff * question.radius : rounding;
 }

@@ -192,6 +192,16 @@ TEST_CASE("matrices that are not rigid") {
   CHECK(scene.check() > 0);
 }
 
+TEST_CASE("matrices that make a model of any size as large as the scene") {
+  Scene scene;
+  const double size = GENERATE(1e-104, 1e-18, 1e104);
+  for (Vec3& m : scene.model) {
+    for (int k = 0; k < 3; ++k) m[k] *= size;
+  }
+  for (Pose& pose : scene.poses) pose = stretched(pose, {1 / size, 1 / size, 1 / size});
+  CHECK(scene.check() > 0);
+}
+
 TEST_CASE("radii") {
   Scene scene;
   SECTION("larger than the scene") {

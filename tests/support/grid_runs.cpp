@@ -60,7 +60,7 @@ HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRu
     NoProgress progress;
     StageTimes times;
     const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page);
-    return run_pages(cloud, cells, pages, engine, question, 3, progress, times).hits;
+    return clearway::run_pages(cloud, cells, pages, engine, question, 3, progress, times).hits;
   });
 }
 

@@ -200,7 +200,7 @@ TEST_CASE("questions that no engine or not this engine answers are wrong usage")
   }
   check_refused(work.run_hall(site, "out.h5", "--clearance 0.4 --engine kdtree"), 2,
                 "--engine sweep");
-  for (const char* value : {"0", "-1", "x"}) {
+  for (const char* value : {"0", "-1", "x", "nan", "inf"}) {
     CAPTURE(value);
     check_refused(work.run_hall(site, "out.h5", std::string("--clearance ") + value), 2,
                   "--clearance");

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "clearway/memory_budget.hpp"
-#include "clearway/stopwatch.hpp"
+#include "core/stopwatch.hpp"
 #include "cpu/kdtree_engine.hpp"
 #include "stream/write_answer.hpp"
 

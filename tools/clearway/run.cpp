@@ -10,7 +10,7 @@
 #include "clearway/options.hpp"
 #include "clearway/run_options.hpp"
 #include "clearway/standard_output.hpp"
-#include "clearway/stopwatch.hpp"
+#include "core/stopwatch.hpp"
 #include "io/content_hash.hpp"
 #include "io/model.hpp"
 #include "io/pending_file.hpp"

@@ -52,7 +52,7 @@ void add_question(CLI::App& command, RunOptions& options) {
                   "Also distance and pose of the model's nearest approach to every point that it "
                   "comes closer to than this, for example 0.5; engine sweep only")
       ->type_name("METRES")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_length());
   command.add_flag("--between-poses", options.between_poses,
                    "Move every model point on a straight segment from each pose to the next");
 }
@@ -85,7 +85,7 @@ void add_engine(CLI::App& command, EngineOptions& options) {
       .add_option("--field-voxel", options.field_voxel,
                   "Voxel of the sweep engine's model field in metres (default: chosen)")
       ->type_name("METRES")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_length());
   command
       .add_option("--grid-cell", options.grid_cell,
                   "Grid cell of engine grid in metres (default: chosen)")

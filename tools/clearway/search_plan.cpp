@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "clearway/stopwatch.hpp"
+#include "core/stopwatch.hpp"
 #include "cpu/cell_search.hpp"
 #include "stream/paginate.hpp"
 #include "stream/plan.hpp"

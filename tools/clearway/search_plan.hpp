@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "clearway/stopwatch.hpp"
+#include "core/stopwatch.hpp"
 #include "core/model_field.hpp"
 #include "core/model_tree.hpp"
 #include "core/motion_tree.hpp"
