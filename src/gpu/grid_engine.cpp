@@ -118,23 +118,12 @@ class CudaGridEngine::Impl {
     slot.shape = shape;
     const Layout layout(scene_, shape.cells, shape.nodes);
     const std::uint64_t tasks = plan(slot, layout);
-    const cudaStream_t stream = slot.stream.get();
-    slot.begun.record(stream);
-    check_cuda(cudaMemcpyAsync(slot.page.data(), slot.host_page.data(), shape.bytes(),
-                               cudaMemcpyHostToDevice, stream));
-    check_cuda(cudaMemcpyAsync(slot.plan.data(), slot.host_plan.data(), layout.plan_bytes,
-                               cudaMemcpyHostToDevice, stream));
-    slot.uploaded.record(stream);
-    const GridPageView view = view_of(slot, layout);
-    const GridSortRef sort{slot.keys.data(),         slot.order.data(),
-                           slot.sorted_keys.data(),  slot.sorted_order.data(),
-                           slot.sort_scratch.data(), slot.sort_scratch.bytes()};
-    build_grids(on_device_.view(), view, sort, stream);
-    search_grids(on_device_.view(), view, tasks, slot.next_task.data(), statistics_.data(), stream);
-    slot.searched.record(stream);
-    check_cuda(cudaMemcpyAsync(slot.host_answer.data(), slot.answer.data(), layout.answer_bytes,
-                               cudaMemcpyDeviceToHost, stream));
-    slot.finished.record(stream);
+    try {
+      enqueue(slot, layout, tasks);
+    } catch (...) {
+      cudaStreamSynchronize(slot.stream.get());  // nothing of the slot stays in flight
+      throw;
+    }
   }
 
   PageAnswer finish(std::uint32_t index) {
@@ -175,6 +164,26 @@ class CudaGridEngine::Impl {
         {reinterpret_cast<GridCell*>(to), shape.cells},
         {reinterpret_cast<std::uint64_t*>(to + layout.cell_runs_at), shape.cells + std::size_t{1}},
         {reinterpret_cast<std::uint32_t*>(to + layout.entry_runs_at), shape.nodes});
+  }
+
+  void enqueue(Slot& slot, const Layout& layout, std::uint64_t tasks) {
+    const cudaStream_t stream = slot.stream.get();
+    slot.begun.record(stream);
+    check_cuda(cudaMemcpyAsync(slot.page.data(), slot.host_page.data(), slot.shape.bytes(),
+                               cudaMemcpyHostToDevice, stream));
+    check_cuda(cudaMemcpyAsync(slot.plan.data(), slot.host_plan.data(), layout.plan_bytes,
+                               cudaMemcpyHostToDevice, stream));
+    slot.uploaded.record(stream);
+    const GridPageView view = view_of(slot, layout);
+    const GridSortRef sort{slot.keys.data(),         slot.order.data(),
+                           slot.sorted_keys.data(),  slot.sorted_order.data(),
+                           slot.sort_scratch.data(), slot.sort_scratch.bytes()};
+    build_grids(on_device_.view(), view, sort, stream);
+    search_grids(on_device_.view(), view, tasks, slot.next_task.data(), statistics_.data(), stream);
+    slot.searched.record(stream);
+    check_cuda(cudaMemcpyAsync(slot.host_answer.data(), slot.answer.data(), layout.answer_bytes,
+                               cudaMemcpyDeviceToHost, stream));
+    slot.finished.record(stream);
   }
 
   GridPageView view_of(const Slot& slot, const Layout& layout) const {
