@@ -14,6 +14,8 @@ class EngineGroup final : public PageEngine {
   explicit EngineGroup(std::vector<std::unique_ptr<PageEngine>> engines)
       : engines_(std::move(engines)) {}
 
+  const std::vector<std::unique_ptr<PageEngine>>& engines() const { return engines_; }
+
   std::uint32_t slots() const override { return count() * engines_.front()->slots(); }
   std::span<std::byte> page(std::uint32_t slot) override { return of(slot).page(slot / count()); }
   void start(std::uint32_t slot, const PageShape& shape) override {

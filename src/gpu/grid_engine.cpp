@@ -33,20 +33,20 @@ struct Layout {
 };
 
 /// The most that a page of these options may have.
-Layout largest_layout(const GridScene& scene, const CudaGridOptions& options) {
-  return {scene, options.page_cells, options.page_bytes / sizeof(std::uint32_t)};
+Layout largest_layout(const GridScene& scene, const SlotLayout& options) {
+  return {scene, options.cells, options.page_bytes / sizeof(std::uint32_t)};
 }
 
-std::uint32_t sorted_slots(const GridScene& scene, const CudaGridOptions& options) {
-  return options.page_cells * scene.view().slots;
+std::uint32_t sorted_slots(const GridScene& scene, const SlotLayout& options) {
+  return options.cells * scene.view().slots;
 }
 
 struct Slot {
-  Slot(const GridScene& scene, const CudaGridOptions& options)
+  Slot(const GridScene& scene, const SlotLayout& options)
       : Slot(scene.view(), options, largest_layout(scene, options), sorted_slots(scene, options),
              scene.first_pose()) {}
 
-  Slot(const GridSceneView& scene, const CudaGridOptions& options, const Layout& layout,
+  Slot(const GridSceneView& scene, const SlotLayout& options, const Layout& layout,
        std::uint32_t points, bool first_pose)
       : host_page(options.page_bytes),
         host_plan(layout.plan_bytes),
@@ -59,11 +59,11 @@ struct Slot {
         sorted_keys(points),
         sorted_order(points),
         grid_points(points),
-        buckets(std::size_t{options.page_cells} * scene.bucket_count),
-        occupancy(std::size_t{options.page_cells} * scene.word_count),
-        group_occupancy(std::size_t{options.page_cells} * scene.word_count),
+        buckets(std::size_t{options.cells} * scene.bucket_count),
+        occupancy(std::size_t{options.cells} * scene.word_count),
+        group_occupancy(std::size_t{options.cells} * scene.word_count),
         done(first_pose ? 0 : divide_up(points, 64)),
-        latest(first_pose ? std::size_t{options.page_cells} * scene.bucket_count : 0),
+        latest(first_pose ? std::size_t{options.cells} * scene.bucket_count : 0),
         next_task(1),
         sort_scratch(grid_sort_bytes(points)) {}
 
@@ -89,7 +89,7 @@ struct Slot {
 
 class CudaGridEngine::Impl {
  public:
-  Impl(int device, const GridScene& scene, const CudaGridOptions& options)
+  Impl(int device, const GridScene& scene, const SlotLayout& options)
       : device_(on(device)), options_(options), scene_(scene), on_device_(scene), statistics_(1) {
     device_bytes_ = cuda_grid_bytes(scene);
     for (std::uint32_t i = 0; i < options.slots; ++i) {
@@ -112,7 +112,7 @@ class CudaGridEngine::Impl {
   std::span<std::byte> page(std::uint32_t slot) { return slots_[slot].host_page.span(); }
 
   void start(std::uint32_t index, const PageShape& shape) {
-    assert(shape.bytes() <= options_.page_bytes && shape.cells <= options_.page_cells);
+    assert(shape.bytes() <= options_.page_bytes && shape.cells <= options_.cells);
     on(device_);
     Slot& slot = slots_[index];
     slot.shape = shape;
@@ -210,7 +210,7 @@ class CudaGridEngine::Impl {
   }
 
   int device_;
-  CudaGridOptions options_;
+  SlotLayout options_;
   const GridScene& scene_;
   GridOnDevice on_device_;
   DeviceBuffer<GridStatistics> statistics_;
@@ -220,7 +220,7 @@ class CudaGridEngine::Impl {
   std::uint64_t device_bytes_ = 0, pinned_bytes_ = 0;
 };
 
-CudaGridEngine::CudaGridEngine(int device, const GridScene& scene, const CudaGridOptions& options)
+CudaGridEngine::CudaGridEngine(int device, const GridScene& scene, const SlotLayout& options)
     : impl_(std::make_unique<Impl>(device, scene, options)) {}
 CudaGridEngine::~CudaGridEngine() = default;
 std::uint32_t CudaGridEngine::slots() const { return impl_->slots(); }
@@ -234,10 +234,10 @@ std::uint64_t CudaGridEngine::device_bytes() const { return impl_->device_bytes(
 std::uint64_t CudaGridEngine::pinned_bytes() const { return impl_->pinned_bytes(); }
 
 std::uint64_t cuda_grid_bytes(const GridScene& scene) {
-  return GridOnDevice::bytes(scene) + sizeof(GridStatistics);
+  return scene.size_bytes() + sizeof(GridStatistics);
 }
 
-std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const CudaGridOptions& options) {
+std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const SlotLayout& options) {
   const Layout layout = largest_layout(scene, options);
   const GridSceneView& view = scene.view();
   const std::uint64_t a_point = 4 * sizeof(std::uint32_t) + sizeof(GridPoint);
@@ -245,29 +245,13 @@ std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const CudaGridOptions
       view.bucket_count * sizeof(BucketRange) + 2 * view.word_count * sizeof(std::uint64_t) +
       (scene.first_pose() ? view.bucket_count * sizeof(std::uint32_t) : view.slots / 8);
   return options.page_bytes + layout.plan_bytes + layout.answer_bytes + layout.points * a_point +
-         options.page_cells * a_cell + sizeof(std::uint64_t) +
+         options.cells * a_cell + sizeof(std::uint64_t) +
          grid_sort_bytes(sorted_slots(scene, options));
 }
 
-CudaGridOptions fit_cuda_grid(const GridScene& scene, std::uint64_t device_memory_bytes,
-                              const CudaGridOptions& wanted, std::uint64_t cell_page_bytes) {
-  const auto options_of = [&](std::uint32_t slots, std::uint32_t cells) {
-    const std::uint64_t a_cell = wanted.page_bytes / std::max(1U, wanted.page_cells);
-    return CudaGridOptions{slots, std::max(cell_page_bytes, cells * a_cell), cells};
-  };
-  const auto bytes_of = [&](const CudaGridOptions& options) {
-    return cuda_grid_bytes(scene) + options.slots * cuda_grid_slot_bytes(scene, options);
-  };
-  for (std::uint32_t slots = wanted.slots; slots > 0; --slots) {
-    for (std::uint32_t cells = wanted.page_cells; cells > 0; --cells) {
-      const CudaGridOptions options = options_of(slots, cells);
-      if (bytes_of(options) <= device_memory_bytes) return options;
-    }
-  }
-  const std::uint64_t least = bytes_of(options_of(1, 1));
-  throw ResourceError("engine grid needs at least " + std::to_string(least) +
-                      " bytes of device memory (--device-memory), not " +
-                      std::to_string(device_memory_bytes));
+std::uint64_t cuda_grid_pinned_bytes(const GridScene& scene, const SlotLayout& layout) {
+  const Layout sections = largest_layout(scene, layout);
+  return layout.page_bytes + sections.plan_bytes + sections.answer_bytes;
 }
 
 }  // namespace clearway

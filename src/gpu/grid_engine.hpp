@@ -4,16 +4,10 @@
 #include <memory>
 
 #include "core/page_engine.hpp"
+#include "core/page_pool.hpp"
 #include "grid/grid_scene.hpp"
 
 namespace clearway {
-
-/// Pages in flight on one device, and how large they are.
-struct CudaGridOptions {
-  std::uint32_t slots = 1;
-  std::uint64_t page_bytes = 0;  ///< at most, of a page
-  std::uint32_t page_cells = 0;  ///< likewise
-};
 
 /// The engine `grid` on one CUDA device: per page the points sorted into regular grids, then the
 /// model searched in them group by group, a warp a pair of group and pose. All memory is taken when
@@ -21,7 +15,7 @@ struct CudaGridOptions {
 class CudaGridEngine final : public PageEngine {
  public:
   /// Uploads the scene, which outlives the engine. Throws ResourceError with CUDA's reason.
-  CudaGridEngine(int device, const GridScene& scene, const CudaGridOptions& options);
+  CudaGridEngine(int device, const GridScene& scene, const SlotLayout& layout);
   ~CudaGridEngine() override;
 
   std::uint32_t slots() const override;
@@ -44,13 +38,9 @@ class CudaGridEngine final : public PageEngine {
 /// Device memory that a CudaGridEngine takes beside its slots, and for each of them. The latter
 /// asks the current device how much sorting needs.
 std::uint64_t cuda_grid_bytes(const GridScene& scene);
-std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const CudaGridOptions& options);
+std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const SlotLayout& layout);
 
-/// At most `wanted.slots` slots with at most `wanted.page_cells` cells a page that together fit
-/// `device_memory_bytes`: pages become smaller before they become fewer. wanted.page_bytes: of a
-/// page of wanted.page_cells cells; cell_page_bytes: of a page of any one cell. Throws
-/// ResourceError naming the smallest budget where not even one slot of one cell fits.
-CudaGridOptions fit_cuda_grid(const GridScene& scene, std::uint64_t device_memory_bytes,
-                              const CudaGridOptions& wanted, std::uint64_t cell_page_bytes);
+/// Page-locked host memory of a slot.
+std::uint64_t cuda_grid_pinned_bytes(const GridScene& scene, const SlotLayout& layout);
 
 }  // namespace clearway

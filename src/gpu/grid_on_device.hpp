@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "gpu/device_buffer.hpp"
+#include "gpu/device_array.hpp"
 #include "grid/grid_scene.hpp"
 
 namespace clearway {
@@ -23,20 +23,10 @@ class GridOnDevice {
 
   const GridSceneView& view() const { return view_; }
 
-  static std::uint64_t bytes(const GridScene& scene) {
-    return scene.model().points().size_bytes() + scene.model().groups().size_bytes() +
-           scene.model().parts().size_bytes() + scene.poses().size_bytes() +
-           scene.bounds().size_bytes() + scene.nodes().size_bytes() + scene.runs().size_bytes();
-  }
-
  private:
   template <typename Value>
   static DeviceBuffer<Value> copied(std::span<const Value> values) {
-    DeviceBuffer<Value> out(values.size());
-    if (!values.empty()) {
-      check_cuda(cudaMemcpy(out.data(), values.data(), out.bytes(), cudaMemcpyHostToDevice));
-    }
-    return out;
+    return copied_to_device(values.data(), values.size());
   }
 
   DeviceBuffer<Vec3> points_;

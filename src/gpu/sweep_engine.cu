@@ -364,4 +364,9 @@ std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const PackedCloud& cl
          WorkBuffers::bytes(sweep, blocks);
 }
 
+std::uint64_t cuda_sweep_pinned_bytes(const SweepRef& sweep, const PackedCloud& cloud,
+                                      const SlotLayout& layout) {
+  return page_bytes_of(layout) + AnswerLayout(sweep, most_blocks(cloud, layout)).bytes();
+}
+
 }  // namespace clearway

@@ -42,4 +42,8 @@ std::uint64_t cuda_sweep_bytes(const SweepRef& sweep);
 std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const PackedCloud& cloud,
                                     const SlotLayout& layout);
 
+/// Page-locked host memory of a slot.
+std::uint64_t cuda_sweep_pinned_bytes(const SweepRef& sweep, const PackedCloud& cloud,
+                                      const SlotLayout& layout);
+
 }  // namespace clearway

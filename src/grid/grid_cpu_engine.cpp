@@ -9,13 +9,13 @@
 namespace clearway {
 
 struct GridCpuEngine::Slot {
-  Slot(const GridScene& scene, const GridCpuOptions& options)
-      : page((options.page_bytes + sizeof(Line) - 1) / sizeof(Line)),
-        entry_runs(options.page_bytes / sizeof(std::uint32_t)),
-        cells(options.page_cells),
-        cell_runs(options.page_cells + 1) {
+  Slot(const GridScene& scene, const SlotLayout& layout, std::uint32_t work_list)
+      : page((layout.page_bytes + sizeof(Line) - 1) / sizeof(Line)),
+        entry_runs(layout.page_bytes / sizeof(std::uint32_t)),
+        cells(layout.cells),
+        cell_runs(layout.cells + 1) {
     const GridSceneView& all = scene.view();
-    const std::size_t n = options.page_cells;
+    const std::size_t n = layout.cells;
     sorted.resize(n * all.slots);
     keys.resize(n * all.slots);
     order.resize(n * all.slots);
@@ -30,7 +30,7 @@ struct GridCpuEngine::Slot {
     } else {
       done.resize(n * all.slots / 64);
     }
-    open.reserve(options.work_list);
+    open.reserve(work_list);
   }
 
   void build(const GridScene& scene);
@@ -119,11 +119,11 @@ std::uint64_t GridCpuEngine::Slot::allocated_bytes() const {
                group_occupancy, hits, done, first_poses, latest, open);
 }
 
-GridCpuEngine::GridCpuEngine(const GridScene& scene, const GridCpuOptions& options)
-    : scene_(scene), options_(options) {
-  options_.work_list = std::max(1U, options.work_list);
-  for (std::uint32_t i = 0; i < options.slots; ++i) {
-    slots_.push_back(std::make_unique<Slot>(scene, options_));
+GridCpuEngine::GridCpuEngine(const GridScene& scene, const SlotLayout& layout,
+                             std::uint32_t work_list)
+    : scene_(scene), layout_(layout), work_list_(std::max(1U, work_list)) {
+  for (std::uint32_t i = 0; i < layout.slots; ++i) {
+    slots_.push_back(std::make_unique<Slot>(scene, layout, work_list_));
   }
 }
 
@@ -132,11 +132,11 @@ GridCpuEngine::~GridCpuEngine() = default;
 std::uint32_t GridCpuEngine::slots() const { return static_cast<std::uint32_t>(slots_.size()); }
 
 std::span<std::byte> GridCpuEngine::page(std::uint32_t slot) {
-  return {reinterpret_cast<std::byte*>(slots_[slot]->page.data()), options_.page_bytes};
+  return {reinterpret_cast<std::byte*>(slots_[slot]->page.data()), layout_.page_bytes};
 }
 
 void GridCpuEngine::start(std::uint32_t slot, const PageShape& shape) {
-  assert(shape.bytes() <= options_.page_bytes && shape.cells <= options_.page_cells);
+  assert(shape.bytes() <= layout_.page_bytes && shape.cells <= layout_.cells);
   slots_[slot]->shape = shape;
   slots_[slot]->started = Clock::now();
 }
@@ -163,7 +163,7 @@ PageAnswer GridCpuEngine::finish(std::uint32_t index) {
       plan_page(scene_, slot.view.page, slot.cells, slot.cell_runs, slot.entry_runs);
   slot.build(scene_);
   for (std::uint64_t task = 0; task < tasks; ++task) {
-    slot.search(scene_, task, options_.work_list);
+    slot.search(scene_, task, work_list_);
   }
   const std::size_t slots = std::size_t{slot.shape.cells} * scene_.view().slots;
   answer.hits = std::span(slot.hits).first(slots / kBlockPoints);
@@ -183,6 +183,19 @@ std::uint64_t GridCpuEngine::allocated_bytes() const {
   std::uint64_t bytes = 0;
   for (const auto& slot : slots_) bytes += slot->allocated_bytes();
   return bytes;
+}
+
+std::uint64_t GridCpuEngine::slot_bytes(const GridScene& scene, const SlotLayout& layout) {
+  const GridSceneView& all = scene.view();
+  const std::uint64_t of_point = 2 * sizeof(std::uint64_t) + sizeof(GridPoint);
+  const std::uint64_t of_bucket = sizeof(BucketRange);
+  const std::uint64_t of_answer =
+      scene.first_pose() ? 4 * (all.slots + std::uint64_t{all.bucket_count}) : all.slots / 8;
+  const std::uint64_t a_cell = all.slots * of_point + all.slots / 8 + all.bucket_count * of_bucket +
+                               2 * all.word_count * sizeof(std::uint64_t) + of_answer +
+                               sizeof(GridCell) + sizeof(std::uint64_t);
+  return sizeof(Slot) + sizeof(Slot::Line) + 2 * layout.page_bytes + layout.cells * a_cell +
+         sizeof(std::uint64_t) + kWorkList * sizeof(std::uint32_t);
 }
 
 }  // namespace clearway

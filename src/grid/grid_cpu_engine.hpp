@@ -5,24 +5,21 @@
 #include <vector>
 
 #include "core/page_engine.hpp"
+#include "core/page_pool.hpp"
 #include "grid/grid_cell.hpp"
 
 namespace clearway {
-
-struct GridCpuOptions {
-  std::uint32_t slots = 1;       ///< pages searched at once, each by the thread that finishes it
-  std::uint64_t page_bytes = 0;  ///< of a slot
-  std::uint32_t page_cells = 1;  ///< most cells of a page
-  std::uint32_t work_list =
-      1024;  ///< pairs of group and pose tested before the open ones are searched
-};
 
 /// The engine `grid` on the CPU: the bodies of the GPU engine, called by plain loops. Source:
 /// Schauer et al. (the paper), section 3.2.
 class GridCpuEngine final : public PageEngine {
  public:
+  /// Pairs of group and pose tested before the open ones are searched.
+  static constexpr std::uint32_t kWorkList = 1024;
+
   /// `scene` outlives it. All memory is made here.
-  GridCpuEngine(const GridScene& scene, const GridCpuOptions& options);
+  GridCpuEngine(const GridScene& scene, const SlotLayout& layout,
+                std::uint32_t work_list = kWorkList);
   ~GridCpuEngine() override;
 
   std::uint32_t slots() const override;
@@ -34,11 +31,15 @@ class GridCpuEngine final : public PageEngine {
   GridStatistics statistics() const;
   std::uint64_t allocated_bytes() const;
 
+  /// What one slot takes, bytes, at the most.
+  static std::uint64_t slot_bytes(const GridScene& scene, const SlotLayout& layout);
+
  private:
   struct Slot;
 
   const GridScene& scene_;
-  GridCpuOptions options_;
+  SlotLayout layout_;
+  std::uint32_t work_list_;
   std::vector<std::unique_ptr<Slot>> slots_;
   mutable std::mutex mutex_;
   GridStatistics statistics_;

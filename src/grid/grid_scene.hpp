@@ -38,6 +38,13 @@ class GridScene {
   double grid_cell() const { return grid_cell_; }  ///< metres
   double group_radius() const { return group_radius_; }
 
+  /// Of all that the views refer to.
+  std::uint64_t size_bytes() const {
+    return model_.points().size_bytes() + model_.groups().size_bytes() +
+           model_.parts().size_bytes() + poses().size_bytes() + bounds().size_bytes() +
+           nodes().size_bytes() + runs().size_bytes();
+  }
+
   /// Over the host's memory.
   const GridSceneView& view() const { return view_; }
 

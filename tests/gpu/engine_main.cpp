@@ -15,14 +15,12 @@ namespace {
 
 Answer grid_on_cuda(const PackedCloud& cloud, const Question& question, int) {
   const GridRun run;
-  HitSet hits = run_grid(
-      cloud, question, run,
-      [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
-        CudaGridEngine engine(
-            0, scene,
-            {.slots = run.slots, .page_bytes = page_bytes, .page_cells = run.cells_a_page});
-        return run_in(engine);
-      });
+  HitSet hits =
+      run_grid(cloud, question, run,
+               [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+                 CudaGridEngine engine(0, scene, {run.slots, page_bytes, run.cells_a_page});
+                 return run_in(engine);
+               });
   return {std::move(hits), ClearanceSet()};
 }
 

@@ -37,16 +37,14 @@ std::vector<PlannedCell> plan_everything(const PackedCloud& cloud, const MotionT
 
 HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
                 GridStatistics* statistics) {
-  return run_grid(cloud, question, run,
-                  [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
-                    GridCpuEngine engine(scene, {.slots = run.slots,
-                                                 .page_bytes = page_bytes,
-                                                 .page_cells = run.cells_a_page,
-                                                 .work_list = run.work_list});
-                    HitSet hits = run_in(engine);
-                    if (statistics != nullptr) statistics->add(engine.statistics());
-                    return hits;
-                  });
+  return run_grid(
+      cloud, question, run,
+      [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+        GridCpuEngine engine(scene, {run.slots, page_bytes, run.cells_a_page}, run.work_list);
+        HitSet hits = run_in(engine);
+        if (statistics != nullptr) statistics->add(engine.statistics());
+        return hits;
+      });
 }
 
 HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,

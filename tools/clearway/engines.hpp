@@ -27,8 +27,9 @@ struct EngineOptions {
 /// How an answer was computed.
 struct EngineReport {
   std::string engine, device = "cpu";
-  std::uint64_t searches = 0;  ///< pairs of pose and model point
-  double context_seconds = 0;  ///< wall clock, like all of them
+  std::string device_name = "the CPU";  ///< for people
+  std::uint64_t searches = 0;           ///< pairs of pose and model point
+  double context_seconds = 0;           ///< wall clock, like all of them
   double plan_seconds = 0, field_seconds = 0;
   StageTimes stages;
   std::uint64_t pages = 0, page_bytes = 0;  ///< pages run, and the largest they may be

@@ -31,4 +31,11 @@ void check_memory(std::uint64_t needed, std::uint64_t allowed) {
                       ") beside the mapped store");
 }
 
+void check_device_memory(std::uint64_t needed, std::uint64_t allowed) {
+  if (needed <= allowed) return;
+  throw ResourceError("--device-memory " + format_size(allowed) +
+                      " is too little: this run needs " + format_size(needed) +
+                      " (--device-memory " + std::to_string(needed) + ") on each device");
+}
+
 }  // namespace clearway::tool

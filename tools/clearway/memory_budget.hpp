@@ -19,5 +19,6 @@ std::uint64_t answer_bytes(const Store& store, const Question& question);
 
 /// Throws ResourceError naming what is needed where that is more than `allowed`.
 void check_memory(std::uint64_t needed, std::uint64_t allowed);
+void check_device_memory(std::uint64_t needed, std::uint64_t allowed);
 
 }  // namespace clearway::tool

@@ -19,20 +19,26 @@ namespace {
 constexpr std::uint64_t kFieldBytes[] = {std::uint64_t{64} << 20, std::uint64_t{16} << 20,
                                          std::uint64_t{4} << 20, std::uint64_t{1} << 20};
 
+/// With less memory pages get smaller once fewer slots than this are left.
+constexpr std::uint32_t kFewSlots = 4;
+
 /// The layouts of an engine from the best to the least.
 std::vector<SlotLayout> layouts(const PageEngineKind& kind, std::uint64_t least_page_bytes) {
-  const std::uint64_t wanted = std::max(kind.page_bytes, least_page_bytes);
   std::vector<SlotLayout> out;
-  for (std::uint32_t slots = kind.most_slots; slots > 0; --slots) {
-    out.push_back({slots, wanted, kind.page_cells});
+  for (std::uint32_t cells = kind.page_cells; cells > 0; cells /= 2) {
+    const std::uint64_t wanted = kind.page_bytes / kind.page_cells * cells;
+    const std::uint32_t fewest = cells > 1 ? std::min(kind.most_slots, kFewSlots) : 1;
+    for (std::uint32_t slots = kind.most_slots; slots >= fewest; --slots) {
+      out.push_back({slots, std::max(wanted, least_page_bytes), cells});
+    }
   }
-  if (wanted > least_page_bytes) out.push_back({1, least_page_bytes, 1});
+  if (out.back().page_bytes > least_page_bytes) out.push_back({1, least_page_bytes, 1});
   return out;
 }
 
-/// While the trees over model and poses are built: 48 bytes a model point, and 144 a pose.
+/// While the trees over model and poses are built: 48 bytes a model point, and 168 a pose.
 std::uint64_t tree_building_bytes(const Question& question) {
-  return 48 * question.model.size() + 144 * question.poses.size();
+  return 48 * question.model.size() + 168 * question.poses.size();
 }
 
 /// Finds a plan and a layout that fit the memory.
@@ -60,6 +66,7 @@ class Budget {
       }
     }
     check_memory(smallest_bytes_, options_.memory_bytes);
+    check_device_memory(smallest_device_bytes_, kind_.most_device_bytes);
   }
 
   const SearchPlan& plan() const { return *plan_; }
@@ -77,7 +84,10 @@ class Budget {
     if (while_built > 0 && kept_bytes_ + building > options_.memory_bytes) return false;
     plan_.reset();
     plan_.emplace(store_, question_, trees_,
-                  ModelFieldOptions{options_.field_voxel, question_.clearance, field_bytes},
+                  ModelFieldOptions{.voxel = options_.field_voxel,
+                                    .fineness = kind_.field_fineness,
+                                    .reach = question_.clearance,
+                                    .most_bytes = field_bytes},
                   options_.threads);
     field_seconds_ += plan_->field_seconds;
     plan_seconds_ += plan_->plan_seconds;
@@ -88,9 +98,11 @@ class Budget {
       needed_bytes_ = kept_bytes_ + std::max(searching, least_write_bytes());
       layout_ = layout;
       const std::uint64_t budget = std::max(needed_bytes_, kept_bytes_ + building);
-      if (budget <= options_.memory_bytes) return true;
+      const std::uint64_t on_device = kind_.device_bytes ? kind_.device_bytes(*plan_, layout) : 0;
+      if (budget <= options_.memory_bytes && on_device <= kind_.most_device_bytes) return true;
       smallest_bytes_ = std::min(smallest_bytes_, budget);
-      if (!any_layout) break;
+      smallest_device_bytes_ = std::min(smallest_device_bytes_, on_device);
+      if (!any_layout && !kind_.device_bytes) break;  // for a device fewer slots are cheaper
     }
     return false;
   }
@@ -106,6 +118,7 @@ class Budget {
   double field_seconds_ = 0, plan_seconds_ = 0;  ///< of all plans tried
   std::uint64_t needed_bytes_ = 0;
   std::uint64_t smallest_bytes_ = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t smallest_device_bytes_ = std::numeric_limits<std::uint64_t>::max();
 };
 
 }  // namespace
@@ -130,7 +143,7 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
   report.slots = engine->slots();
   Answer answer =
       run_pages(store, plan.cells, pages, *engine, question, kind.threads, progress, report.stages);
-  kind.finished(*engine, report);
+  kind.finished(plan, *engine, report);
   return answer;
 }
 

@@ -17,12 +17,17 @@ struct PageEngineKind {
   std::uint32_t page_cells = 1;  ///< the most cells of a page
   std::uint64_t page_bytes = 0;  ///< wanted; more where a cell needs it, less with little memory
   int threads = 1;               ///< that run the pipeline, those that wait for a device included
+  double field_fineness = 1;     ///< of the model field (core/model_field.hpp)
 
   /// Memory on the host with this layout, bytes: what `make` allocates and what the searches do.
   std::function<std::uint64_t(const SearchPlan&, const SlotLayout&)> host_bytes;
+  /// Memory on a device likewise; none for an engine on the CPU.
+  std::function<std::uint64_t(const SearchPlan&, const SlotLayout&)> device_bytes = {};
+  std::uint64_t most_device_bytes = 0;
+  /// Slots of the layout are those of each device.
   std::function<std::unique_ptr<PageEngine>(const SearchPlan&, const SlotLayout&)> make;
   /// Called once after the last page: for the log, and for what only the engine can report.
-  std::function<void(const PageEngine&, EngineReport&)> finished;
+  std::function<void(const SearchPlan&, const PageEngine&, EngineReport&)> finished;
 };
 
 /// Plans the question within options.memory_bytes, makes the engine and runs it. Where memory is

@@ -125,7 +125,7 @@ void run_run(const RunOptions& options) {
   seconds.total = total.seconds();
   spdlog::info("{}: {} of {} environment points collide; engine {} on {}, {:.2f} s",
                options.output.string(), format_count(answer.hits.count()),
-               format_count(inputs.store.point_count()), engine.engine, engine.device,
+               format_count(inputs.store.point_count()), engine.engine, engine.device_name,
                seconds.total);
   if (options.clearance > 0) {
     spdlog::info("{} points are closer than {} m", format_count(answer.clearances.count()),

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/stopwatch.hpp"
 #include "core/model_field.hpp"
 #include "core/model_tree.hpp"
 #include "core/motion_tree.hpp"
 #include "core/page_engine.hpp"
+#include "core/stopwatch.hpp"
 #include "core/sweep_filter.hpp"
 #include "io/store.hpp"
 

@@ -13,35 +13,32 @@ namespace {
 /// Beside those that are searched: pages that are read meanwhile.
 constexpr std::uint32_t kSlotsAhead = 2;
 
+}  // namespace
+
 void log_statistics(const SweepStatistics& s) {
   spdlog::info("tests: {} of boxes, {} of points ({} points), {} exact", format_count(s.node_tests),
                format_count(s.point_tests), format_count(s.points_tested),
                format_count(s.exact_tests));
 }
 
-}  // namespace
-
 PageEngineKind cpu_sweep(const Store& store, const Question& question,
                          const EngineOptions& options) {
   const auto threads = static_cast<std::uint32_t>(options.threads);
-  return {.most_slots = threads + kSlotsAhead,
-          .page_cells = 1,
-          .page_bytes = 0,
-          .threads = options.threads,
-          .host_bytes =
-              [&store, &question, threads](const SearchPlan& plan, const SlotLayout& layout) {
-                return layout.slots * PagePool::slot_bytes(store, question, layout) +
-                       std::min(layout.slots, threads) *
-                           CellSearch::most_bytes(store, question, plan.most_poses());
-              },
-          .make =
-              [&store](const SearchPlan& plan, const SlotLayout& layout) {
-                return std::make_unique<SweepEngine>(store, plan.filter, layout);
-              },
-          .finished =
-              [](const PageEngine& engine, EngineReport&) {
-                log_statistics(dynamic_cast<const SweepEngine&>(engine).statistics());
-              }};
+  PageEngineKind kind;
+  kind.most_slots = threads + kSlotsAhead;
+  kind.threads = options.threads;
+  kind.host_bytes = [&store, &question, threads](const SearchPlan& plan, const SlotLayout& layout) {
+    return layout.slots * PagePool::slot_bytes(store, question, layout) +
+           std::min(layout.slots, threads) *
+               CellSearch::most_bytes(store, question, plan.most_poses());
+  };
+  kind.make = [&store](const SearchPlan& plan, const SlotLayout& layout) {
+    return std::make_unique<SweepEngine>(store, plan.filter, layout);
+  };
+  kind.finished = [](const SearchPlan&, const PageEngine& engine, EngineReport&) {
+    log_statistics(dynamic_cast<const SweepEngine&>(engine).statistics());
+  };
+  return kind;
 }
 
 }  // namespace clearway::tool

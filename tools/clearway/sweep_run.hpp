@@ -4,6 +4,8 @@
 
 namespace clearway::tool {
 
+void log_statistics(const SweepStatistics& statistics);
+
 /// The sweep engine on the CPU; options.threads is not 0.
 PageEngineKind cpu_sweep(const Store& store, const Question& question,
                          const EngineOptions& options);
