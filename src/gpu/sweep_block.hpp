@@ -11,7 +11,7 @@ namespace clearway {
 
 /// The first step for one block of 64 points, by one warp: clears its answer, then goes through the
 /// planned motion nodes, a lane a node, and puts those that may touch the block on the page's list
-/// of pairs, or where that is full the block with all planned nodes. With clearances the points are
+/// of entries, or where that is full the block as a whole. With clearances the points are
 /// searched at once, because only one warp may improve theirs.
 template <typename Warp, bool kClearance>
 class SweepBlock {
@@ -127,14 +127,25 @@ class SweepBlock {
 
   /// All of the queue, or nothing.
   CLEARWAY_HD bool put_on_list() {
-    const SweepWork::Room room = job_.work.room_for_pairs<Warp>(queued_ * halves());
+    const SweepWork& work = job_.work;
+    const auto nodes = SweepWork::room<Warp>(&work.counts->nodes, queued_, work.node_capacity);
+    if (!nodes.fits()) return false;
+    const auto parts = static_cast<std::uint32_t>(divide_up(queued_, SweepWork::kEntryNodes));
+    const auto entries =
+        SweepWork::room<Warp>(&work.counts->entries, parts * halves(), work.entry_capacity);
     Warp::each([&](std::uint32_t lane) {
-      for (std::uint32_t i = lane; i < room.written(); i += kWarpLanes) {
-        job_.work.pairs[room.first + i] = {
-            room.fits() ? 2 * block_ + i / queued_ : SweepWork::kNone, queue_[i % queued_]};
+      for (std::uint32_t i = lane; i < queued_; i += kWarpLanes) {
+        work.nodes[nodes.first + i] = queue_[i];
+      }
+      for (std::uint32_t i = lane; i < entries.written(); i += kWarpLanes) {
+        const std::uint32_t first = i % parts * SweepWork::kEntryNodes;
+        const std::uint32_t left = queued_ - first;
+        work.entries[entries.first + i] = {
+            entries.fits() ? 2 * block_ + i / parts : SweepWork::kNone, nodes.first + first,
+            left < SweepWork::kEntryNodes ? left : SweepWork::kEntryNodes};
       }
     });
-    return room.fits();
+    return entries.fits();
   }
 
   /// The points are then put to all planned nodes.
@@ -142,8 +153,8 @@ class SweepBlock {
     const std::uint32_t first = Warp::add(&job_.work.counts->whole, halves(), SweepWork::kNone);
     Warp::each([&](std::uint32_t lane) {
       if (lane >= halves()) return;
-      job_.work.pairs[job_.work.pair_capacity + first + lane] = {2 * block_ + lane,
-                                                                 SweepWork::kPlanned};
+      job_.work.entries[job_.work.entry_capacity + first + lane] = {2 * block_ + lane, 0,
+                                                                    SweepWork::kWhole};
     });
   }
 

@@ -16,8 +16,9 @@ constexpr std::uint32_t kWarpsPerBlock = 4;
 constexpr unsigned kThreads = kWarpsPerBlock * kWarpLanes;
 /// Statistics are added up in several places, so that warps seldom wait for each other.
 constexpr std::uint32_t kTallies = 64;
-/// Room for pairs and items on a page's lists, a block.
-constexpr std::uint64_t kPairsPerBlock = 4;
+/// Places on a page's lists, a block.
+constexpr std::uint64_t kNodesPerBlock = 8;
+constexpr std::uint64_t kEntriesPerBlock = 3;
 constexpr std::uint64_t kItemsPerBlock = 16;
 
 __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
@@ -50,16 +51,15 @@ __global__ void __launch_bounds__(kThreads)
   tally(tallies, statistics[0]);
 }
 
-/// Warps take one pair after the other, since some take far longer than others.
+/// Warps take one entry after the other, since some take far longer than others.
 __global__ void __launch_bounds__(kThreads)
-    search_pairs_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
-  const std::uint32_t count = job.work.pair_count();
+    search_entries_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  const std::uint32_t count = job.work.entry_count();
   CudaWarp::PerLane<SweepStatistics> statistics;
   for (;;) {
     const std::uint32_t index = CudaWarp::add(&job.work.counts->taken, 1, count);
     if (index >= count) break;
-    const SweepWork::Pair pair = job.work.pair(index);
-    search_pair<CudaWarp>(job, pair, statistics);
+    search_entry<CudaWarp>(job, job.work.entry(index), statistics);
   }
   tally(tallies, statistics[0]);
 }
@@ -163,23 +163,32 @@ std::uint64_t most_blocks(const PackedCloud& cloud, const SlotLayout& layout) {
 /// The lists of open work; clearances are searched without.
 struct WorkBuffers {
   WorkBuffers(const SweepRef& sweep, std::uint64_t most_blocks)
-      : pairs(sweep.clearance > 0 ? 0 : (kPairsPerBlock + 2) * most_blocks),
-        items(sweep.clearance > 0 ? 0 : kItemsPerBlock * most_blocks),
+      : blocks(sweep.clearance > 0 ? 0 : most_blocks),
+        nodes(kNodesPerBlock * blocks),
+        entries((kEntriesPerBlock + 2) * blocks),
+        items(kItemsPerBlock * blocks),
         counts(1) {}
 
-  SweepWork ref(std::uint64_t blocks) const {
-    return {pairs.data(), items.data(), counts.data(),
-            static_cast<std::uint32_t>(pairs.size() > 0 ? kPairsPerBlock * blocks : 0),
-            static_cast<std::uint32_t>(items.size())};
+  SweepWork ref() const {
+    return {.nodes = nodes.data(),
+            .entries = entries.data(),
+            .items = items.data(),
+            .counts = counts.data(),
+            .node_capacity = static_cast<std::uint32_t>(nodes.size()),
+            .entry_capacity = static_cast<std::uint32_t>(kEntriesPerBlock * blocks),
+            .item_capacity = static_cast<std::uint32_t>(items.size())};
   }
 
   static std::uint64_t bytes(const SweepRef& sweep, std::uint64_t most_blocks) {
-    const std::uint64_t a_block =
-        (kPairsPerBlock + 2) * sizeof(SweepWork::Pair) + kItemsPerBlock * sizeof(SweepWork::Item);
+    const std::uint64_t a_block = kNodesPerBlock * sizeof(std::uint32_t) +
+                                  (kEntriesPerBlock + 2) * sizeof(SweepWork::Entry) +
+                                  kItemsPerBlock * sizeof(SweepWork::Item);
     return sizeof(SweepWork::Counts) + (sweep.clearance > 0 ? 0 : a_block * most_blocks);
   }
 
-  DeviceBuffer<SweepWork::Pair> pairs;
+  std::uint64_t blocks;
+  DeviceBuffer<std::uint32_t> nodes;
+  DeviceBuffer<SweepWork::Entry> entries;
   DeviceBuffer<SweepWork::Item> items;
   DeviceBuffer<SweepWork::Counts> counts;
 };
@@ -251,7 +260,7 @@ class CudaSweepEngine::Impl {
         .clearances = layout.clearances > 0
                           ? reinterpret_cast<Clearance*>(answer + layout.clearances_at())
                           : nullptr,
-        .work = slot.work.ref(blocks)};
+        .work = slot.work.ref()};
     slot.begun.record(stream);
     check_cuda(cudaMemcpyAsync(slot.page.data(), slot.host_page.data(), shape.bytes(),
                                cudaMemcpyHostToDevice, stream));
@@ -307,7 +316,7 @@ class CudaSweepEngine::Impl {
     }
     search_blocks_kernel<false><<<grid, kThreads, 0, stream>>>(job, tallies_.data());
     check_cuda(cudaGetLastError());
-    search_pairs_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
+    search_entries_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
     check_cuda(cudaGetLastError());
     search_items_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
     check_cuda(cudaGetLastError());

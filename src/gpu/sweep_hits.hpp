@@ -83,12 +83,13 @@ class SweepHits {
 
   /// All lanes that wait, or none.
   CLEARWAY_HD bool deferred(std::uint32_t waiting) {
-    const SweepWork::Room room = job_.work.room_for_items<Warp>(count_of(waiting));
+    const SweepWork& work = job_.work;
+    const auto room =
+        SweepWork::room<Warp>(&work.counts->items, count_of(waiting), work.item_capacity);
     Warp::each([&](std::uint32_t lane) {
       const std::uint32_t rank = count_of(waiting & ((1U << lane) - 1));
       if ((waiting >> lane & 1) == 0 || rank >= room.written()) return;
-      job_.work.items[room.first + rank] = {room.fits() ? slot(lane) : SweepWork::kNone,
-                                            ways_[lane].at};
+      work.items[room.first + rank] = {room.fits() ? slot(lane) : SweepWork::kNone, ways_[lane].at};
     });
     return room.fits();
   }
@@ -114,16 +115,17 @@ class SweepHits {
   PerLane<std::uint32_t> best_;  ///< first pose known; without first poses any, as a mark
 };
 
-/// The second step: puts the points of a half block to the runs of poses of its pair.
+/// The second step: puts the points of a half block to the runs of poses of an entry.
 template <typename Warp>
-CLEARWAY_HD void search_pair(const SweepPage& job, const SweepWork::Pair& pair,
-                             typename Warp::template PerLane<SweepStatistics>& statistics) {
-  if (pair.half == SweepWork::kNone) return;
-  const PageCell& cell = job.cell_of_block(pair.half / SweepHits<Warp>::kHalves);
-  const SweepSubtrees subtrees = pair.node == SweepWork::kPlanned
-                                     ? SweepSubtrees{job.page.nodes(cell), cell.node_count}
-                                     : SweepSubtrees{&pair.node, 1};
-  SweepHits<Warp>(job, pair.half, statistics).search(subtrees, true);
+CLEARWAY_HD void search_entry(const SweepPage& job, const SweepWork::Entry& entry,
+                              typename Warp::template PerLane<SweepStatistics>& statistics) {
+  if (entry.half == SweepWork::kNone) return;
+  const PageCell& cell = job.cell_of_block(entry.half / SweepHits<Warp>::kHalves);
+  const SweepSubtrees subtrees =
+      entry.node_count == SweepWork::kWhole
+          ? SweepSubtrees{job.page.nodes(cell), cell.node_count}
+          : SweepSubtrees{job.work.nodes + entry.first_node, entry.node_count};
+  SweepHits<Warp>(job, entry.half, statistics).search(subtrees, true);
 }
 
 /// The third step: searches the model for a point and a single pose.

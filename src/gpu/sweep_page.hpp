@@ -9,61 +9,63 @@
 namespace clearway {
 
 /// What is still to be done for a page: runs of poses that may touch a half block, and single poses
-/// that may touch a point. Both lists are bounded. A block whose runs find no room is put down once
-/// with kPlanned, for which there is always room; a single pose that finds none is decided at once.
+/// that may touch a point. All lists are bounded. A block whose runs find no room is put down once
+/// as a whole, for which there is always room; a single pose that finds none is decided at once.
 struct SweepWork {
-  struct Pair {
-    std::uint32_t half;  ///< half block within the page: 32 points
-    std::uint32_t node;
+  /// Points of a half block to be put to nodes first_node .. first_node + node_count - 1 of the
+  /// list, or to all planned nodes of its cell (kWhole).
+  struct Entry {
+    std::uint32_t half;  ///< within the page: 32 points
+    std::uint32_t first_node, node_count;
   };
   struct Item {
     std::uint32_t point;  ///< slot within the page: 64 a block
     std::uint32_t node;   ///< of a single pose
   };
   struct Counts {
-    std::uint32_t pairs, items;  ///< asked for: may exceed the capacities
-    std::uint32_t whole;         ///< half blocks with kPlanned
-    std::uint32_t taken;         ///< of pairs and whole
+    std::uint32_t nodes, entries, items;  ///< asked for: may exceed the capacities
+    std::uint32_t whole;                  ///< entries with kWhole
+    std::uint32_t taken;                  ///< of entries and whole
   };
-  static constexpr std::uint32_t kNone = 0xffffffff;     ///< half or point of an entry not used
-  static constexpr std::uint32_t kPlanned = 0xffffffff;  ///< node: all planned ones of the cell
+  static constexpr std::uint32_t kNone = 0xffffffff;   ///< half or point of a place not used
+  static constexpr std::uint32_t kWhole = 0xffffffff;  ///< node_count
+  static constexpr std::uint32_t kEntryNodes = 8;      ///< of an entry, at most
 
-  Pair* pairs;  ///< pair_capacity, then two a block
+  std::uint32_t* nodes;
+  Entry* entries;  ///< entry_capacity, then two a block
   Item* items;
   Counts* counts;
-  std::uint32_t pair_capacity, item_capacity;
+  std::uint32_t node_capacity, entry_capacity, item_capacity;
 
-  /// Room for `count` entries of a list, taken by a warp.
+  /// Room for `count` places of a list, taken by a warp.
   struct Room {
     std::uint32_t first, count, capacity;
     CLEARWAY_HD bool fits() const { return first < capacity && count <= capacity - first; }
-    /// Entries that must be written: none, all, or those left, as not used.
+    /// Places that must be written: all, or those left, as not used.
     CLEARWAY_HD std::uint32_t written() const {
       return fits() ? count : first < capacity ? capacity - first : 0;
     }
   };
   template <typename Warp>
-  CLEARWAY_HD Room room_for_pairs(std::uint32_t count) const {
-    return {Warp::add(&counts->pairs, count, pair_capacity), count, pair_capacity};
-  }
-  template <typename Warp>
-  CLEARWAY_HD Room room_for_items(std::uint32_t count) const {
-    return {Warp::add(&counts->items, count, item_capacity), count, item_capacity};
+  CLEARWAY_HD static Room room(std::uint32_t* counter, std::uint32_t count,
+                               std::uint32_t capacity) {
+    return {Warp::add(counter, count, capacity), count, capacity};
   }
 
-  /// Entries of `pairs` to be looked at, those with kPlanned after the others.
-  CLEARWAY_HD std::uint32_t pair_count() const { return listed_pairs() + counts->whole; }
-  CLEARWAY_HD Pair pair(std::uint32_t index) const {
-    const std::uint32_t listed = listed_pairs();
-    return pairs[index < listed ? index : pair_capacity + index - listed];
+  /// Entries to be looked at, those with kWhole after the others.
+  CLEARWAY_HD std::uint32_t entry_count() const { return listed_entries() + counts->whole; }
+  CLEARWAY_HD Entry entry(std::uint32_t index) const {
+    const std::uint32_t listed = listed_entries();
+    return entries[index < listed ? index : entry_capacity + index - listed];
   }
+
   CLEARWAY_HD std::uint32_t item_count() const {
     return counts->items < item_capacity ? counts->items : item_capacity;
   }
 
  private:
-  CLEARWAY_HD std::uint32_t listed_pairs() const {
-    return counts->pairs < pair_capacity ? counts->pairs : pair_capacity;
+  CLEARWAY_HD std::uint32_t listed_entries() const {
+    return counts->entries < entry_capacity ? counts->entries : entry_capacity;
   }
 };
 

@@ -38,10 +38,12 @@ class HostSweep final : public PageEngine {
                   .clearances = clearances.empty() ? nullptr : clearances.data(),
                   .work = {}};
     const std::uint32_t blocks = job.block_count();
-    std::vector<SweepWork::Pair> pairs(entries_ + 2 * blocks);
+    std::vector<std::uint32_t> nodes(2 * std::size_t{entries_});
+    std::vector<SweepWork::Entry> entries(entries_ + 2 * blocks);
     std::vector<SweepWork::Item> items(entries_);
     SweepWork::Counts counts{};
-    job.work = {pairs.data(), items.data(), &counts, entries_, entries_};
+    job.work = {nodes.data(), entries.data(), items.data(), &counts,
+                2 * entries_, entries_,       entries_};
     run(job);
     const std::size_t points = std::size_t{blocks} * kBlockPoints;
     return {.hits = hits.first(blocks),
@@ -67,8 +69,8 @@ class HostSweep final : public PageEngine {
         SweepBlock<HostWarp, false>(job, block, queue, statistics).search();
       }
     }
-    for (std::uint32_t i = 0; i < job.work.pair_count(); ++i) {
-      search_pair<HostWarp>(job, job.work.pair(i), statistics);
+    for (std::uint32_t i = 0; i < job.work.entry_count(); ++i) {
+      search_entry<HostWarp>(job, job.work.entry(i), statistics);
     }
     for (std::uint32_t i = 0; i < job.work.item_count(); ++i) {
       search_item(job, job.work.items[i], statistics[0]);
