@@ -1,9 +1,11 @@
 #include "core/sweep_filter.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/hit_set.hpp"
+#include "core/spread_order.hpp"
 
 namespace clearway {
 namespace {
@@ -93,15 +95,30 @@ Verdict SweepFilter::test(const Vec3& e, const MotionNode& node, SweepStatistics
   return ref_.touches_at(e, node) ? Verdict::kHitAtMid : Verdict::kDismissed;
 }
 
+/// First the middle poses of all nodes, far apart ones first: most points that collide do so at one
+/// of them. Then what stayed open, in halves.
 bool SweepFilter::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
                           SweepStatistics& statistics) const {
   ++statistics.points_tested;
   double squared_lower = 0;
-  return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
-    const Verdict verdict = test(e, motion_.nodes()[node], statistics, squared_lower);
-    return verdict == Verdict::kHitAtMid ||
-           (verdict == Verdict::kOpen && touches_below(e, node, statistics));
-  });
+  while (!nodes.empty()) {
+    const std::span part = nodes.first(std::min<std::size_t>(nodes.size(), SpreadOrder::kMost));
+    nodes = nodes.subspan(part.size());
+    std::uint64_t open = 0;  // as bits
+    bool hit = false;
+    SpreadOrder(static_cast<std::uint32_t>(part.size())).for_each([&](std::uint32_t i) {
+      const Verdict verdict = test(e, motion_.nodes()[part[i]], statistics, squared_lower);
+      hit = verdict == Verdict::kHitAtMid;
+      open |= std::uint64_t{verdict == Verdict::kOpen} << i;
+      return !hit;
+    });
+    if (hit) return true;
+    for (; open != 0; open &= open - 1) {
+      const std::uint32_t node = part[static_cast<std::size_t>(std::countr_zero(open))];
+      if (touches_below(e, node, statistics)) return true;
+    }
+  }
+  return false;
 }
 
 /// Tests both halves of an open node, then goes into the nearer one first.

@@ -31,12 +31,16 @@ class SweepClearances {
     if (begin >= cell_.count) return;
     Warp::each([&](std::uint32_t lane) {
       best_[lane] = Clearance{limit_, 0};  // pose 0, so that a tie with the limit is no improvement
-      if (begin + lane >= cell_.count) return ways_[lane].leave_all(subtrees.count);
+      wanted_[lane] = begin + lane < cell_.count;
+      if (!wanted_[lane]) return;
       ++statistics_[lane].points_tested;
       points_[lane] = job_.point(cell_, begin + lane);
       const Clearance known = job_.clearances[slot(lane)];
       if (known.squared < limit_) best_[lane] = known;
     });
+    look_at_tops<Warp>(
+        subtrees, ways_, [&](std::uint32_t lane) { return wanted_[lane]; },
+        [&](std::uint32_t lane, std::uint32_t at) { return look(lane, at); });
     walk<Warp>(
         job_.sweep.motion, subtrees, ways_,
         [&](std::uint32_t lane, SweepWay& way) { step(lane, way); },
@@ -70,21 +74,26 @@ class SweepClearances {
   }
 
   CLEARWAY_HD void step(std::uint32_t lane, SweepWay& way) {
-    ++statistics_[lane].point_tests;
-    const SweepRef& sweep = job_.sweep;
-    const MotionNode& node = sweep.motion.nodes[way.at];
-    const PullBack& back = sweep.motion.pull_backs[node.mid];
-    const ModelFieldRef::Bounds bounds = sweep.field.bounds(back.apply(points_[lane]));
-    if (farther(back.least, bounds.squared_lower, reach(lane) + node.delta)) {
-      way.at += 2 * node.count - 1;
-      return;
-    }
-    if (bounds.near != ModelFieldRef::kNone) offer(lane, node.mid, sweep.model.points[bounds.near]);
-    if (node.count == 1) {
+    const std::uint32_t count = job_.sweep.motion.nodes[way.at].count;
+    if (!look(lane, way.at)) {
+      way.at += 2 * count - 1;
+    } else if (count == 1) {
       way.waits = true;
     } else {
       ++way.at;
     }
+  }
+
+  /// Whether a pose of the node may still have the least d2.
+  CLEARWAY_HD bool look(std::uint32_t lane, std::uint32_t at) {
+    ++statistics_[lane].point_tests;
+    const SweepRef& sweep = job_.sweep;
+    const MotionNode& node = sweep.motion.nodes[at];
+    const PullBack& back = sweep.motion.pull_backs[node.mid];
+    const ModelFieldRef::Bounds bounds = sweep.field.bounds(back.apply(points_[lane]));
+    if (farther(back.least, bounds.squared_lower, reach(lane) + node.delta)) return false;
+    if (bounds.near != ModelFieldRef::kNone) offer(lane, node.mid, sweep.model.points[bounds.near]);
+    return true;
   }
 
   /// Offers every model point that may have the least d2 at one pose.
@@ -125,6 +134,7 @@ class SweepClearances {
   PerLane<SweepStatistics>& statistics_;
   PerLane<SweepWay> ways_;
   PerLane<Vec3> points_;
+  PerLane<bool> wanted_;  ///< is a point
   PerLane<Clearance> best_;
 };
 

@@ -33,23 +33,33 @@ class SweepHits {
     const std::uint64_t known = job_.hits[block_] >> first_;
     Warp::each([&](std::uint32_t lane) {
       best_[lane] = SweepPage::kNever;
-      if (begin + lane >= cell_.count) return ways_[lane].leave_all(subtrees.count);
-      if (job_.sweep.first_pose) {
-        best_[lane] = job_.first_poses[slot(lane)];
-      } else if ((known >> lane & 1) != 0) {
-        return ways_[lane].leave_all(subtrees.count);
-      }
+      wanted_[lane] =
+          begin + lane < cell_.count && (job_.sweep.first_pose || (known >> lane & 1) == 0);
+      if (!wanted_[lane]) return;
+      if (job_.sweep.first_pose) best_[lane] = job_.first_poses[slot(lane)];
       ++statistics_[lane].points_tested;
       points_[lane] = job_.point(cell_, begin + lane);
     });
+    look_at_tops<Warp>(
+        subtrees, ways_, [&](std::uint32_t lane) { return wanted_[lane]; },
+        [&](std::uint32_t lane, std::uint32_t at) {
+          const MotionNode& node = job_.sweep.motion.nodes[at];
+          if (node.first >= best_[lane]) return false;
+          ++statistics_[lane].point_tests;
+          const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node);
+          if (verdict == SweepRef::Verdict::kDismissed) return false;
+          if (verdict == SweepRef::Verdict::kOpen) return true;
+          hit(lane, node.mid);
+          return job_.sweep.first_pose && node.first < best_[lane];
+        });
     walk<Warp>(
         job_.sweep.motion, subtrees, ways_,
-        [&](std::uint32_t lane, SweepWay& way) { step(lane, way, subtrees.count); },
+        [&](std::uint32_t lane, SweepWay& way) { step(lane, way); },
         [&](std::uint32_t waiting) { return defer && deferred(waiting); },
         [&](std::uint32_t lane, std::uint32_t at) {
           ++statistics_[lane].exact_tests;
           const MotionNode& node = job_.sweep.motion.nodes[at];
-          if (job_.sweep.touches_at(points_[lane], node)) hit(lane, node.mid, subtrees.count);
+          if (job_.sweep.touches_at(points_[lane], node)) hit(lane, node.mid);
         });
     mark();
   }
@@ -59,12 +69,14 @@ class SweepHits {
     return block_ * kBlockPoints + first_ + lane;
   }
 
-  CLEARWAY_HD void hit(std::uint32_t lane, std::uint32_t pose, std::uint32_t subtrees) {
+  CLEARWAY_HD void hit(std::uint32_t lane, std::uint32_t pose) {
     if (pose < best_[lane]) best_[lane] = pose;
-    if (!job_.sweep.first_pose) ways_[lane].leave_all(subtrees);
+    if (job_.sweep.first_pose) return;
+    ways_[lane].leave_all();
+    wanted_[lane] = false;
   }
 
-  CLEARWAY_HD void step(std::uint32_t lane, SweepWay& way, std::uint32_t subtrees) {
+  CLEARWAY_HD void step(std::uint32_t lane, SweepWay& way) {
     const MotionNode& node = job_.sweep.motion.nodes[way.at];
     const std::uint32_t size = 2 * node.count - 1;
     if (node.first >= best_[lane]) {
@@ -78,7 +90,7 @@ class SweepHits {
       return;
     }
     way.at += verdict == SweepRef::Verdict::kDismissed ? size : 1;
-    if (verdict == SweepRef::Verdict::kHitAtMid) hit(lane, node.mid, subtrees);
+    if (verdict == SweepRef::Verdict::kHitAtMid) hit(lane, node.mid);
   }
 
   /// All lanes that wait, or none.
@@ -112,6 +124,7 @@ class SweepHits {
   PerLane<SweepStatistics>& statistics_;
   PerLane<SweepWay> ways_;
   PerLane<Vec3> points_;
+  PerLane<bool> wanted_;         ///< has something to find
   PerLane<std::uint32_t> best_;  ///< first pose known; without first poses any, as a mark
 };
 
@@ -121,11 +134,15 @@ CLEARWAY_HD void search_entry(const SweepPage& job, const SweepWork::Entry& entr
                               typename Warp::template PerLane<SweepStatistics>& statistics) {
   if (entry.half == SweepWork::kNone) return;
   const PageCell& cell = job.cell_of_block(entry.half / SweepHits<Warp>::kHalves);
-  const SweepSubtrees subtrees =
-      entry.node_count == SweepWork::kWhole
-          ? SweepSubtrees{job.page.nodes(cell), cell.node_count}
-          : SweepSubtrees{job.work.nodes + entry.first_node, entry.node_count};
-  SweepHits<Warp>(job, entry.half, statistics).search(subtrees, true);
+  const bool whole = entry.node_count == SweepWork::kWhole;
+  const std::uint32_t* nodes = whole ? job.page.nodes(cell) : job.work.nodes + entry.first_node;
+  std::uint32_t left = whole ? cell.node_count : entry.node_count;
+  while (left > 0) {
+    const std::uint32_t count = left < SweepSubtrees::kMost ? left : SweepSubtrees::kMost;
+    SweepHits<Warp>(job, entry.half, statistics).search({nodes, count}, true);
+    nodes += count;
+    left -= count;
+  }
 }
 
 /// The third step: searches the model for a point and a single pose.

@@ -2,16 +2,25 @@
 
 #include <cstdint>
 
+#include "core/spread_order.hpp"
 #include "core/sweep_ref.hpp"
 #include "gpu/warp.hpp"
 
 namespace clearway {
 
-/// A lane's way through subtrees of the motion tree. It needs no stack: in preorder the subtree of
-/// a range of n poses is a run of 2 n - 1 nodes.
+/// Nodes whose subtrees all lanes of a warp have to do with.
+struct SweepSubtrees {
+  static constexpr std::uint32_t kMost = SpreadOrder::kMost;
+
+  const std::uint32_t* nodes;
+  std::uint32_t count;  ///< at most kMost
+};
+
+/// A lane's way through its part of some subtrees. It needs no stack: in preorder the subtree of a
+/// range of n poses is a run of 2 n - 1 nodes.
 struct SweepWay {
+  std::uint64_t open = 0;         ///< subtrees still to be entered, as bits
   std::uint32_t at = 0, end = 0;  ///< the node to look at, and the first behind the subtree
-  std::uint32_t entered = 0;      ///< subtrees entered so far
   bool waits = false;             ///< for a search of the model at the single pose `at`
 
   CLEARWAY_HD bool is_inside() const { return at != end; }
@@ -21,30 +30,45 @@ struct SweepWay {
     end = node + 2 * motion.nodes[node].count - 1;
   }
 
-  CLEARWAY_HD void leave_all(std::uint32_t count) {
-    at = end = 0;
-    entered = count;
-  }
-};
-
-/// Subtrees that all lanes of a warp go through, each at its own pace.
-struct SweepSubtrees {
-  const std::uint32_t* nodes;
-  std::uint32_t count;
-
-  /// Enters the next subtree where the last one is done; false at the end.
-  CLEARWAY_HD bool enter(const MotionTreeRef& motion, SweepWay& way) const {
-    if (way.is_inside()) return true;
-    if (way.entered == count) return false;
-    way.enter(motion, nodes[way.entered++]);
+  /// Enters the next subtree where the last one is done, below its top, which was looked at; false
+  /// at the end.
+  CLEARWAY_HD bool go_on(const MotionTreeRef& motion, const SweepSubtrees& subtrees) {
+    if (is_inside()) return true;
+    if (open == 0) return false;
+    enter(motion, subtrees.nodes[lowest_bit(open)]);
+    open &= open - 1;
+    if (end - at > 1) ++at;
     return true;
   }
+
+  CLEARWAY_HD void leave_all() {
+    open = 0;
+    at = end = 0;
+  }
 };
 
-/// The lanes' ways to their ends: step(lane, way) looks at a node and moves the way on or lets it
-/// wait, defer(waiting lanes as bits) takes what waits off their hands where it can, search(lane,
-/// way) searches the model at a single pose. Lanes that wait do so until all do, then search
-/// together.
+/// The first look at the tops of the subtrees, all lanes at the same, far ones first: most points
+/// that collide do so at one of them. is_wanted(lane): whether the lane has anything to find; look(
+/// lane, node): whether the subtree stays open.
+template <typename Warp, typename IsWanted, typename Look>
+CLEARWAY_HD void look_at_tops(const SweepSubtrees& subtrees,
+                              typename Warp::template PerLane<SweepWay>& ways, IsWanted is_wanted,
+                              Look look) {
+  SpreadOrder(subtrees.count).for_each([&](std::uint32_t i) {
+    const std::uint32_t node = subtrees.nodes[i];
+    const std::uint32_t wanted = Warp::ballot([&](std::uint32_t lane) {
+      if (!is_wanted(lane)) return false;
+      if (look(lane, node)) ways[lane].open |= std::uint64_t{1} << i;
+      return true;
+    });
+    return wanted != 0;
+  });
+}
+
+/// The lanes' ways to their ends, each at its own pace: step(lane, way) looks at a node and moves
+/// the way on or lets it wait, defer(waiting lanes as bits) takes what waits off their hands where
+/// it can, search(lane, way) searches the model at a single pose. Lanes that wait do so until all
+/// do, then search together.
 template <typename Warp, typename Step, typename Defer, typename Search>
 CLEARWAY_HD void walk(const MotionTreeRef& motion, const SweepSubtrees& subtrees,
                       typename Warp::template PerLane<SweepWay>& ways, Step step, Defer defer,
@@ -52,7 +76,7 @@ CLEARWAY_HD void walk(const MotionTreeRef& motion, const SweepSubtrees& subtrees
   for (;;) {
     const std::uint32_t walking = Warp::ballot([&](std::uint32_t lane) {
       SweepWay& way = ways[lane];
-      if (way.waits || !subtrees.enter(motion, way)) return false;
+      if (way.waits || !way.go_on(motion, subtrees)) return false;
       step(lane, way);
       return true;
     });

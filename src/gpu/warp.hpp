@@ -122,6 +122,15 @@ CLEARWAY_HD inline void lower_to(std::uint32_t* value, std::uint32_t to) {
 #endif
 }
 
+/// Index of the lowest set bit; there is one.
+CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  return static_cast<std::uint32_t>(__ffsll(static_cast<long long>(bits)) - 1);
+#else
+  return static_cast<std::uint32_t>(std::countr_zero(bits));
+#endif
+}
+
 /// Set bits.
 CLEARWAY_HD inline std::uint32_t count_of(std::uint32_t bits) {
 #ifdef __CUDA_ARCH__
