@@ -1,15 +1,27 @@
 #include "gpu/devices.hpp"
 
+#include <cstdlib>
+
 #include "gpu/cuda_check.hpp"
 
 namespace clearway {
 
+namespace {
+
+/// By default a process has 8 queues to a device, and streams that share one wait for each other.
+/// CUDA looks at this once, before its first call.
+void ask_for_queues() { setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0); }
+
+}  // namespace
+
 int cuda_device_count() {
+  ask_for_queues();
   int count = 0;
   return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
 }
 
 std::string why_no_cuda_device() {
+  ask_for_queues();
   int count = 0;
   const cudaError_t status = cudaGetDeviceCount(&count);
   if (status != cudaSuccess) return cudaGetErrorString(status);
@@ -17,6 +29,7 @@ std::string why_no_cuda_device() {
 }
 
 CudaDevice open_cuda_device(int index) {
+  ask_for_queues();
   check_cuda(cudaSetDevice(index));
   cudaDeviceProp properties{};
   check_cuda(cudaGetDeviceProperties(&properties, index));

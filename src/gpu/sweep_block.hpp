@@ -19,15 +19,21 @@ class SweepBlock {
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  /// Nodes are kept in `queue`, kQueue of them, shared by the lanes.
   static constexpr std::uint32_t kQueue = 64;
+  static constexpr std::uint32_t kOpen = 96;
 
-  CLEARWAY_HD SweepBlock(const SweepPage& job, std::uint32_t block, std::uint32_t* queue,
+  /// What the lanes share.
+  struct Shared {
+    std::uint32_t open[kOpen];    ///< nodes to be looked at
+    std::uint32_t queue[kQueue];  ///< nodes for the points
+  };
+
+  CLEARWAY_HD SweepBlock(const SweepPage& job, std::uint32_t block, Shared& shared,
                          PerLane<SweepStatistics>& statistics)
       : job_(job),
         block_(block),
         cell_(job.cell_of_block(block)),
-        queue_(queue),
+        shared_(shared),
         statistics_(statistics) {}
 
   CLEARWAY_HD void search() {
@@ -52,39 +58,58 @@ class SweepBlock {
   }
 
   CLEARWAY_HD void narrow(const Vec3& centre, double rho, const std::uint32_t* nodes) {
-    const MotionTreeRef& motion = job_.sweep.motion;
     double limit = job_.sweep.radius;
     if constexpr (kClearance) limit = clearance_limit(centre, rho, nodes);
-    PerLane<SweepWay> ways;
-    PerLane<std::uint32_t> kept;
     for (std::uint32_t next = 0;;) {  // of `nodes`
-      const std::uint32_t open =
-          Warp::ballot([&](std::uint32_t lane) { return ways[lane].is_inside(); });
-      const bool done = open == 0 && next >= cell_.node_count;
+      const bool done = open_ == 0 && next >= cell_.node_count;
       if (queued_ > kQueue - kWarpLanes || (done && queued_ > 0)) empty_queue();
       if (done || is_whole_) return;
-      if (open == 0) {
-        Warp::each([&](std::uint32_t lane) {
-          if (next + lane < cell_.node_count) ways[lane].enter(motion, nodes[next + lane]);
-        });
-        next += kWarpLanes;
-      }
-      const std::uint32_t keep = Warp::ballot([&](std::uint32_t lane) {
-        SweepWay& way = ways[lane];
-        if (!way.is_inside()) return false;
-        ++statistics_[lane].node_tests;
-        kept[lane] = way.at;
-        const MotionNode& node = motion.nodes[way.at];
-        const SweepRef::Fate fate = job_.sweep.fate_of(node, centre, rho, limit);
-        way.at += fate == SweepRef::Fate::kSplit ? 1 : 2 * node.count - 1;
-        return fate == SweepRef::Fate::kKept;
-      });
-      Warp::each([&](std::uint32_t lane) {
-        if ((keep >> lane & 1) == 0) return;
-        queue_[queued_ + count_of(keep & ((1U << lane) - 1))] = kept[lane];
-      });
-      queued_ += count_of(keep);
+      if (open_ == 0) next = open_planned(nodes, next);
+      narrow_open(centre, rho, limit);
     }
+  }
+
+  /// The next planned nodes are open. Returns how many were so far.
+  CLEARWAY_HD std::uint32_t open_planned(const std::uint32_t* nodes, std::uint32_t next) {
+    const std::uint32_t left = cell_.node_count - next;
+    open_ = left < kWarpLanes ? left : kWarpLanes;
+    Warp::each([&](std::uint32_t lane) {
+      if (lane < open_) shared_.open[lane] = nodes[next + lane];
+    });
+    return next + open_;
+  }
+
+  /// Looks at the last open nodes, a lane a node. Those that are fine enough go to the queue, those
+  /// that are not leave their halves open; without room for them they are fine enough.
+  CLEARWAY_HD void narrow_open(const Vec3& centre, double rho, double limit) {
+    const std::uint32_t count = open_ < kWarpLanes ? open_ : kWarpLanes;
+    open_ -= count;
+    const bool has_room = open_ + 2 * count <= kOpen;
+    PerLane<std::uint32_t> at;
+    PerLane<SweepRef::Fate> fate;
+    Warp::each([&](std::uint32_t lane) {
+      fate[lane] = SweepRef::Fate::kDismissed;
+      if (lane >= count) return;
+      ++statistics_[lane].node_tests;
+      at[lane] = shared_.open[open_ + lane];
+      const MotionNode& node = job_.sweep.motion.nodes[at[lane]];
+      fate[lane] = job_.sweep.fate_of(node, centre, rho, limit);
+      if (fate[lane] == SweepRef::Fate::kSplit && !has_room) fate[lane] = SweepRef::Fate::kKept;
+    });
+    const std::uint32_t keep =
+        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepRef::Fate::kKept; });
+    const std::uint32_t split =
+        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepRef::Fate::kSplit; });
+    Warp::each([&](std::uint32_t lane) {
+      const std::uint32_t before = (1U << lane) - 1;
+      if ((keep >> lane & 1) != 0) shared_.queue[queued_ + count_of(keep & before)] = at[lane];
+      if ((split >> lane & 1) == 0) return;
+      std::uint32_t* halves = shared_.open + open_ + 2 * count_of(split & before);
+      halves[0] = job_.sweep.motion.nodes[at[lane]].later;
+      halves[1] = at[lane] + 1;
+    });
+    queued_ += count_of(keep);
+    open_ += 2 * count_of(split);
   }
 
   CLEARWAY_HD double clearance_limit(const Vec3& centre, double rho, const std::uint32_t* nodes) {
@@ -115,7 +140,7 @@ class SweepBlock {
   }
 
   CLEARWAY_HD void search_points() {
-    const SweepSubtrees subtrees{queue_, queued_};
+    const SweepSubtrees subtrees{shared_.queue, queued_};
     for (std::uint32_t i = 0; i < halves(); ++i) {
       const std::uint32_t half = 2 * block_ + i;
       if (!job_.sweep.hits_follow_from_clearance()) {
@@ -135,7 +160,7 @@ class SweepBlock {
         SweepWork::room<Warp>(&work.counts->entries, parts * halves(), work.entry_capacity);
     Warp::each([&](std::uint32_t lane) {
       for (std::uint32_t i = lane; i < queued_; i += kWarpLanes) {
-        work.nodes[nodes.first + i] = queue_[i];
+        work.nodes[nodes.first + i] = shared_.queue[i];
       }
       for (std::uint32_t i = lane; i < entries.written(); i += kWarpLanes) {
         const std::uint32_t first = i % parts * SweepWork::kEntryNodes;
@@ -161,9 +186,9 @@ class SweepBlock {
   const SweepPage& job_;
   std::uint32_t block_;
   const PageCell& cell_;
-  std::uint32_t* queue_;
-  std::uint32_t queued_ = 0;
-  bool is_whole_ = false;  ///< because the list was full
+  Shared& shared_;
+  std::uint32_t open_ = 0, queued_ = 0;  ///< how many
+  bool is_whole_ = false;                ///< because the list was full
   PerLane<SweepStatistics>& statistics_;
 };
 

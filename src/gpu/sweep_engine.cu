@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::uint32_t kWarpsPerBlock = 4;
 constexpr unsigned kThreads = kWarpsPerBlock * kWarpLanes;
+/// Registers are limited so that this many blocks of threads run on a processor at a time: latency
+/// is what there is to hide.
+constexpr unsigned kBlocksPerProcessor = 8;
 /// Statistics are added up in several places, so that warps seldom wait for each other.
 constexpr std::uint32_t kTallies = 64;
 /// Places on a page's lists, a block.
@@ -39,20 +42,20 @@ __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lan
 
 /// A warp a block of the page's cells.
 template <bool kClearance>
-__global__ void __launch_bounds__(kThreads)
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_blocks_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
   using Block = SweepBlock<CudaWarp, kClearance>;
-  __shared__ std::uint32_t queues[kWarpsPerBlock][Block::kQueue];
+  __shared__ typename Block::Shared shared[kWarpsPerBlock];
   const std::uint32_t warp = threadIdx.x / kWarpLanes;
   const std::uint32_t block = blockIdx.x * kWarpsPerBlock + warp;
   if (block >= job.block_count()) return;
   CudaWarp::PerLane<SweepStatistics> statistics;
-  Block(job, block, queues[warp], statistics).search();
+  Block(job, block, shared[warp], statistics).search();
   tally(tallies, statistics[0]);
 }
 
 /// Warps take one entry after the other, since some take far longer than others.
-__global__ void __launch_bounds__(kThreads)
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_entries_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
   const std::uint32_t count = job.work.entry_count();
   CudaWarp::PerLane<SweepStatistics> statistics;
@@ -65,7 +68,7 @@ __global__ void __launch_bounds__(kThreads)
 }
 
 /// A thread an item.
-__global__ void __launch_bounds__(kThreads)
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_items_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
   const std::uint32_t count = job.work.item_count();
   SweepStatistics statistics;
@@ -326,7 +329,7 @@ class CudaSweepEngine::Impl {
   static unsigned resident_blocks(int device) {
     int processors = 0;
     check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
-    return 4 * static_cast<unsigned>(processors);
+    return kBlocksPerProcessor * static_cast<unsigned>(processors);
   }
 
   static int on(int device) {

@@ -61,12 +61,13 @@ class HostSweep final : public PageEngine {
 
   static void run(const SweepPage& job) {
     HostWarp::PerLane<SweepStatistics> statistics;
-    std::uint32_t queue[SweepBlock<HostWarp, false>::kQueue];
     for (std::uint32_t block = 0; block < job.block_count(); ++block) {
       if (job.clearances != nullptr) {
-        SweepBlock<HostWarp, true>(job, block, queue, statistics).search();
+        SweepBlock<HostWarp, true>::Shared shared;
+        SweepBlock<HostWarp, true>(job, block, shared, statistics).search();
       } else {
-        SweepBlock<HostWarp, false>(job, block, queue, statistics).search();
+        SweepBlock<HostWarp, false>::Shared shared;
+        SweepBlock<HostWarp, false>(job, block, shared, statistics).search();
       }
     }
     for (std::uint32_t i = 0; i < job.work.entry_count(); ++i) {

@@ -12,11 +12,11 @@ namespace clearway::tool {
 namespace {
 
 /// Small pages, many in flight: a page takes a reading thread about a millisecond.
-constexpr std::uint32_t kMostSlots = 16;
+constexpr std::uint32_t kMostSlots = 32;
 constexpr std::uint32_t kPageCells = 16;
-/// Half a radius to a quarter: a GPU has the bandwidth for a larger field, and fewer exact searches
+/// A third of the usual voxel: a GPU has the bandwidth for a larger field, and fewer exact searches
 /// keep its warps together.
-constexpr double kFieldFineness = 2;
+constexpr double kFieldFineness = 3;
 
 /// x, y and z of a full page of typical cells, their boxes and nodes.
 std::uint64_t usual_page_bytes(const Store& store) {
