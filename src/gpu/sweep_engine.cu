@@ -202,7 +202,10 @@ struct Slot {
         host_answer(AnswerLayout(sweep, most_blocks).bytes()),
         page(page_bytes),
         answer(host_answer.size()),
-        work(sweep, most_blocks) {}
+        work(sweep, most_blocks) {
+    // A Clearance has padding, which is copied too.
+    check_cuda(cudaMemset(answer.data(), 0, answer.bytes()));
+  }
 
   PinnedBuffer<std::byte> host_page, host_answer;
   DeviceBuffer<std::byte> page, answer;

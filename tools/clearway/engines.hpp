@@ -31,6 +31,7 @@ struct EngineReport {
   std::uint64_t searches = 0;           ///< pairs of pose and model point
   double context_seconds = 0;           ///< wall clock, like all of them
   double plan_seconds = 0, field_seconds = 0;
+  double engine_seconds = 0;  ///< of making the engine with its slots
   StageTimes stages;
   std::uint64_t pages = 0, page_bytes = 0;  ///< pages run, and the largest they may be
   std::uint32_t slots = 0;

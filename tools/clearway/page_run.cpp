@@ -135,7 +135,9 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
   spdlog::info("model field: voxel {:.4g} m, {} bricks, {}", plan.field.voxel(),
                format_count(plan.field.bricks()), format_size(plan.field.allocated_bytes()));
 
+  const Stopwatch making;
   const std::unique_ptr<PageEngine> engine = kind.make(plan, budget.layout());
+  report.engine_seconds = making.seconds();
   const std::vector<PlannedPage> pages =
       paginate(store, plan.cells, budget.layout().page_bytes, budget.layout().cells);
   report.pages = pages.size();

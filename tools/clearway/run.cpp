@@ -58,6 +58,7 @@ nlohmann::ordered_json seconds_of(const EngineReport& engine, const Seconds& sec
           {"context", engine.context_seconds},
           {"plan", engine.plan_seconds},
           {"field", engine.field_seconds},
+          {"engine", engine.engine_seconds},
           {"search", engine.stages.total},
           {"read", engine.stages.read},
           {"upload", engine.stages.upload},
