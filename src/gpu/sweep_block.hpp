@@ -144,7 +144,7 @@ class SweepBlock {
     for (std::uint32_t i = 0; i < halves(); ++i) {
       const std::uint32_t half = 2 * block_ + i;
       if (!job_.sweep.hits_follow_from_clearance()) {
-        SweepHits<Warp>(job_, half, statistics_).search(subtrees, false);
+        SweepHits<Warp>(job_, statistics_).search_half(half, subtrees, false);
       }
       SweepClearances<Warp>(job_, half, statistics_).search(subtrees);
     }

@@ -22,6 +22,7 @@ constexpr std::uint32_t kTallies = 64;
 /// Places on a page's lists, a block.
 constexpr std::uint64_t kNodesPerBlock = 8;
 constexpr std::uint64_t kEntriesPerBlock = 3;
+constexpr std::uint64_t kWalksPerBlock = 64;
 constexpr std::uint64_t kItemsPerBlock = 16;
 
 __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
@@ -63,6 +64,18 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     const std::uint32_t index = CudaWarp::add(&job.work.counts->taken, 1, count);
     if (index >= count) break;
     search_entry<CudaWarp>(job, job.work.entry(index), statistics);
+  }
+  tally(tallies, statistics[0]);
+}
+
+/// A lane a walk.
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    search_walks_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  const std::uint32_t count = job.work.walk_count();
+  const std::uint32_t warp = blockIdx.x * kWarpsPerBlock + threadIdx.x / kWarpLanes;
+  CudaWarp::PerLane<SweepStatistics> statistics;
+  for (std::uint32_t first = warp * kWarpLanes; first < count; first += gridDim.x * kThreads) {
+    SweepHits<CudaWarp>(job, statistics).search_walks(first, count);
   }
   tally(tallies, statistics[0]);
 }
@@ -169,30 +182,33 @@ struct WorkBuffers {
       : blocks(sweep.clearance > 0 ? 0 : most_blocks),
         nodes(kNodesPerBlock * blocks),
         entries((kEntriesPerBlock + 2) * blocks),
+        walks(kWalksPerBlock * blocks),
         items(kItemsPerBlock * blocks),
         counts(1) {}
 
   SweepWork ref() const {
     return {.nodes = nodes.data(),
             .entries = entries.data(),
+            .walks = walks.data(),
             .items = items.data(),
             .counts = counts.data(),
             .node_capacity = static_cast<std::uint32_t>(nodes.size()),
             .entry_capacity = static_cast<std::uint32_t>(kEntriesPerBlock * blocks),
+            .walk_capacity = static_cast<std::uint32_t>(walks.size()),
             .item_capacity = static_cast<std::uint32_t>(items.size())};
   }
 
   static std::uint64_t bytes(const SweepRef& sweep, std::uint64_t most_blocks) {
     const std::uint64_t a_block = kNodesPerBlock * sizeof(std::uint32_t) +
                                   (kEntriesPerBlock + 2) * sizeof(SweepWork::Entry) +
-                                  kItemsPerBlock * sizeof(SweepWork::Item);
+                                  (kWalksPerBlock + kItemsPerBlock) * sizeof(SweepWork::Item);
     return sizeof(SweepWork::Counts) + (sweep.clearance > 0 ? 0 : a_block * most_blocks);
   }
 
   std::uint64_t blocks;
   DeviceBuffer<std::uint32_t> nodes;
   DeviceBuffer<SweepWork::Entry> entries;
-  DeviceBuffer<SweepWork::Item> items;
+  DeviceBuffer<SweepWork::Item> walks, items;
   DeviceBuffer<SweepWork::Counts> counts;
 };
 
@@ -323,6 +339,8 @@ class CudaSweepEngine::Impl {
     search_blocks_kernel<false><<<grid, kThreads, 0, stream>>>(job, tallies_.data());
     check_cuda(cudaGetLastError());
     search_entries_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
+    check_cuda(cudaGetLastError());
+    search_walks_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
     check_cuda(cudaGetLastError());
     search_items_kernel<<<resident_, kThreads, 0, stream>>>(job, tallies_.data());
     check_cuda(cudaGetLastError());

@@ -8,9 +8,10 @@
 
 namespace clearway {
 
-/// What is still to be done for a page: runs of poses that may touch a half block, and single poses
-/// that may touch a point. All lists are bounded. A block whose runs find no room is put down once
-/// as a whole, for which there is always room; a single pose that finds none is decided at once.
+/// What is still to be done for a page: runs of poses that may touch a half block, runs that may
+/// touch a point (walks), and single poses that may touch a point (items). All lists are bounded. A
+/// block whose runs find no room is put down once as a whole, for which there is always room; walks
+/// and items that find none are done at once.
 struct SweepWork {
   /// Points of a half block to be put to nodes first_node .. first_node + node_count - 1 of the
   /// list, or to all planned nodes of its cell (kWhole).
@@ -20,22 +21,24 @@ struct SweepWork {
   };
   struct Item {
     std::uint32_t point;  ///< slot within the page: 64 a block
-    std::uint32_t node;   ///< of a single pose
+    std::uint32_t node;
   };
   struct Counts {
-    std::uint32_t nodes, entries, items;  ///< asked for: may exceed the capacities
-    std::uint32_t whole;                  ///< entries with kWhole
-    std::uint32_t taken;                  ///< of entries and whole
+    std::uint32_t nodes, entries, walks, items;  ///< asked for: may exceed the capacities
+    std::uint32_t whole;                         ///< entries with kWhole
+    std::uint32_t taken;                         ///< of entries and whole
   };
   static constexpr std::uint32_t kNone = 0xffffffff;   ///< half or point of a place not used
   static constexpr std::uint32_t kWhole = 0xffffffff;  ///< node_count
   static constexpr std::uint32_t kEntryNodes = 64;     ///< of an entry, at most
+  static constexpr std::uint32_t kHalves = 2;          ///< of a block
 
   std::uint32_t* nodes;
   Entry* entries;  ///< entry_capacity, then two a block
+  Item* walks;
   Item* items;
   Counts* counts;
-  std::uint32_t node_capacity, entry_capacity, item_capacity;
+  std::uint32_t node_capacity, entry_capacity, walk_capacity, item_capacity;
 
   /// Room for `count` places of a list, taken by a warp.
   struct Room {
@@ -59,6 +62,9 @@ struct SweepWork {
     return entries[index < listed ? index : entry_capacity + index - listed];
   }
 
+  CLEARWAY_HD std::uint32_t walk_count() const {
+    return counts->walks < walk_capacity ? counts->walks : walk_capacity;
+  }
   CLEARWAY_HD std::uint32_t item_count() const {
     return counts->items < item_capacity ? counts->items : item_capacity;
   }

@@ -30,14 +30,18 @@ struct SweepWay {
     end = node + 2 * motion.nodes[node].count - 1;
   }
 
-  /// Enters the next subtree where the last one is done, below its top, which was looked at; false
-  /// at the end.
+  /// Enters the subtree below its top, which was looked at; a single pose is looked at again.
+  CLEARWAY_HD void enter_below(const MotionTreeRef& motion, std::uint32_t node) {
+    enter(motion, node);
+    if (end - at > 1) ++at;
+  }
+
+  /// Enters the next subtree where the last one is done; false at the end.
   CLEARWAY_HD bool go_on(const MotionTreeRef& motion, const SweepSubtrees& subtrees) {
     if (is_inside()) return true;
     if (open == 0) return false;
-    enter(motion, subtrees.nodes[lowest_bit(open)]);
+    enter_below(motion, subtrees.nodes[lowest_bit(open)]);
     open &= open - 1;
-    if (end - at > 1) ++at;
     return true;
   }
 

@@ -51,6 +51,23 @@ struct CudaWarp {
 #endif
   }
 
+  /// Replaces every lane's value by the sum of those of the lanes before it. Returns the sum of
+  /// all.
+  CLEARWAY_HD static std::uint32_t sum_before([[maybe_unused]] PerLane<std::uint32_t>& values) {
+#ifdef __CUDA_ARCH__
+    const std::uint32_t lane = threadIdx.x % kWarpLanes;
+    std::uint32_t sum = values.value;
+    for (std::uint32_t apart = 1; apart < kWarpLanes; apart *= 2) {
+      const std::uint32_t other = __shfl_up_sync(0xffffffff, sum, apart);
+      if (lane >= apart) sum += other;
+    }
+    values.value = sum - values.value;
+    return __shfl_sync(0xffffffff, sum, kWarpLanes - 1);
+#else
+    return 0;
+#endif
+  }
+
   /// Adds n, once for the warp, to a counter that other warps add to, unless it is at `full`
   /// already, so that it cannot overflow. What it was before.
   CLEARWAY_HD static std::uint32_t add([[maybe_unused]] std::uint32_t* counter,
@@ -97,6 +114,16 @@ struct HostWarp {
     return least;
   }
 
+  static std::uint32_t sum_before(PerLane<std::uint32_t>& values) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t& value : values.values) {
+      const std::uint32_t before = sum;
+      sum += value;
+      value = before;
+    }
+    return sum;
+  }
+
   static std::uint32_t add(std::uint32_t* counter, std::uint32_t n, std::uint32_t full) {
     const std::uint32_t before = *counter;
     if (before < full) *counter += n;
@@ -132,9 +159,9 @@ CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t bits) {
 }
 
 /// Set bits.
-CLEARWAY_HD inline std::uint32_t count_of(std::uint32_t bits) {
+CLEARWAY_HD inline std::uint32_t count_of(std::uint64_t bits) {
 #ifdef __CUDA_ARCH__
-  return static_cast<std::uint32_t>(__popc(bits));
+  return static_cast<std::uint32_t>(__popcll(bits));
 #else
   return static_cast<std::uint32_t>(std::popcount(bits));
 #endif

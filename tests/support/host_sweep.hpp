@@ -40,10 +40,10 @@ class HostSweep final : public PageEngine {
     const std::uint32_t blocks = job.block_count();
     std::vector<std::uint32_t> nodes(2 * std::size_t{entries_});
     std::vector<SweepWork::Entry> entries(entries_ + 2 * blocks);
-    std::vector<SweepWork::Item> items(entries_);
+    std::vector<SweepWork::Item> walks(entries_), items(entries_);
     SweepWork::Counts counts{};
-    job.work = {nodes.data(), entries.data(), items.data(), &counts,
-                2 * entries_, entries_,       entries_};
+    job.work = {nodes.data(), entries.data(), walks.data(), items.data(), &counts,
+                2 * entries_, entries_,       entries_,     entries_};
     run(job);
     const std::size_t points = std::size_t{blocks} * kBlockPoints;
     return {.hits = hits.first(blocks),
@@ -72,6 +72,9 @@ class HostSweep final : public PageEngine {
     }
     for (std::uint32_t i = 0; i < job.work.entry_count(); ++i) {
       search_entry<HostWarp>(job, job.work.entry(i), statistics);
+    }
+    for (std::uint32_t i = 0; i < job.work.walk_count(); i += kWarpLanes) {
+      SweepHits<HostWarp>(job, statistics).search_walks(i, job.work.walk_count());
     }
     for (std::uint32_t i = 0; i < job.work.item_count(); ++i) {
       search_item(job, job.work.items[i], statistics[0]);
