@@ -5,6 +5,8 @@
 namespace clearway::hdf5 {
 namespace {
 
+constexpr std::size_t kLongestText = 1 << 20;  // no CRS is as long
+
 struct Attribute {
   Id id, type;
   hssize_t numbers;  ///< or strings
@@ -60,6 +62,7 @@ std::string read_text_attribute(const Id& object, const std::string& name,
       numbers != 1) {
     malformed(file, name, "a fixed-length string");
   }
+  if (H5Tget_size(type.get()) > kLongestText) malformed(file, name, "a text of at most 1 MiB");
   std::string text(H5Tget_size(type.get()), '\0');
   check(H5Aread(attribute.get(), type.get(), text.data()), file + ": read " + name);
   text.resize(text.find('\0') == std::string::npos ? text.size() : text.find('\0'));

@@ -24,12 +24,14 @@ Number read_number(const hdf5::Id& file, const std::string& attribute, const std
   return hdf5::read_attribute<Number>(file, attribute, 1, name).front();
 }
 
-/// HDF5 does not say whether the disk or the content failed: in a file that could be opened, it is
-/// taken for the content.
+/// What HDF5 cannot do with a file that could be opened is taken for damaged content, unless a
+/// system call failed.
 template <typename Call>
 auto as_input(const std::string& name, Call call) {
   try {
     return call();
+  } catch (const hdf5::SystemFailure&) {
+    throw;
   } catch (const ResourceError& error) {
     throw InputError(name + ": damaged: " + error.what());
   }
