@@ -117,6 +117,8 @@ class Rows {
 
   std::uint64_t rows() const { return rows_; }
   void write(std::uint64_t first_row, std::span<const Number> values);
+  /// After the last write, which may fail as late as here.
+  void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;
 
  private:

@@ -98,11 +98,12 @@ template <typename Number>
 void write_dataset(const Id& parent, const std::string& name, std::span<const Number> values,
                    std::uint64_t columns) {
   const std::uint64_t rows = columns == 0 ? values.size() : values.size() / columns;
-  const Id dataset = create_dataset<Number>(parent, name, rows, columns);
+  Id dataset = create_dataset<Number>(parent, name, rows, columns);
   if (values.empty()) return;
   check(
       H5Dwrite(dataset.get(), memory_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
       "write dataset " + name);
+  dataset.close("write dataset " + name);  // this is when its chunks are written
 }
 
 template <typename Number>
@@ -167,6 +168,11 @@ void Rows<Number>::write(std::uint64_t first_row, std::span<const Number> values
   check(H5Dwrite(dataset_.get(), memory_type<Number>(), memory.get(), space.get(), H5P_DEFAULT,
                  values.data()),
         "write dataset " + name_);
+}
+
+template <typename Number>
+void Rows<Number>::close() {
+  dataset_.close("write dataset " + name_);
 }
 
 template <typename Number>

@@ -86,12 +86,14 @@ struct ResultReader::State {
       : name(path.string()),
         file(hdf5::open_file(path)),
         header(read_header(file, name)),
+        collisions_hash(read_number<std::uint64_t>(file, names::kCollisionsHash, name)),
         source(open<std::uint64_t>(names::kGroup, names::kSource, 0)),
         xyz(open<double>(names::kGroup, names::kXyz, 3)) {
     if (header.first_pose) {
       first_pose.emplace(open<std::uint32_t>(names::kGroup, names::kFirstPose, 0));
     }
     if (header.clearance > 0) {
+      clearance_hash = read_number<std::uint64_t>(file, names::kClearanceHash, name);
       clearance.emplace(
           ClearanceDatasets{open<std::uint64_t>(names::kClearanceGroup, names::kSource, 0),
                             open<double>(names::kClearanceGroup, names::kDistance, 0),
@@ -166,6 +168,8 @@ struct ResultReader::State {
   std::string name;
   hdf5::Id file;
   ResultHeader header;
+  std::uint64_t collisions_hash;
+  std::uint64_t clearance_hash = 0;
   hdf5::Rows<std::uint64_t> source;
   hdf5::Rows<double> xyz;
   std::optional<hdf5::Rows<std::uint32_t>> first_pose;
@@ -183,6 +187,8 @@ ResultReader::ResultReader(ResultReader&&) noexcept = default;
 const std::string& ResultReader::name() const { return state_->name; }
 const ResultHeader& ResultReader::header() const { return state_->header; }
 std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
+std::uint64_t ResultReader::collisions_hash() const { return state_->collisions_hash; }
+std::uint64_t ResultReader::clearances_hash() const { return state_->clearance_hash; }
 
 void ResultReader::read_source(std::uint64_t first, std::span<std::uint64_t> out) const {
   state_->check_range(first, out.size(), collisions());

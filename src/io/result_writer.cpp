@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "io/column_hashes.hpp"
 #include "io/hdf5.hpp"
 #include "io/result.hpp"
 #include "io/result_names.hpp"
@@ -105,6 +106,7 @@ struct Column {
   }
 
   void flush(std::uint64_t first_row) {
+    hash.update(std::as_bytes(std::span<const Value>(buffer)));
     if constexpr (std::is_same_v<Value, Vec3>) {
       dataset.write(first_row, as_numbers(buffer));
     } else {
@@ -115,6 +117,7 @@ struct Column {
 
   hdf5::Rows<Number> dataset;
   std::vector<Value> buffer;
+  Xxh64Stream hash;  ///< of the rows written
 };
 
 struct CollisionTable {
@@ -139,6 +142,14 @@ struct CollisionTable {
     xyz.flush(written);
     if (first_pose) first_pose->flush(written);
     written += rows;
+  }
+
+  std::uint64_t hash() const {
+    ColumnHashes hashes;
+    hashes.add_digest(source.hash.digest());
+    hashes.add_digest(xyz.hash.digest());
+    if (first_pose) hashes.add_digest(first_pose->hash.digest());
+    return hashes.digest();
   }
 
   hdf5::Id group;
@@ -170,6 +181,14 @@ struct ClearanceTable {
     distance.flush(written);
     pose.flush(written);
     written += rows;
+  }
+
+  std::uint64_t hash() const {
+    ColumnHashes hashes;
+    hashes.add_digest(source.hash.digest());
+    hashes.add_digest(distance.hash.digest());
+    hashes.add_digest(pose.hash.digest());
+    return hashes.digest();
   }
 
   hdf5::Id group;
@@ -252,6 +271,8 @@ void ResultWriter::finish() {
   naming(s.name, [&] {
     s.collisions->flush();
     if (s.clearances) s.clearances->flush();
+    write_number(s.file, names::kCollisionsHash, s.collisions->hash());
+    if (s.clearances) write_number(s.file, names::kClearanceHash, s.clearances->hash());
     write_number(s.file, "complete", std::uint8_t{1});
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
     // After the flush nothing is left that closing could fail to write.

@@ -26,7 +26,8 @@ Number number_attribute(const hdf5::Id& file, const char* name, const std::strin
   return hdf5::read_attribute<Number>(file, name, 1, file_name)[0];
 }
 
-std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& file_name) {
+std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& file_name,
+                                     ColumnHashes& hashes_of_all) {
   const hdf5::Id group = hdf5::open_group(file, "sources", file_name);
   const std::uint64_t count = hdf5::dataset_rows(group, "bytes", file_name);
   const auto bytes = hdf5::read_dataset<std::uint64_t>(group, "bytes", count, 0, file_name);
@@ -36,6 +37,9 @@ std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& fi
   if (static_cast<std::uint64_t>(std::count(names.begin(), names.end(), 0)) != count) {
     refuse(file_name, "dataset 'sources/names': expected " + std::to_string(count) + " names");
   }
+  hashes_of_all.add(names);
+  hashes_of_all.add(bytes);
+  hashes_of_all.add(hashes);
   std::vector<SourceFile> sources(count);
   auto at = names.begin();
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -46,7 +50,7 @@ std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& fi
   return sources;
 }
 
-StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name) {
+StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, ColumnHashes& hashes) {
   if (H5Aexists(file.get(), "format") <= 0 ||
       hdf5::read_text_attribute(file, "format", name) != kStoreFormat) {
     refuse(name, "not a store, expected a file that 'clearway convert' wrote");
@@ -82,7 +86,7 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name) {
                      ", expected at least the points stored, " +
                      std::to_string(metadata.point_count));
   }
-  metadata.sources = read_sources(file, name);
+  metadata.sources = read_sources(file, name, hashes);
   if (metadata.cell_points == 0 || metadata.cell_points > kMostCellPoints) {
     refuse(name, "attribute 'cell_points': expected 1 to " + std::to_string(kMostCellPoints));
   }
@@ -121,10 +125,12 @@ void check_not_rewritten(const hdf5::Id& file, const CellIndex& index, const std
   }
 }
 
-std::vector<TopNode> read_tree(const hdf5::Id& file, const std::string& name) {
+std::vector<TopNode> read_tree(const hdf5::Id& file, const std::string& name,
+                               ColumnHashes& hashes) {
   const hdf5::Id group = hdf5::open_group(file, "tree", name);
   const std::uint64_t rows = hdf5::dataset_rows(group, "nodes", name);
   const auto values = hdf5::read_dataset<std::uint32_t>(group, "nodes", rows, 3, name);
+  hashes.add(values);
   std::vector<TopNode> nodes(rows);
   for (std::uint64_t i = 0; i < rows; ++i) {
     nodes[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
@@ -132,8 +138,8 @@ std::vector<TopNode> read_tree(const hdf5::Id& file, const std::string& name) {
   return nodes;
 }
 
-std::vector<BlockBox> read_blocks(const hdf5::Id& file, std::uint64_t rows,
-                                  const std::string& name) {
+std::vector<BlockBox> read_blocks(const hdf5::Id& file, std::uint64_t rows, const std::string& name,
+                                  ColumnHashes& hashes) {
   constexpr std::uint64_t kPieceRows = 1 << 16;
   const hdf5::Id group = hdf5::open_group(file, "blocks", name);
   const auto dataset = hdf5::Rows<std::uint16_t>::open(group, "box", 6, name);
@@ -147,6 +153,7 @@ std::vector<BlockBox> read_blocks(const hdf5::Id& file, std::uint64_t rows,
     dataset.read(row, piece);
     std::memcpy(blocks.data() + row, piece.data(), piece.size() * sizeof(std::uint16_t));
   }
+  hashes.add(blocks);
   return blocks;
 }
 
@@ -164,12 +171,17 @@ std::vector<Cell> cells_of(const CellIndex& index) {
 Store::Store(const std::filesystem::path& path) : map_(path) {
   const hdf5::Id file = hdf5::open_file(path);
   try {
-    metadata_ = read_metadata(file, name());
+    ColumnHashes hashes;
+    metadata_ = read_metadata(file, name(), hashes);
     index_ = read_index(file, name());
+    add_index(index_, hashes);
     check_not_rewritten(file, index_, name());
-    top_ = read_tree(file, name());
     cells_ = cells_of(index_);
-    blocks_ = read_blocks(file, std::uint64_t{cells_.size()} * blocks_per_cell(), name());
+    blocks_ = read_blocks(file, std::uint64_t{cells_.size()} * blocks_per_cell(), name(), hashes);
+    top_ = read_tree(file, name(), hashes);
+    if (hashes.digest() != number_attribute<std::uint64_t>(file, "index_hash", name())) {
+      refuse(name(), "its index of cells is damaged (its hash is not the one recorded)");
+    }
     check_index();
     tree_ = build_cell_tree(top_, cells_);
   } catch (const hdf5::SystemFailure&) {

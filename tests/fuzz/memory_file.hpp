@@ -1,6 +1,5 @@
 #pragma once
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -13,24 +12,27 @@
 
 namespace clearway::test {
 
-/// A file of these bytes in memory, with a name by which it can be opened.
+/// A file of these bytes, in memory where the system has a folder for that. One at a time.
 class MemoryFile {
  public:
-  explicit MemoryFile(std::span<const std::uint8_t> bytes)
-      : file_(File::adopt(::memfd_create("input", MFD_CLOEXEC), "input")) {
-    file_.write(std::as_bytes(bytes));
-    file_.rewind();
+  explicit MemoryFile(std::span<const std::uint8_t> bytes) {
+    File::create(path_).write(std::as_bytes(bytes));
   }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::unlink(path_.c_str()); }
 
-  std::filesystem::path path() const {
-    return "/proc/self/fd/" + std::to_string(file_.descriptor());
-  }
-  const File& file() const { return file_; }
-  /// Another owner, at the first byte.
-  File open() const { return File::open_for_reading(path()); }
+  const std::filesystem::path& path() const { return path_; }
+  /// At the first byte.
+  File open() const { return File::open_for_reading(path_); }
 
  private:
-  File file_;
+  static std::filesystem::path folder() {
+    const std::filesystem::path shared = "/dev/shm";
+    return std::filesystem::is_directory(shared) ? shared : std::filesystem::temp_directory_path();
+  }
+
+  std::filesystem::path path_ = folder() / ("clearway-fuzz-" + std::to_string(::getpid()));
 };
 
 /// Runs `read`, which may refuse its input in the three ways that the program answers with an exit

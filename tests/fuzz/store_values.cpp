@@ -48,17 +48,43 @@ constexpr unsigned kWhats = 2 * std::size(kDatasets) + std::size(kAttributes);
 
 bool is_of_chunk(const Edit& edit) { return edit.what % (kWhats + 1) == kWhats; }
 
+/// The values of a dataset; none where it is too large for any.
+std::vector<std::byte> values_of(const hdf5::Id& dataset, const hdf5::Id& type) {
+  constexpr hssize_t kMost = 1 << 16;
+  const hdf5::Id space(H5Dget_space(dataset.get()), H5Sclose, "space");
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  std::vector<std::byte> values(count > kMost ? 0 : count * H5Tget_size(type.get()));
+  if (values.empty()) return values;
+  hdf5::check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+              "read");
+  return values;
+}
+
 void edit_dataset(hid_t file, const char* name, const Edit& edit) {
   const hdf5::Id dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
   const hdf5::Id type(H5Dget_type(dataset.get()), H5Tclose, name);
-  const hdf5::Id space(H5Dget_space(dataset.get()), H5Sclose, name);
+  std::vector<std::byte> values = values_of(dataset, type);
+  if (values.empty()) return;
   const std::size_t size = H5Tget_size(type.get());
-  std::vector<std::byte> values(H5Sget_simple_extent_npoints(space.get()) * size);
-  hdf5::check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-              name);
   std::memcpy(values.data() + edit.where % (values.size() / size) * size, &edit.value, size);
   hdf5::check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
               name);
+}
+
+/// Makes `index_hash` that of what the datasets hold.
+void rehash(hid_t file) {
+  constexpr const char* kOrder[] = {
+      "sources/names", "sources/bytes", "sources/xxh64", "cells/count", "cells/box",
+      "cells/address", "cells/bytes",   "cells/xxh64",   "blocks/box",  "tree/nodes"};
+  ColumnHashes hashes;
+  for (const char* name : kOrder) {
+    const hdf5::Id dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
+    const hdf5::Id type(H5Dget_type(dataset.get()), H5Tclose, name);
+    hashes.add(values_of(dataset, type));
+  }
+  const std::uint64_t digest = hashes.digest();
+  const hdf5::Id attribute(H5Aopen(file, "index_hash", H5P_DEFAULT), H5Aclose, "index_hash");
+  hdf5::check(H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &digest), "index_hash");
 }
 
 /// Another extent, of which nothing is written.
@@ -119,6 +145,7 @@ void apply(std::span<const Edit> edits, const std::filesystem::path& path, std::
       edit_attribute(file.get(), kAttributes[what - std::size(kDatasets)], edit);
     }
   }
+  rehash(file.get());
 }
 
 }  // namespace
