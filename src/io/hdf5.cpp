@@ -103,12 +103,12 @@ std::string reason() {
 }
 
 void fail(const std::string& what) {
-  if (const auto words = system_reason()) throw SystemFailure(what + ": " + *words);
-  throw ResourceError(what + ": " + reason());
+  if (const auto words = system_reason()) throw ResourceError(what + ": " + *words);
+  throw Failure(what + ": " + reason());
 }
 
 void malformed(const std::string& file, const std::string& name, const std::string& expected) {
-  if (const auto words = system_reason()) throw SystemFailure(file + ": cannot read: " + *words);
+  if (const auto words = system_reason()) throw ResourceError(file + ": cannot read: " + *words);
   throw InputError(file + ": dataset or attribute '" + name + "': expected " + expected);
 }
 
@@ -166,7 +166,7 @@ Id open_file(const std::filesystem::path& path) {
   check_superblock(File::open_for_reading(path));
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
-    if (const auto words = system_reason()) throw SystemFailure(path.string() + ": " + *words);
+    if (const auto words = system_reason()) throw ResourceError(path.string() + ": " + *words);
     throw InputError(path.string() + ": damaged HDF5 file: " + reason());
   }
   return {id, H5Fclose, path.string()};
@@ -199,7 +199,9 @@ Id open_dataset(const Id& parent, const std::string& name, const std::string& fi
 
 bool holds(const std::filesystem::path& path, const std::string& name) {
   const Id file = open_file(path);
-  return H5Lexists(file.get(), name.c_str(), H5P_DEFAULT) > 0;
+  const htri_t found = H5Lexists(file.get(), name.c_str(), H5P_DEFAULT);
+  if (found < 0) malformed(path.string(), name, "an intact group (" + reason() + ")");
+  return found > 0;
 }
 
 Id create_group(const Id& parent, const std::string& name) {

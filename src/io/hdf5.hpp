@@ -16,8 +16,8 @@
 /// damaged metadata is noticed (design section 3).
 namespace clearway::hdf5 {
 
-/// A system call that failed under HDF5, where other failures to read mean damaged contents.
-struct SystemFailure : ResourceError {
+/// HDF5 could not do it though no system call failed: of a file that is read, damaged contents.
+struct Failure : ResourceError {
   using ResourceError::ResourceError;
 };
 
@@ -42,7 +42,18 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// Throws ResourceError "`what`: reason", a SystemFailure where it is one, when status < 0.
+/// Runs `call`, putting the file's name before the message of a failure that lacks it.
+template <typename Call>
+auto naming(const std::string& file, Call call) {
+  try {
+    return call();
+  } catch (const ResourceError& error) {
+    const std::string what = error.what();
+    throw ResourceError(what.starts_with(file) ? what : file + ": " + what);
+  }
+}
+
+/// Throws ResourceError "`what`: reason", a Failure unless a system call failed, when status < 0.
 void check(herr_t status, const std::string& what);
 
 Id create_file(const std::filesystem::path& path);
@@ -100,6 +111,8 @@ template <typename Number>
 void write_attribute(const Id& object, const std::string& name, std::span<const Number> values);
 void write_attribute(const Id& object, const std::string& name, const std::string& text);
 
+/// Throws like read_attribute where that cannot be told.
+bool has_attribute(const Id& object, const std::string& name, const std::string& file);
 template <typename Number>
 std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
                                    const std::string& file);

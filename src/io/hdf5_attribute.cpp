@@ -43,6 +43,12 @@ void write_attribute(const Id& object, const std::string& name, const std::strin
   check(H5Awrite(attribute.get(), type.get(), text.c_str()), "write attribute " + name);
 }
 
+bool has_attribute(const Id& object, const std::string& name, const std::string& file) {
+  const htri_t found = H5Aexists(object.get(), name.c_str());
+  if (found < 0) malformed(file, name, "intact attributes (" + reason() + ")");
+  return found > 0;
+}
+
 template <typename Number>
 std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
                                    const std::string& file) {

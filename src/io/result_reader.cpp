@@ -30,15 +30,13 @@ template <typename Call>
 auto as_input(const std::string& name, Call call) {
   try {
     return call();
-  } catch (const hdf5::SystemFailure&) {
-    throw;
-  } catch (const ResourceError& error) {
+  } catch (const hdf5::Failure& error) {
     throw InputError(name + ": damaged: " + error.what());
   }
 }
 
 void check_format(const hdf5::Id& file, const std::string& name) {
-  if (H5Aexists(file.get(), "format") <= 0 ||
+  if (!hdf5::has_attribute(file, "format", name) ||
       hdf5::read_text_attribute(file, "format", name) != names::kFormat) {
     throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
                      "\"; this HDF5 file is not a result of clearway run");
@@ -48,7 +46,7 @@ void check_format(const hdf5::Id& file, const std::string& name) {
     throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
                      std::to_string(names::kVersion) + "; another release of clearway wrote it");
   }
-  if (H5Aexists(file.get(), "complete") <= 0 ||
+  if (!hdf5::has_attribute(file, "complete", name) ||
       read_number<std::uint8_t>(file, "complete", name) != 1) {
     throw InputError(name + ": not complete: the run that wrote it was interrupted");
   }

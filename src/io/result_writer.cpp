@@ -48,17 +48,6 @@ void write_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
 }
 
-/// Runs `call`, putting the file's name before the message of a failure.
-template <typename Call>
-auto naming(const std::string& file, Call call) {
-  try {
-    return call();
-  } catch (const ResourceError& error) {
-    const std::string what = error.what();
-    throw ResourceError(what.starts_with(file) ? what : file + ": " + what);
-  }
-}
-
 /// The piece of a column; a column that the result does not have stays empty.
 template <typename Value>
 std::span<const Value> piece(std::span<const Value> values, std::size_t from, std::size_t count) {
@@ -210,7 +199,7 @@ void append_rows(Table& table, const std::string& file, std::span<const std::uin
     table.append(source.subspan(from, count), values.subspan(from, count),
                  piece(poses, from, count));
     from += count;
-    if (table.source.buffer.size() == kBufferRows) naming(file, [&] { table.flush(); });
+    if (table.source.buffer.size() == kBufferRows) hdf5::naming(file, [&] { table.flush(); });
   }
 }
 
@@ -236,7 +225,7 @@ struct ResultWriter::State {
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
                            std::uint64_t collisions, std::uint64_t clearances)
-    : state_(naming(path.string(), [&] {
+    : state_(hdf5::naming(path.string(), [&] {
         return std::make_unique<State>(path, header, collisions, clearances);
       })) {}
 
@@ -260,7 +249,7 @@ void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
     throw std::logic_error("ResultWriter: rows of unequal lengths");
   }
   s.collisions->count.check_complete();
-  if (!s.collisions->source.buffer.empty()) naming(s.name, [&] { s.collisions->flush(); });
+  if (!s.collisions->source.buffer.empty()) hdf5::naming(s.name, [&] { s.collisions->flush(); });
   append_rows(*s.clearances, s.name, source, distance, pose);
 }
 
@@ -268,7 +257,7 @@ void ResultWriter::finish() {
   State& s = *state_;
   s.collisions->count.check_complete();
   if (s.clearances) s.clearances->count.check_complete();
-  naming(s.name, [&] {
+  hdf5::naming(s.name, [&] {
     s.collisions->flush();
     if (s.clearances) s.clearances->flush();
     write_number(s.file, names::kCollisionsHash, s.collisions->hash());

@@ -51,7 +51,7 @@ std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& fi
 }
 
 StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, ColumnHashes& hashes) {
-  if (H5Aexists(file.get(), "format") <= 0 ||
+  if (!hdf5::has_attribute(file, "format", name) ||
       hdf5::read_text_attribute(file, "format", name) != kStoreFormat) {
     refuse(name, "not a store, expected a file that 'clearway convert' wrote");
   }
@@ -60,7 +60,7 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
     refuse(name, "store format version " + std::to_string(version) + ", expected " +
                      std::to_string(kStoreVersion));
   }
-  if (H5Aexists(file.get(), "complete") <= 0 ||
+  if (!hdf5::has_attribute(file, "complete", name) ||
       number_attribute<std::uint32_t>(file, "complete", name) != 1) {
     refuse(name, "an unfinished store, expected a complete one; convert again");
   }
@@ -184,9 +184,7 @@ Store::Store(const std::filesystem::path& path) : map_(path) {
     }
     check_index();
     tree_ = build_cell_tree(top_, cells_);
-  } catch (const hdf5::SystemFailure&) {
-    throw;
-  } catch (const ResourceError& error) {  // HDF5 failing on an open file means damaged metadata
+  } catch (const hdf5::Failure& error) {
     throw InputError(name() + ": damaged store: " + error.what());
   }
   checked_.resize(cells_.size());

@@ -151,7 +151,12 @@ StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata&
                        .index = {},
                        .blocks = File::create_temporary(folder_of(path)),
                        .hashes = {}}) {
-  state_->file = hdf5::create_file(path);
+  hdf5::naming(path.string(), [&] { create(cells); });
+}
+
+void StoreWriter::create(std::uint64_t cells) {
+  const StoreMetadata& metadata = state_->metadata;
+  state_->file = hdf5::create_file(state_->path);
   write_metadata(state_->file, metadata, state_->hashes);
   const hdf5::Id group = hdf5::create_group(state_->file, "points");
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -182,6 +187,10 @@ void StoreWriter::append(const PackedCell& packed) {
 }
 
 void StoreWriter::finish(const std::vector<TopNode>& tree) {
+  hdf5::naming(state_->path.string(), [&] { write_index(tree); });
+}
+
+void StoreWriter::write_index(const std::vector<TopNode>& tree) {
   State& state = *state_;
   if (state.index.count.size() != state.promised_cells) {
     throw std::logic_error("fewer cells than promised");
