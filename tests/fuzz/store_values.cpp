@@ -53,7 +53,7 @@ std::vector<std::byte> values_of(const hdf5::Id& dataset, const hdf5::Id& type) 
   constexpr hssize_t kMost = 1 << 16;
   const hdf5::Id space(H5Dget_space(dataset.get()), H5Sclose, "space");
   const hssize_t count = H5Sget_simple_extent_npoints(space.get());
-  std::vector<std::byte> values(count > kMost ? 0 : count * H5Tget_size(type.get()));
+  std::vector<std::byte> values(count > kMost || count < 0 ? 0 : count * H5Tget_size(type.get()));
   if (values.empty()) return values;
   hdf5::check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
               "read");
