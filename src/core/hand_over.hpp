@@ -17,19 +17,18 @@ void __tsan_release(void* address);
 
 namespace clearway {
 
-/// Around what a stage of a oneTBB pipeline does: tells the thread sanitizer, which does not see
-/// into oneTBB, that a stage begins after those that have ended. Nothing in other builds.
-/// pipeline: the same address in all stages and in the caller.
+/// Around what oneTBB runs, a stage of a pipeline or the body of a loop: tells the thread
+/// sanitizer, which does not see into oneTBB, that it begins after those that have ended. Nothing
+/// in other builds. work: the same address in all of them and, before and after them, in the
+/// caller.
 class HandOver {
  public:
 #ifdef CLEARWAY_THREAD_SANITIZER
-  explicit HandOver(const void* pipeline) : pipeline_(const_cast<void*>(pipeline)) {
-    __tsan_acquire(pipeline_);
-  }
-  ~HandOver() { __tsan_release(pipeline_); }
+  explicit HandOver(const void* work) : work_(const_cast<void*>(work)) { __tsan_acquire(work_); }
+  ~HandOver() { __tsan_release(work_); }
 
  private:
-  void* pipeline_;
+  void* work_;
 #else
   explicit HandOver(const void*) {}
   ~HandOver() {}
