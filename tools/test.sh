@@ -1,9 +1,25 @@
 #!/usr/bin/env bash
 # Builds Clearway and runs all tests, after installing missing packages (Debian 12).
 # CLEARWAY_TEST_DATA=FOLDER adds the tests on real scans; without it they are skipped and say so.
+# --sanitize runs the fast tests under the address, undefined-behaviour and thread sanitizers instead.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source tools/setup.sh
+case "${1:-}" in
+  "") ;;
+  --sanitize)
+    source tools/sanitize.sh
+    clearway_packages+=(clang libclang-rt-14-dev libomp-14-dev)
+    install_missing_packages
+    test_under_address_sanitizer
+    test_under_thread_sanitizer
+    exit
+    ;;
+  *)
+    echo "usage: tools/test.sh [--sanitize]" >&2
+    exit 2
+    ;;
+esac
 install_missing_packages
 
 cmake --preset release -DCLEARWAY_WERROR=ON

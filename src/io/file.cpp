@@ -84,8 +84,8 @@ void File::read_at(std::uint64_t offset, std::span<std::byte> out) const {
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(name_, "read");
     if (got == 0) {
-      throw InputError(name_ + ": ends at byte " + std::to_string(offset) + ", expected " +
-                       std::to_string(out.size()) + " more bytes");
+      throw ResourceError(name_ + ": ends at byte " + std::to_string(offset) + ", expected " +
+                          std::to_string(out.size()) + " more bytes; it shrank while it was read");
     }
     offset += static_cast<std::uint64_t>(got);
     out = out.subspan(static_cast<std::size_t>(got));
@@ -134,7 +134,9 @@ void File::reserve(std::uint64_t bytes) const {
 }
 
 void File::sync() const {
-  if (::fsync(descriptor_) != 0) fail(name_, "sync");
+  while (::fsync(descriptor_) != 0) {
+    if (errno != EINTR) fail(name_, "sync");
+  }
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {

@@ -29,7 +29,8 @@ class File {
   std::uint64_t size_bytes() const;
   bool is_regular() const;
 
-  /// Reads exactly out.size() bytes at `offset`; the file ending early throws InputError.
+  /// Reads exactly out.size() bytes at `offset`, which lie before the end of the file; one that
+  /// shrank throws ResourceError.
   void read_at(std::uint64_t offset, std::span<std::byte> out) const;
   /// Reads up to out.size() bytes at the current position; 0 at the end.
   std::size_t read_some(std::span<std::byte> out) const;

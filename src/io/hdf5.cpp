@@ -1,9 +1,15 @@
 #include "io/hdf5.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "core/error.hpp"
+#include "io/byte_load.hpp"
 #include "io/file.hpp"
 #include "io/hdf5_detail.hpp"
 
@@ -14,8 +20,10 @@ constexpr unsigned kRootAttributes = 64;
 
 /// Before the first other call. No automatic printing, and no clean-up at exit, which crashes on a
 /// file whose closing failed (a full disk); an Id closes what is open.
+/// And no filter plug-ins: which code runs is not a file's to choose.
 void silence() {
-  static const herr_t once = (H5dont_atexit(), H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
+  static const herr_t once =
+      (H5dont_atexit(), H5PLset_loading_state(0), H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
   (void)once;
 }
 
@@ -31,9 +39,41 @@ Id latest_format() {
   return access;
 }
 
+/// Looks at the superblock before HDF5 does: that the file is one of create_file() which was
+/// closed, and has its whole length. HDF5 reads older formats too, whose metadata has no checksums.
+void check_superblock(const File& file) {
+  constexpr std::string_view kSignature("\x89HDF\r\n\x1a\n");
+  constexpr std::size_t kVersionAt = 8, kSizesAt = 9, kFlagsAt = 11, kBaseAt = 12, kEndAt = 28;
+  constexpr unsigned kVersion = 3, kEightByteSizes = 0x0808;
+  std::array<std::byte, 48> bytes{};
+  const std::uint64_t size = file.size_bytes();
+  file.read_at(0, std::span(bytes).first(std::min<std::uint64_t>(bytes.size(), size)));
+  if (std::memcmp(bytes.data(), kSignature.data(), kSignature.size()) != 0) {
+    throw InputError(file.name() + ": not an HDF5 file, expected one that Clearway wrote");
+  }
+  const unsigned version = load<std::uint8_t>(bytes.data() + kVersionAt);
+  if (version != kVersion || load<std::uint16_t>(bytes.data() + kSizesAt) != kEightByteSizes) {
+    throw InputError(file.name() + ": HDF5 superblock of version " + std::to_string(version) +
+                     ", expected " + std::to_string(kVersion) +
+                     ": another tool (h5repack, a copy by h5py) wrote or rewrote the file; convert "
+                     "the scans again, or run again for a result, or copy the file as it is");
+  }
+  if (load<std::uint8_t>(bytes.data() + kFlagsAt) != 0) {
+    throw InputError(file.name() + ": damaged HDF5 file: it was not closed by its writer");
+  }
+  const auto end = load<std::uint64_t>(bytes.data() + kEndAt);
+  if (load<std::uint64_t>(bytes.data() + kBaseAt) != 0 || end != size) {
+    throw InputError(file.name() + ": damaged HDF5 file: it has " + std::to_string(size) +
+                     " bytes, expected " + std::to_string(end));
+  }
+}
+
 }  // namespace
 
-std::string reason() {
+namespace {
+
+/// The innermost description of HDF5's last failure.
+std::string description() {
   std::string text;
   const auto take = [](unsigned, const H5E_error2_t* error, void* out) -> herr_t {
     auto& reason = *static_cast<std::string*>(out);
@@ -41,17 +81,34 @@ std::string reason() {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &text);
-  // Of a failed system call only the system's words, not HDF5's addresses and clock.
+  return text;
+}
+
+/// The system's words where a system call failed: not HDF5's addresses and clock.
+std::optional<std::string> system_reason() {
+  const std::string text = description();
   const std::string quote = "error message = '";
-  if (const auto begin = text.find(quote); begin != std::string::npos) {
-    const auto words = begin + quote.size();
-    return text.substr(words, text.find('\'', words) - words);
-  }
+  const auto begin = text.find(quote);
+  if (begin == std::string::npos) return std::nullopt;
+  const auto words = begin + quote.size();
+  return text.substr(words, text.find('\'', words) - words);
+}
+
+}  // namespace
+
+std::string reason() {
+  if (const auto words = system_reason()) return *words;
+  const std::string text = description();
   return text.empty() ? "HDF5 gives no reason" : text;
 }
 
-[[noreturn]] void malformed(const std::string& file, const std::string& name,
-                            const std::string& expected) {
+void fail(const std::string& what) {
+  if (const auto words = system_reason()) throw ResourceError(what + ": " + *words);
+  throw Failure(what + ": " + reason());
+}
+
+void malformed(const std::string& file, const std::string& name, const std::string& expected) {
+  if (const auto words = system_reason()) throw ResourceError(file + ": cannot read: " + *words);
   throw InputError(file + ": dataset or attribute '" + name + "': expected " + expected);
 }
 
@@ -70,7 +127,7 @@ Id simple_space(std::uint64_t rows, std::uint64_t columns) {
 
 Id::Id(hid_t id, Close close_with, const std::string& what) : id_(id), close_(close_with) {
   silence();
-  if (id < 0) throw ResourceError(what + ": " + reason());
+  if (id < 0) fail(what);
 }
 
 Id::Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
@@ -90,7 +147,7 @@ void Id::close(const std::string& what) {
 }
 
 void check(herr_t status, const std::string& what) {
-  if (status < 0) throw ResourceError(what + ": " + reason());
+  if (status < 0) fail(what);
 }
 
 Id create_file(const std::filesystem::path& path) {
@@ -106,18 +163,45 @@ Id create_file(const std::filesystem::path& path) {
 
 Id open_file(const std::filesystem::path& path) {
   silence();
-  File::open_for_reading(path);  // HDF5 does not say that a file is missing
-  if (H5Fis_hdf5(path.c_str()) <= 0) {
-    throw InputError(path.string() + ": not an HDF5 file, expected one that Clearway wrote");
-  }
+  check_superblock(File::open_for_reading(path));
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (id < 0) throw InputError(path.string() + ": damaged HDF5 file: " + reason());
+  if (id < 0) {
+    if (const auto words = system_reason()) throw ResourceError(path.string() + ": " + *words);
+    throw InputError(path.string() + ": damaged HDF5 file: " + reason());
+  }
   return {id, H5Fclose, path.string()};
+}
+
+void require_own_link(const Id& parent, const std::string& path, const std::string& file) {
+  for (std::size_t end = 0; end != std::string::npos;) {
+    end = path.find('/', end + 1);
+    H5L_info_t link{};
+    if (H5Lget_info(parent.get(), path.substr(0, end).c_str(), &link, H5P_DEFAULT) < 0) {
+      malformed(file, path, "to exist and be intact (" + reason() + ")");
+    }
+    if (link.type != H5L_TYPE_HARD) malformed(file, path, "an object of this file, found a link");
+  }
+}
+
+Id open_group(const Id& parent, const std::string& name, const std::string& file) {
+  require_own_link(parent, name, file);
+  const hid_t group = H5Gopen2(parent.get(), name.c_str(), H5P_DEFAULT);
+  if (group < 0) malformed(file, name, "an intact group (" + reason() + ")");
+  return {group, H5Gclose, file + ": group " + name};
+}
+
+Id open_dataset(const Id& parent, const std::string& name, const std::string& file) {
+  require_own_link(parent, name, file);
+  const hid_t opened = H5Dopen2(parent.get(), name.c_str(), H5P_DEFAULT);
+  if (opened < 0) malformed(file, name, "to exist and be intact (" + reason() + ")");
+  return {opened, H5Dclose, name};
 }
 
 bool holds(const std::filesystem::path& path, const std::string& name) {
   const Id file = open_file(path);
-  return H5Lexists(file.get(), name.c_str(), H5P_DEFAULT) > 0;
+  const htri_t found = H5Lexists(file.get(), name.c_str(), H5P_DEFAULT);
+  if (found < 0) malformed(path.string(), name, "an intact group (" + reason() + ")");
+  return found > 0;
 }
 
 Id create_group(const Id& parent, const std::string& name) {

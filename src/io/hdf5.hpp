@@ -8,11 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "core/error.hpp"
+
 /// Owners and the few calls of HDF5 that Clearway makes. All HDF5 calls of a file are made by one
 /// thread. Files are written with H5F_LIBVER_V110 on both bounds, no object times, fletcher32 on
 /// every unpacked dataset and fixed-length strings, so that equal contents give equal bytes and
 /// damaged metadata is noticed (design section 3).
 namespace clearway::hdf5 {
+
+/// HDF5 could not do it though no system call failed: of a file that is read, damaged contents.
+struct Failure : ResourceError {
+  using ResourceError::ResourceError;
+};
 
 /// Move-only owner of an HDF5 identifier; closes it with the function for its kind.
 class Id {
@@ -35,15 +42,32 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// Throws ResourceError "`what`: reason" when status < 0.
+/// Runs `call`, putting the file's name before the message of a failure that lacks it.
+template <typename Call>
+auto naming(const std::string& file, Call call) {
+  try {
+    return call();
+  } catch (const ResourceError& error) {
+    const std::string what = error.what();
+    throw ResourceError(what.starts_with(file) ? what : file + ": " + what);
+  }
+}
+
+/// Throws ResourceError "`what`: reason", a Failure unless a system call failed, when status < 0.
 void check(herr_t status, const std::string& what);
 
 Id create_file(const std::filesystem::path& path);
-/// Throws InputError when the file is missing its HDF5 signature or cannot be opened as HDF5.
+/// Throws InputError when the file does not start as create_file() makes one, has not the length
+/// that it says, or cannot be opened as HDF5.
 Id open_file(const std::filesystem::path& path);
 /// Whether an HDF5 file has an object of this name at its root. Throws like open_file.
 bool holds(const std::filesystem::path& path, const std::string& name);
 Id create_group(const Id& parent, const std::string& name);
+/// An object of the file itself: throws InputError where it is missing or damaged, or where the
+/// name is a link, which may lead out of the file. `file` names it in messages.
+Id open_group(const Id& parent, const std::string& name, const std::string& file);
+/// The same; nothing is known of its type, shape and storage.
+Id open_dataset(const Id& parent, const std::string& name, const std::string& file);
 
 /// The HDF5 type of a C++ number, little-endian in the file.
 template <typename Number>
@@ -73,18 +97,22 @@ void write_dataset(const Id& parent, const std::string& name, std::span<const Nu
                    std::uint64_t columns = 0);
 
 /// Reads a whole dataset of `rows` x `columns` (columns 0: one-dimensional). Throws InputError when
-/// it is missing, of another type or shape, or fails its checksum; `file` names it in messages.
+/// it is missing, of another type, shape or storage than write_dataset gives it, larger than the
+/// file, or fails its checksum; `file` names it in messages.
 template <typename Number>
 std::vector<Number> read_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
                                  std::uint64_t columns, const std::string& file);
 
-/// Rows of a one- or two-dimensional dataset, from its extent.
+/// Rows of a one- or two-dimensional dataset, from its extent; not to be trusted before the dataset
+/// was read.
 std::uint64_t dataset_rows(const Id& parent, const std::string& name, const std::string& file);
 
 template <typename Number>
 void write_attribute(const Id& object, const std::string& name, std::span<const Number> values);
 void write_attribute(const Id& object, const std::string& name, const std::string& text);
 
+/// Throws like read_attribute where that cannot be told.
+bool has_attribute(const Id& object, const std::string& name, const std::string& file);
 template <typename Number>
 std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
                                    const std::string& file);
@@ -96,12 +124,14 @@ class Rows {
  public:
   /// Creates rows x columns (columns 0: one-dimensional), as write_dataset.
   Rows(const Id& parent, const std::string& name, std::uint64_t rows, std::uint64_t columns);
-  /// Opens an existing one; throws InputError unless type and columns are these.
+  /// Opens an existing one; throws InputError as read_dataset does.
   static Rows open(const Id& parent, const std::string& name, std::uint64_t columns,
                    const std::string& file);
 
   std::uint64_t rows() const { return rows_; }
   void write(std::uint64_t first_row, std::span<const Number> values);
+  /// After the last write, which may fail as late as here.
+  void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;
 
  private:
@@ -112,6 +142,7 @@ class Rows {
   std::uint64_t rows_ = 0;
   std::uint64_t columns_ = 0;
   std::string name_;
+  std::string file_;  ///< where it was opened
 };
 
 }  // namespace clearway::hdf5

@@ -5,6 +5,8 @@
 namespace clearway::hdf5 {
 namespace {
 
+constexpr std::size_t kLongestText = 1 << 20;  // no CRS is as long
+
 struct Attribute {
   Id id, type;
   hssize_t numbers;  ///< or strings
@@ -41,6 +43,12 @@ void write_attribute(const Id& object, const std::string& name, const std::strin
   check(H5Awrite(attribute.get(), type.get(), text.c_str()), "write attribute " + name);
 }
 
+bool has_attribute(const Id& object, const std::string& name, const std::string& file) {
+  const htri_t found = H5Aexists(object.get(), name.c_str());
+  if (found < 0) malformed(file, name, "intact attributes (" + reason() + ")");
+  return found > 0;
+}
+
 template <typename Number>
 std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
                                    const std::string& file) {
@@ -60,6 +68,7 @@ std::string read_text_attribute(const Id& object, const std::string& name,
       numbers != 1) {
     malformed(file, name, "a fixed-length string");
   }
+  if (H5Tget_size(type.get()) > kLongestText) malformed(file, name, "a text of at most 1 MiB");
   std::string text(H5Tget_size(type.get()), '\0');
   check(H5Aread(attribute.get(), type.get(), text.data()), file + ": read " + name);
   text.resize(text.find('\0') == std::string::npos ? text.size() : text.find('\0'));

@@ -36,13 +36,35 @@ Id create_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
           H5Dclose, "create dataset " + name};
 }
 
-Id open_dataset(const Id& parent, const std::string& name, const std::string& file) {
-  const hid_t opened = H5Dopen2(parent.get(), name.c_str(), H5P_DEFAULT);
-  if (opened < 0) malformed(file, name, "to exist and be intact (" + reason() + ")");
-  return {opened, H5Dclose, name};
+/// Whether the dataset is stored as checked_layout() has it: in this file, in small chunks with a
+/// checksum and no other filter, so that its numbers take as many bytes of the file as here.
+bool has_checked_layout(const Id& dataset, std::uint64_t rows, int dimensions,
+                        std::size_t number_bytes) {
+  const Id list(H5Dget_create_plist(dataset.get()), H5Pclose, "HDF5 property list");
+  if (rows == 0) return H5Pget_layout(list.get()) == H5D_CONTIGUOUS;
+  std::array<hsize_t, 2> chunk{1, 1};
+  if (H5Pget_layout(list.get()) != H5D_CHUNKED ||
+      H5Pget_chunk(list.get(), dimensions, chunk.data()) != dimensions) {
+    return false;
+  }
+  unsigned flags = 0, filter_config = 0;
+  std::size_t values = 0;
+  const bool checked = H5Pget_nfilters(list.get()) == 1 &&
+                       H5Pget_filter2(list.get(), 0, &flags, &values, nullptr, 0, nullptr,
+                                      &filter_config) == H5Z_FILTER_FLETCHER32 &&
+                       (flags & H5Z_FLAG_OPTIONAL) == 0;
+  return checked && chunk[0] <= kChunkBytes && chunk[1] <= kChunkBytes &&
+         chunk[0] * chunk[1] * number_bytes <= kChunkBytes;
 }
 
-/// Also checks type and columns; gives its rows.
+std::uint64_t bytes_of_file(const Id& object) {
+  const Id file(H5Iget_file_id(object.get()), H5Fclose, "HDF5 file");
+  hsize_t bytes = 0;
+  check(H5Fget_filesize(file.get(), &bytes), "HDF5 size of the file");
+  return bytes;
+}
+
+/// Also checks type, columns and storage, and that as many rows fit the file; gives its rows.
 template <typename Number>
 std::pair<Id, std::uint64_t> open_dataset(const Id& parent, const std::string& name,
                                           std::uint64_t columns, const std::string& file) {
@@ -60,6 +82,13 @@ std::pair<Id, std::uint64_t> open_dataset(const Id& parent, const std::string& n
     malformed(file, name,
               columns == 0 ? "one dimension" : std::to_string(columns) + " numbers a row");
   }
+  if (!has_checked_layout(dataset, size[0], dimensions, sizeof(Number))) {
+    malformed(file, name, "chunks with fletcher32, as Clearway writes them");
+  }
+  const std::uint64_t row_bytes = std::max<std::uint64_t>(columns, 1) * sizeof(Number);
+  if (size[0] > bytes_of_file(dataset) / row_bytes) {
+    malformed(file, name, "no more rows than the file has room for");
+  }
   return {std::move(dataset), size[0]};
 }
 
@@ -69,11 +98,12 @@ template <typename Number>
 void write_dataset(const Id& parent, const std::string& name, std::span<const Number> values,
                    std::uint64_t columns) {
   const std::uint64_t rows = columns == 0 ? values.size() : values.size() / columns;
-  const Id dataset = create_dataset<Number>(parent, name, rows, columns);
+  Id dataset = create_dataset<Number>(parent, name, rows, columns);
   if (values.empty()) return;
   check(
       H5Dwrite(dataset.get(), memory_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
       "write dataset " + name);
+  dataset.close("write dataset " + name);  // this is when its chunks are written
 }
 
 template <typename Number>
@@ -113,7 +143,8 @@ Rows<Number> Rows<Number>::open(const Id& parent, const std::string& name, std::
   Rows rows;
   std::tie(rows.dataset_, rows.rows_) = open_dataset<Number>(parent, name, columns, file);
   rows.columns_ = columns;
-  rows.name_ = file + ": " + name;
+  rows.name_ = name;
+  rows.file_ = file;
   return rows;
 }
 
@@ -140,13 +171,18 @@ void Rows<Number>::write(std::uint64_t first_row, std::span<const Number> values
 }
 
 template <typename Number>
+void Rows<Number>::close() {
+  dataset_.close("write dataset " + name_);
+}
+
+template <typename Number>
 void Rows<Number>::read(std::uint64_t first_row, std::span<Number> values) const {
   if (values.empty()) return;
   Id memory;
   const Id space = select(first_row, values.size() / std::max<std::uint64_t>(columns_, 1), memory);
   if (H5Dread(dataset_.get(), memory_type<Number>(), memory.get(), space.get(), H5P_DEFAULT,
               values.data()) < 0) {
-    throw InputError(name_ + ": damaged data: " + reason());
+    malformed(file_, name_, "intact data (" + reason() + ")");
   }
 }
 

@@ -11,7 +11,11 @@ namespace clearway::hdf5 {
 /// HDF5's innermost reason for its last failure.
 std::string reason();
 
-/// Throws InputError about a dataset or attribute of a file.
+/// Throws ResourceError "`what`: reason", a Failure unless a system call failed.
+[[noreturn]] void fail(const std::string& what);
+
+/// Throws ResourceError where HDF5's last failure was the system's, otherwise InputError about a
+/// dataset or attribute of a file.
 [[noreturn]] void malformed(const std::string& file, const std::string& name,
                             const std::string& expected);
 

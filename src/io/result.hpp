@@ -56,7 +56,8 @@ class ResultWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Reads a result by ranges of rows, which lie below collisions(). Throws InputError when the file
+/// Reads a result by ranges of rows, which lie below collisions(); whoever reads all of them front
+/// to back (result_rows.hpp) checks them against their hash too. Throws InputError when the file
 /// is not a complete result, is damaged, or holds rows that no run can have found.
 class ResultReader {
  public:
@@ -67,6 +68,8 @@ class ResultReader {
   const std::string& name() const;  ///< the file's, for messages
   const ResultHeader& header() const;
   std::uint64_t collisions() const;
+  /// ColumnHashes of source, xyz and, where there is one, first_pose.
+  std::uint64_t collisions_hash() const;
   /// Strictly ascending and below header().environment_points.
   void read_source(std::uint64_t first, std::span<std::uint64_t> out) const;
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
@@ -75,6 +78,8 @@ class ResultReader {
 
   /// Rows of the clearances, 0 where the header has none.
   std::uint64_t clearances() const;
+  /// ColumnHashes of source, distance and pose; 0 where there are none.
+  std::uint64_t clearances_hash() const;
   /// source as read_source, distance from 0 to header().clearance, pose as read_first_pose. Only
   /// where the header has clearances.
   void read_clearances(std::uint64_t first, std::span<std::uint64_t> source,

@@ -6,7 +6,7 @@
 namespace clearway::result_names {
 
 inline constexpr const char* kFormat = "clearway result";
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 
 inline constexpr const char* kGroup = "collisions";
 inline constexpr const char* kSource = "source";
@@ -16,5 +16,8 @@ inline constexpr const char* kFirstPose = "first_pose";
 inline constexpr const char* kClearanceGroup = "clearance";
 inline constexpr const char* kDistance = "distance";
 inline constexpr const char* kPose = "pose";
+
+inline constexpr const char* kCollisionsHash = "collisions_hash";
+inline constexpr const char* kClearanceHash = "clearance_hash";
 
 }  // namespace clearway::result_names

@@ -24,19 +24,19 @@ Number read_number(const hdf5::Id& file, const std::string& attribute, const std
   return hdf5::read_attribute<Number>(file, attribute, 1, name).front();
 }
 
-/// HDF5 does not say whether the disk or the content failed: in a file that could be opened, it is
-/// taken for the content.
+/// What HDF5 cannot do with a file that could be opened is taken for damaged content, unless a
+/// system call failed.
 template <typename Call>
 auto as_input(const std::string& name, Call call) {
   try {
     return call();
-  } catch (const ResourceError& error) {
+  } catch (const hdf5::Failure& error) {
     throw InputError(name + ": damaged: " + error.what());
   }
 }
 
 void check_format(const hdf5::Id& file, const std::string& name) {
-  if (H5Aexists(file.get(), "format") <= 0 ||
+  if (!hdf5::has_attribute(file, "format", name) ||
       hdf5::read_text_attribute(file, "format", name) != names::kFormat) {
     throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
                      "\"; this HDF5 file is not a result of clearway run");
@@ -46,7 +46,7 @@ void check_format(const hdf5::Id& file, const std::string& name) {
     throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
                      std::to_string(names::kVersion) + "; another release of clearway wrote it");
   }
-  if (H5Aexists(file.get(), "complete") <= 0 ||
+  if (!hdf5::has_attribute(file, "complete", name) ||
       read_number<std::uint8_t>(file, "complete", name) != 1) {
     throw InputError(name + ": not complete: the run that wrote it was interrupted");
   }
@@ -84,12 +84,14 @@ struct ResultReader::State {
       : name(path.string()),
         file(hdf5::open_file(path)),
         header(read_header(file, name)),
+        collisions_hash(read_number<std::uint64_t>(file, names::kCollisionsHash, name)),
         source(open<std::uint64_t>(names::kGroup, names::kSource, 0)),
         xyz(open<double>(names::kGroup, names::kXyz, 3)) {
     if (header.first_pose) {
       first_pose.emplace(open<std::uint32_t>(names::kGroup, names::kFirstPose, 0));
     }
     if (header.clearance > 0) {
+      clearance_hash = read_number<std::uint64_t>(file, names::kClearanceHash, name);
       clearance.emplace(
           ClearanceDatasets{open<std::uint64_t>(names::kClearanceGroup, names::kSource, 0),
                             open<double>(names::kClearanceGroup, names::kDistance, 0),
@@ -164,6 +166,8 @@ struct ResultReader::State {
   std::string name;
   hdf5::Id file;
   ResultHeader header;
+  std::uint64_t collisions_hash;
+  std::uint64_t clearance_hash = 0;
   hdf5::Rows<std::uint64_t> source;
   hdf5::Rows<double> xyz;
   std::optional<hdf5::Rows<std::uint32_t>> first_pose;
@@ -181,6 +185,8 @@ ResultReader::ResultReader(ResultReader&&) noexcept = default;
 const std::string& ResultReader::name() const { return state_->name; }
 const ResultHeader& ResultReader::header() const { return state_->header; }
 std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
+std::uint64_t ResultReader::collisions_hash() const { return state_->collisions_hash; }
+std::uint64_t ResultReader::clearances_hash() const { return state_->clearance_hash; }
 
 void ResultReader::read_source(std::uint64_t first, std::span<std::uint64_t> out) const {
   state_->check_range(first, out.size(), collisions());

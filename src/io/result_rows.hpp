@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/vec3.hpp"
+#include "io/column_hashes.hpp"
 #include "io/result.hpp"
 
 namespace clearway {
@@ -34,13 +36,15 @@ class ResultRowStream {
   explicit ResultRowStream(const ResultReader& reader) : reader_(reader) {}
 
   /// Fills `rows` with up to kBatchRows rows; false, and no rows, at the end. Throws InputError as
-  /// the reader does, also where sources do not ascend from one batch to the next.
+  /// the reader does, also where sources do not ascend from one batch to the next, and at the end
+  /// where the rows are not those that their hash is of.
   bool read(ResultRows& rows);
 
  private:
   const ResultReader& reader_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
+  std::array<Xxh64Stream, 3> columns_;  ///< of the rows read
 };
 
 /// The same for its clearances; no rows where it has none.
@@ -55,6 +59,7 @@ class ClearanceRowStream {
   const ResultReader& reader_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
+  std::array<Xxh64Stream, 3> columns_;  ///< of the rows read
 };
 
 }  // namespace clearway

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "io/column_hashes.hpp"
 #include "io/hdf5.hpp"
 #include "io/result.hpp"
 #include "io/result_names.hpp"
@@ -45,17 +46,6 @@ void write_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
   hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
-}
-
-/// Runs `call`, putting the file's name before the message of a failure.
-template <typename Call>
-auto naming(const std::string& file, Call call) {
-  try {
-    return call();
-  } catch (const ResourceError& error) {
-    const std::string what = error.what();
-    throw ResourceError(what.starts_with(file) ? what : file + ": " + what);
-  }
 }
 
 /// The piece of a column; a column that the result does not have stays empty.
@@ -105,6 +95,7 @@ struct Column {
   }
 
   void flush(std::uint64_t first_row) {
+    hash.update(std::as_bytes(std::span<const Value>(buffer)));
     if constexpr (std::is_same_v<Value, Vec3>) {
       dataset.write(first_row, as_numbers(buffer));
     } else {
@@ -115,6 +106,7 @@ struct Column {
 
   hdf5::Rows<Number> dataset;
   std::vector<Value> buffer;
+  Xxh64Stream hash;  ///< of the rows written
 };
 
 struct CollisionTable {
@@ -139,6 +131,14 @@ struct CollisionTable {
     xyz.flush(written);
     if (first_pose) first_pose->flush(written);
     written += rows;
+  }
+
+  std::uint64_t hash() const {
+    ColumnHashes hashes;
+    hashes.add_digest(source.hash.digest());
+    hashes.add_digest(xyz.hash.digest());
+    if (first_pose) hashes.add_digest(first_pose->hash.digest());
+    return hashes.digest();
   }
 
   hdf5::Id group;
@@ -172,6 +172,14 @@ struct ClearanceTable {
     written += rows;
   }
 
+  std::uint64_t hash() const {
+    ColumnHashes hashes;
+    hashes.add_digest(source.hash.digest());
+    hashes.add_digest(distance.hash.digest());
+    hashes.add_digest(pose.hash.digest());
+    return hashes.digest();
+  }
+
   hdf5::Id group;
   RowCount count;
   Column<std::uint64_t> source;
@@ -191,7 +199,7 @@ void append_rows(Table& table, const std::string& file, std::span<const std::uin
     table.append(source.subspan(from, count), values.subspan(from, count),
                  piece(poses, from, count));
     from += count;
-    if (table.source.buffer.size() == kBufferRows) naming(file, [&] { table.flush(); });
+    if (table.source.buffer.size() == kBufferRows) hdf5::naming(file, [&] { table.flush(); });
   }
 }
 
@@ -217,7 +225,7 @@ struct ResultWriter::State {
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
                            std::uint64_t collisions, std::uint64_t clearances)
-    : state_(naming(path.string(), [&] {
+    : state_(hdf5::naming(path.string(), [&] {
         return std::make_unique<State>(path, header, collisions, clearances);
       })) {}
 
@@ -241,7 +249,7 @@ void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
     throw std::logic_error("ResultWriter: rows of unequal lengths");
   }
   s.collisions->count.check_complete();
-  if (!s.collisions->source.buffer.empty()) naming(s.name, [&] { s.collisions->flush(); });
+  if (!s.collisions->source.buffer.empty()) hdf5::naming(s.name, [&] { s.collisions->flush(); });
   append_rows(*s.clearances, s.name, source, distance, pose);
 }
 
@@ -249,9 +257,11 @@ void ResultWriter::finish() {
   State& s = *state_;
   s.collisions->count.check_complete();
   if (s.clearances) s.clearances->count.check_complete();
-  naming(s.name, [&] {
+  hdf5::naming(s.name, [&] {
     s.collisions->flush();
     if (s.clearances) s.clearances->flush();
+    write_number(s.file, names::kCollisionsHash, s.collisions->hash());
+    if (s.clearances) write_number(s.file, names::kClearanceHash, s.clearances->hash());
     write_number(s.file, "complete", std::uint8_t{1});
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
     // After the flush nothing is left that closing could fail to write.

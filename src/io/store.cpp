@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "core/error.hpp"
@@ -13,8 +14,8 @@
 namespace clearway {
 namespace {
 
-/// One cell's worth of points fits a 32-bit index and a chunk HDF5's 4 GiB limit.
-constexpr std::uint32_t kMostCellPoints = 1U << 24;
+/// As many as `convert` gives a cell at the most.
+constexpr std::uint32_t kMostCellPoints = 1U << 20;
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what) {
   throw InputError(file + ": " + what);
@@ -25,9 +26,9 @@ Number number_attribute(const hdf5::Id& file, const char* name, const std::strin
   return hdf5::read_attribute<Number>(file, name, 1, file_name)[0];
 }
 
-std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& file_name) {
-  const hdf5::Id group(H5Gopen2(file.get(), "sources", H5P_DEFAULT), H5Gclose,
-                       file_name + ": group sources");
+std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& file_name,
+                                     ColumnHashes& hashes_of_all) {
+  const hdf5::Id group = hdf5::open_group(file, "sources", file_name);
   const std::uint64_t count = hdf5::dataset_rows(group, "bytes", file_name);
   const auto bytes = hdf5::read_dataset<std::uint64_t>(group, "bytes", count, 0, file_name);
   const auto hashes = hdf5::read_dataset<std::uint64_t>(group, "xxh64", count, 0, file_name);
@@ -36,6 +37,9 @@ std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& fi
   if (static_cast<std::uint64_t>(std::count(names.begin(), names.end(), 0)) != count) {
     refuse(file_name, "dataset 'sources/names': expected " + std::to_string(count) + " names");
   }
+  hashes_of_all.add(names);
+  hashes_of_all.add(bytes);
+  hashes_of_all.add(hashes);
   std::vector<SourceFile> sources(count);
   auto at = names.begin();
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -46,8 +50,8 @@ std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& fi
   return sources;
 }
 
-StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name) {
-  if (H5Aexists(file.get(), "format") <= 0 ||
+StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, ColumnHashes& hashes) {
+  if (!hdf5::has_attribute(file, "format", name) ||
       hdf5::read_text_attribute(file, "format", name) != kStoreFormat) {
     refuse(name, "not a store, expected a file that 'clearway convert' wrote");
   }
@@ -56,7 +60,7 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name) {
     refuse(name, "store format version " + std::to_string(version) + ", expected " +
                      std::to_string(kStoreVersion));
   }
-  if (H5Aexists(file.get(), "complete") <= 0 ||
+  if (!hdf5::has_attribute(file, "complete", name) ||
       number_attribute<std::uint32_t>(file, "complete", name) != 1) {
     refuse(name, "an unfinished store, expected a complete one; convert again");
   }
@@ -72,21 +76,25 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name) {
   metadata.layout = hdf5::read_text_attribute(file, "layout", name);
   metadata.unit = length_unit_of(hdf5::read_text_attribute(file, "length_unit", name));
   metadata.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
-  metadata.sources = read_sources(file, name);
+  for (int k = 0; k < 3; ++k) {
+    if (!(scale[k] > 0) || !std::isfinite(scale[k]) || !std::isfinite(offset[k])) {
+      refuse(name, "attributes 'scale' and 'offset': expected finite numbers, the scale above 0");
+    }
+  }
+  if (metadata.input_points < metadata.point_count) {
+    refuse(name, "attribute 'input_points' is " + std::to_string(metadata.input_points) +
+                     ", expected at least the points stored, " +
+                     std::to_string(metadata.point_count));
+  }
+  metadata.sources = read_sources(file, name, hashes);
   if (metadata.cell_points == 0 || metadata.cell_points > kMostCellPoints) {
     refuse(name, "attribute 'cell_points': expected 1 to " + std::to_string(kMostCellPoints));
   }
   return metadata;
 }
 
-hdf5::Id open_group(const hdf5::Id& file, const char* group, const std::string& name) {
-  const hid_t id = H5Gopen2(file.get(), group, H5P_DEFAULT);
-  if (id < 0) refuse(name, std::string("no intact group '") + group + "'");
-  return {id, H5Gclose, name};
-}
-
 CellIndex read_index(const hdf5::Id& file, const std::string& name) {
-  const hdf5::Id group = open_group(file, "cells", name);
+  const hdf5::Id group = hdf5::open_group(file, "cells", name);
   const std::uint64_t cells = hdf5::dataset_rows(group, "count", name);
   CellIndex index;
   index.count = hdf5::read_dataset<std::uint32_t>(group, "count", cells, 0, name);
@@ -101,16 +109,14 @@ CellIndex read_index(const hdf5::Id& file, const std::string& name) {
 /// dataset at other addresses than the index.
 void check_not_rewritten(const hdf5::Id& file, const CellIndex& index, const std::string& name) {
   if (index.count.empty()) return;
-  const hdf5::Id group = open_group(file, "points", name);
-  const hid_t id = H5Dopen2(group.get(), kPointDatasets[0], H5P_DEFAULT);
-  if (id < 0) refuse(name, "no intact dataset 'points/x'");
-  const hdf5::Id dataset(id, H5Dclose, name);
+  const hdf5::Id group = hdf5::open_group(file, "points", name);
+  const hdf5::Id dataset = hdf5::open_dataset(group, kPointDatasets[0], name);
   for (const std::uint64_t cell : {std::uint64_t{0}, std::uint64_t{index.count.size() - 1}}) {
     const std::array<hsize_t, 2> at{cell, 0};
     unsigned filter_mask = 0;
     haddr_t address = 0;
     hsize_t bytes = 0;
-    if (H5Dget_chunk_info_by_coord(id, at.data(), &filter_mask, &address, &bytes) < 0 ||
+    if (H5Dget_chunk_info_by_coord(dataset.get(), at.data(), &filter_mask, &address, &bytes) < 0 ||
         filter_mask != 0 || address != index.address[4 * cell] || bytes != index.bytes[4 * cell]) {
       refuse(name,
              "its chunks are not where 'clearway convert' put them: another tool (h5repack, a "
@@ -119,10 +125,12 @@ void check_not_rewritten(const hdf5::Id& file, const CellIndex& index, const std
   }
 }
 
-std::vector<TopNode> read_tree(const hdf5::Id& file, const std::string& name) {
-  const hdf5::Id group = open_group(file, "tree", name);
+std::vector<TopNode> read_tree(const hdf5::Id& file, const std::string& name,
+                               ColumnHashes& hashes) {
+  const hdf5::Id group = hdf5::open_group(file, "tree", name);
   const std::uint64_t rows = hdf5::dataset_rows(group, "nodes", name);
   const auto values = hdf5::read_dataset<std::uint32_t>(group, "nodes", rows, 3, name);
+  hashes.add(values);
   std::vector<TopNode> nodes(rows);
   for (std::uint64_t i = 0; i < rows; ++i) {
     nodes[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
@@ -130,10 +138,10 @@ std::vector<TopNode> read_tree(const hdf5::Id& file, const std::string& name) {
   return nodes;
 }
 
-std::vector<BlockBox> read_blocks(const hdf5::Id& file, std::uint64_t rows,
-                                  const std::string& name) {
+std::vector<BlockBox> read_blocks(const hdf5::Id& file, std::uint64_t rows, const std::string& name,
+                                  ColumnHashes& hashes) {
   constexpr std::uint64_t kPieceRows = 1 << 16;
-  const hdf5::Id group = open_group(file, "blocks", name);
+  const hdf5::Id group = hdf5::open_group(file, "blocks", name);
   const auto dataset = hdf5::Rows<std::uint16_t>::open(group, "box", 6, name);
   if (dataset.rows() != rows) {
     refuse(name, "dataset 'blocks/box': expected " + std::to_string(rows) + " rows");
@@ -145,6 +153,7 @@ std::vector<BlockBox> read_blocks(const hdf5::Id& file, std::uint64_t rows,
     dataset.read(row, piece);
     std::memcpy(blocks.data() + row, piece.data(), piece.size() * sizeof(std::uint16_t));
   }
+  hashes.add(blocks);
   return blocks;
 }
 
@@ -162,15 +171,20 @@ std::vector<Cell> cells_of(const CellIndex& index) {
 Store::Store(const std::filesystem::path& path) : map_(path) {
   const hdf5::Id file = hdf5::open_file(path);
   try {
-    metadata_ = read_metadata(file, name());
+    ColumnHashes hashes;
+    metadata_ = read_metadata(file, name(), hashes);
     index_ = read_index(file, name());
+    add_index(index_, hashes);
     check_not_rewritten(file, index_, name());
-    top_ = read_tree(file, name());
     cells_ = cells_of(index_);
-    blocks_ = read_blocks(file, std::uint64_t{cells_.size()} * blocks_per_cell(), name());
+    blocks_ = read_blocks(file, std::uint64_t{cells_.size()} * blocks_per_cell(), name(), hashes);
+    top_ = read_tree(file, name(), hashes);
+    if (hashes.digest() != number_attribute<std::uint64_t>(file, "index_hash", name())) {
+      refuse(name(), "its index of cells is damaged (its hash is not the one recorded)");
+    }
     check_index();
     tree_ = build_cell_tree(top_, cells_);
-  } catch (const ResourceError& error) {  // HDF5 failing on an open file means damaged metadata
+  } catch (const hdf5::Failure& error) {
     throw InputError(name() + ": damaged store: " + error.what());
   }
   checked_.resize(cells_.size());

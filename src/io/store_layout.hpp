@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "io/column_hashes.hpp"
+
 /// Names and tables that the store's writer and reader share (docs/store-format.md).
 namespace clearway {
 
@@ -18,5 +20,13 @@ struct CellIndex {
   std::vector<std::uint32_t> bytes;    // [cells, 4]
   std::vector<std::uint64_t> xxh64;    // [cells, 4]
 };
+
+inline void add_index(const CellIndex& index, ColumnHashes& hashes) {
+  hashes.add(index.count);
+  hashes.add(index.box);
+  hashes.add(index.address);
+  hashes.add(index.bytes);
+  hashes.add(index.xxh64);
+}
 
 }  // namespace clearway

@@ -9,7 +9,7 @@
 
 namespace clearway {
 
-inline constexpr std::uint32_t kStoreVersion = 1;
+inline constexpr std::uint32_t kStoreVersion = 2;
 
 /// One input file of a conversion, as the store remembers it.
 struct SourceFile {

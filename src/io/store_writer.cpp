@@ -36,7 +36,8 @@ hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t ce
           H5Dclose, std::string("create dataset ") + name};
 }
 
-void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata) {
+/// The datasets of /sources are the first of `hashes`.
+void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnHashes& hashes) {
   const auto number = [&file]<typename Number>(const char* name, Number value) {
     hdf5::write_attribute<Number>(file, name, std::span(&value, 1));
   };
@@ -53,17 +54,20 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata) {
   hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
 
   std::vector<std::uint8_t> names;
-  std::vector<std::uint64_t> bytes, hashes;
+  std::vector<std::uint64_t> bytes, contents;
   for (const SourceFile& source : metadata.sources) {
     names.insert(names.end(), source.name.begin(), source.name.end());
     names.push_back(0);
     bytes.push_back(source.bytes);
-    hashes.push_back(source.xxh64);
+    contents.push_back(source.xxh64);
   }
   const hdf5::Id group = hdf5::create_group(file, "sources");
   hdf5::write_dataset<std::uint8_t>(group, "names", names);
   hdf5::write_dataset<std::uint64_t>(group, "bytes", bytes);
-  hdf5::write_dataset<std::uint64_t>(group, "xxh64", hashes);
+  hdf5::write_dataset<std::uint64_t>(group, "xxh64", contents);
+  hashes.add(names);
+  hashes.add(bytes);
+  hashes.add(contents);
 }
 
 }  // namespace
@@ -77,6 +81,7 @@ struct StoreWriter::State {
   CellIndex index;
   File blocks;  ///< rows of /blocks/box, spooled: too many to keep in memory
   std::uint64_t block_rows = 0;
+  ColumnHashes hashes;  ///< of all datasets but /points
 
   std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
 
@@ -93,11 +98,15 @@ struct StoreWriter::State {
     const hdf5::Id group = hdf5::create_group(file, "blocks");
     hdf5::Rows<std::uint16_t> dataset(group, "box", block_rows, 6);
     std::vector<std::uint16_t> piece;
+    Xxh64Stream hash;
     for (std::uint64_t row = 0; row < block_rows; row += kPieceRows) {
       piece.resize(6 * std::min(kPieceRows, block_rows - row));
       blocks.read_at(row * sizeof(BlockBox), std::as_writable_bytes(std::span(piece)));
       dataset.write(row, piece);
+      hash.update(std::as_bytes(std::span(piece)));
     }
+    dataset.close();
+    hashes.add_digest(hash.digest());
   }
 
   /// Writes a packed chunk at the end of the file; gives its address.
@@ -140,9 +149,15 @@ StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata&
                        .file = {},
                        .points = {},
                        .index = {},
-                       .blocks = File::create_temporary(folder_of(path))}) {
-  state_->file = hdf5::create_file(path);
-  write_metadata(state_->file, metadata);
+                       .blocks = File::create_temporary(folder_of(path)),
+                       .hashes = {}}) {
+  hdf5::naming(path.string(), [&] { create(cells); });
+}
+
+void StoreWriter::create(std::uint64_t cells) {
+  const StoreMetadata& metadata = state_->metadata;
+  state_->file = hdf5::create_file(state_->path);
+  write_metadata(state_->file, metadata, state_->hashes);
   const hdf5::Id group = hdf5::create_group(state_->file, "points");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     state_->points[axis] =
@@ -172,6 +187,10 @@ void StoreWriter::append(const PackedCell& packed) {
 }
 
 void StoreWriter::finish(const std::vector<TopNode>& tree) {
+  hdf5::naming(state_->path.string(), [&] { write_index(tree); });
+}
+
+void StoreWriter::write_index(const std::vector<TopNode>& tree) {
   State& state = *state_;
   if (state.index.count.size() != state.promised_cells) {
     throw std::logic_error("fewer cells than promised");
@@ -187,10 +206,14 @@ void StoreWriter::finish(const std::vector<TopNode>& tree) {
     hdf5::write_dataset<std::uint64_t>(cells, "address", state.index.address, 4);
     hdf5::write_dataset<std::uint32_t>(cells, "bytes", state.index.bytes, 4);
     hdf5::write_dataset<std::uint64_t>(cells, "xxh64", state.index.xxh64, 4);
+    add_index(state.index, state.hashes);
     state.write_blocks();
     const hdf5::Id group = hdf5::create_group(state.file, "tree");
     hdf5::write_dataset<std::uint32_t>(group, "nodes", nodes, 3);
+    state.hashes.add(nodes);
   }
+  const std::uint64_t index_hash = state.hashes.digest();
+  hdf5::write_attribute<std::uint64_t>(state.file, "index_hash", std::span(&index_hash, 1));
   const std::uint32_t complete = 1;
   hdf5::write_attribute<std::uint32_t>(state.file, "complete", std::span(&complete, 1));
   for (hdf5::Id& dataset : state.points) dataset.close(state.path.string() + ": cannot write");

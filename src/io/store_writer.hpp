@@ -36,6 +36,9 @@ class StoreWriter {
   void finish(const std::vector<TopNode>& tree);
 
  private:
+  void create(std::uint64_t cells);
+  void write_index(const std::vector<TopNode>& tree);
+
   struct State;
   std::unique_ptr<State> state_;
 };

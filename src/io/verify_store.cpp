@@ -1,6 +1,7 @@
 #include "io/verify_store.hpp"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "core/error.hpp"
 #include "core/kd_order.hpp"
@@ -8,10 +9,34 @@
 namespace clearway {
 namespace {
 
+/// Source indices seen so far: a bit for each of the input's points, or the indices themselves
+/// where so few are stored that the bits would take more.
+class SeenSources {
+ public:
+  explicit SeenSources(const StoreMetadata& metadata) : end_(metadata.input_points) {
+    if (end_ / kIndexBits <= metadata.point_count) bits_.resize(end_, false);
+  }
+
+  /// False where the index is out of range or was there before.
+  bool insert(std::uint64_t source) {
+    if (source >= end_) return false;
+    if (bits_.empty()) return indices_.insert(source).second;
+    if (bits_[source]) return false;
+    bits_[source] = true;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint64_t kIndexBits = 512;  // of a set of indices, about
+
+  std::uint64_t end_;
+  std::vector<bool> bits_;
+  std::unordered_set<std::uint64_t> indices_;
+};
+
 class Verification {
  public:
-  explicit Verification(const Store& store)
-      : store_(store), seen_(store.metadata().input_points, false) {}
+  explicit Verification(const Store& store) : store_(store), seen_(store.metadata()) {}
 
   /// Throws InputError with the first fault of the cell.
   void check(std::uint32_t cell) {
@@ -63,11 +88,10 @@ class Verification {
         if (source != sources_[count - 1]) fail(cell, "its padding is not its last point");
         continue;
       }
-      if (source >= seen_.size() || seen_[source]) {
+      if (!seen_.insert(source)) {
         fail(cell,
              "source index " + std::to_string(source) + " is out of range or twice in the store");
       }
-      seen_[source] = true;
       if (i % kBlockPoints != 0 && source <= sources_[i - 1]) {
         fail(cell, "a block is not in the order of its source indices");
       }
@@ -75,7 +99,7 @@ class Verification {
   }
 
   const Store& store_;
-  std::vector<bool> seen_;
+  SeenSources seen_;
   std::array<std::vector<std::int32_t>, 3> values_;
   std::vector<std::uint64_t> sources_;
 };

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/hand_over.hpp"
 #include "stream/collect_page.hpp"
 #include "stream/stage_page.hpp"
 
@@ -65,6 +66,7 @@ class Pipeline {
         times_(pages.size()) {}
 
   void run() {
+    { const HandOver begin(this); }
     constexpr auto serial = tbb::filter_mode::serial_in_order;
     constexpr auto parallel = tbb::filter_mode::parallel;
     tbb::parallel_pipeline(
@@ -77,12 +79,14 @@ class Pipeline {
         }) & tbb::make_filter<PageInFlight, void>(parallel, [this](PageInFlight page) {
           search(page);
         }));
+    const HandOver end(this);
   }
 
   StageTimes times() const { return stage_times(times_); }
 
  private:
   PageInFlight next_page(tbb::flow_control& flow) {
+    const HandOver scope(this);
     if (next_ == pages_.size()) {
       flow.stop();
       return {};
@@ -95,6 +99,7 @@ class Pipeline {
   }
 
   void stage(PageInFlight page) {
+    const HandOver scope(this);
     Interval& time = times_[page.page].read;
     time.begin = Clock::now();
     stage_page(cloud_, cells_of(page), engine_.page(page.slot));
@@ -102,6 +107,7 @@ class Pipeline {
   }
 
   void search(PageInFlight page) {
+    const HandOver scope(this);
     PageTimes& times = times_[page.page];
     engine_.start(page.slot, pages_[page.page].shape);
     const PageAnswer found = engine_.finish(page.slot);

@@ -1,4 +1,5 @@
 #include <malloc.h>
+#include <signal.h>
 #include <spdlog/spdlog.h>
 
 #include <exception>
@@ -62,6 +63,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   clearway::tool::start_log();
   clearway::install_map_fault_handler(kResource);
+  ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error like a full disk
   // Large blocks go back to the system when freed, so that --memory bounds what it sees.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/hand_over.hpp"
 #include "core/stopwatch.hpp"
 #include "io/convert/count.hpp"
 #include "io/convert/distribute.hpp"
@@ -136,10 +137,12 @@ void write_cells(const Distribution& distribution, const SplitTree& tree, const 
   using Flying = std::shared_ptr<UnitInFlight>;
   std::size_t next = 0;
   const auto number_of_next = [&](tbb::flow_control& flow) {
+    const HandOver scope(&next);
     if (next == tree.units().size()) flow.stop();
     return next++;
   };
   const auto order_and_pack = [&](std::size_t unit) {
+    const HandOver scope(&next);
     auto flying = std::make_shared<UnitInFlight>();
     flying->rest.emplace(distribution, unit, tree, lattice, metadata.quantisation,
                          metadata.cell_points);
@@ -147,14 +150,18 @@ void write_cells(const Distribution& distribution, const SplitTree& tree, const 
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;
   };
+  const auto write = [&](const Flying& unit) {
+    const HandOver scope(&next);
+    write_unit(*unit, writer, progress);
+  };
   progress.begin("partition", metadata.point_count, "points");
+  { const HandOver begin(&next); }
   tbb::parallel_pipeline(
       units_in_flight,
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, number_of_next) &
           tbb::make_filter<std::size_t, Flying>(tbb::filter_mode::parallel, order_and_pack) &
-          tbb::make_filter<Flying, void>(
-              tbb::filter_mode::serial_in_order,
-              [&](const Flying& unit) { write_unit(*unit, writer, progress); }));
+          tbb::make_filter<Flying, void>(tbb::filter_mode::serial_in_order, write));
+  const HandOver end(&next);
   progress.end();
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/hand_over.hpp"
 #include "io/convert/points_hash.hpp"
 
 namespace clearway {
@@ -124,10 +125,12 @@ void for_each_batch(EnvironmentSource& environment, int threads,
                     const std::function<void(const QuantaBatch&)>& in_order,
                     const std::function<void(const QuantaBatch&)>& work) {
   using Batch = std::shared_ptr<QuantaBatch>;
+  { const HandOver begin(&work); }
   tbb::parallel_pipeline(
       2 * static_cast<std::size_t>(threads),
       tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
                                     [&](tbb::flow_control& flow) {
+                                      const HandOver scope(&work);
                                       auto batch = std::make_shared<QuantaBatch>();
                                       if (environment.read(*batch)) {
                                         in_order(*batch);
@@ -136,8 +139,11 @@ void for_each_batch(EnvironmentSource& environment, int threads,
                                       }
                                       return batch;
                                     }) &
-          tbb::make_filter<Batch, void>(tbb::filter_mode::parallel,
-                                        [&](const Batch& batch) { work(*batch); }));
+          tbb::make_filter<Batch, void>(tbb::filter_mode::parallel, [&](const Batch& batch) {
+            const HandOver scope(&work);
+            work(*batch);
+          }));
+  const HandOver end(&work);
 }
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/error.hpp"
+#include "core/hand_over.hpp"
 
 namespace clearway {
 namespace {
@@ -121,24 +122,30 @@ Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
 
   progress.begin("distribute", points, "points");
   environment.rewind();
+  { const HandOver begin(&writer); }
   using Batch = std::shared_ptr<QuantaBatch>;
   using Grouped = std::shared_ptr<GroupedBatch>;
   tbb::parallel_pipeline(
       2 * static_cast<std::size_t>(threads),
       tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
                                     [&](tbb::flow_control& flow) {
+                                      const HandOver scope(&writer);
                                       auto batch = std::make_shared<QuantaBatch>();
                                       if (!environment.read(*batch)) flow.stop();
                                       return batch;
                                     }) &
-          tbb::make_filter<Batch, Grouped>(
-              tbb::filter_mode::parallel,
-              [&](const Batch& batch) { return std::make_shared<GroupedBatch>(group(*batch)); }) &
+          tbb::make_filter<Batch, Grouped>(tbb::filter_mode::parallel,
+                                           [&](const Batch& batch) {
+                                             const HandOver scope(&writer);
+                                             return std::make_shared<GroupedBatch>(group(*batch));
+                                           }) &
           tbb::make_filter<Grouped, void>(tbb::filter_mode::serial_in_order,
                                           [&](const Grouped& batch) {
+                                            const HandOver scope(&writer);
                                             writer.append(*batch);
                                             progress.advance(batch->points.size());
                                           }));
+  const HandOver end(&writer);
   writer.finish();
   progress.end();
   return out;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/hand_over.hpp"
 #include "core/kd_order.hpp"
 #include "core/macros.hpp"
 
@@ -131,7 +132,15 @@ class BucketOrder {
       order(other + left, from + left, result + left, n - left);
     };
     if (n >= kParallelFrom) {
-      tbb::parallel_invoke(order_left, order_right);
+      { const HandOver begin(&n); }
+      const auto handed_over = [&](const auto& side) {
+        return [&] {
+          const HandOver scope(&n);
+          side();
+        };
+      };
+      tbb::parallel_invoke(handed_over(order_left), handed_over(order_right));
+      const HandOver end(&n);
     } else {
       order_left();
       order_right();

@@ -1,0 +1,17 @@
+// Any bytes, read as LAS: from a file and from a pipe.
+#include "io/las_reader.hpp"
+#include "read_points.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile input({data, size});
+  may_refuse([&] { read_twice(*read_las(InputBuffer(input.open(), InputBuffer::Access::kSeek))); });
+  may_refuse([&] {
+    const auto reader = open_las_stream(input.open());
+    for (PointBatch batch; reader->read(batch);) {
+    }
+  });
+  return 0;
+}

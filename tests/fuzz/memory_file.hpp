@@ -1,0 +1,48 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/error.hpp"
+#include "io/file.hpp"
+
+namespace clearway::test {
+
+/// A file of these bytes, in memory where the system has a folder for that. One at a time.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::span<const std::uint8_t> bytes) {
+    File::create(path_).write(std::as_bytes(bytes));
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::unlink(path_.c_str()); }
+
+  const std::filesystem::path& path() const { return path_; }
+  /// At the first byte.
+  File open() const { return File::open_for_reading(path_); }
+
+ private:
+  static std::filesystem::path folder() {
+    const std::filesystem::path shared = "/dev/shm";
+    return std::filesystem::is_directory(shared) ? shared : std::filesystem::temp_directory_path();
+  }
+
+  std::filesystem::path path_ = folder() / ("clearway-fuzz-" + std::to_string(::getpid()));
+};
+
+/// Runs `read`, which may refuse its input in the three ways that the program answers with an exit
+/// code; anything else that it throws is a finding.
+template <typename Read>
+void may_refuse(Read read) {
+  try {
+    read();
+  } catch (const Error&) {
+  }
+}
+
+}  // namespace clearway::test

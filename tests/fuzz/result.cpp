@@ -1,0 +1,17 @@
+// Any bytes as a result.
+#include "io/compare_results.hpp"
+#include "io/result_rows.hpp"
+#include "io/verify_result.hpp"
+#include "memory_file.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile input({data, size});
+  may_refuse([&] {
+    NoProgress progress;
+    verify_result(ResultReader(input.path()), progress);
+  });
+  return 0;
+}

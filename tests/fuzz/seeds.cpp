@@ -1,0 +1,135 @@
+// Writes small inputs of every kind, one folder a fuzz target: fuzz_seeds FOLDER.
+#include <fstream>
+#include <iostream>
+
+#include "core/packed_chunk.hpp"
+#include "io/las_bytes.hpp"
+#include "support/clouds.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+/// The seeds of one target.
+class Seeds {
+ public:
+  Seeds(const std::filesystem::path& folder, const std::string& target) : folder_(folder / target) {
+    std::filesystem::create_directories(folder_);
+  }
+  std::filesystem::path next() { return folder_ / std::to_string(count_++); }
+  void add(const std::string& bytes) { put_bytes(next(), bytes); }
+
+ private:
+  std::filesystem::path folder_;
+  int count_ = 0;
+};
+
+void write_las_seeds(Seeds seeds) {
+  const std::string keys("\1\0\1\0\0\0\1\0\0\4\0\0\1\0\1\0", 16);
+  for (unsigned format = 0; format <= 10; ++format) {
+    LasBytes las;
+    las.minor = format < 6 ? format < 4 ? 2 : 3 : 4;
+    las.format = format;
+    las.extra_bytes = format % 3;
+    las.vlrs = {{"LASF_Projection", 34735, keys}, {"liblas", 2112, "LOCAL_CS[\"a\"]"}};
+    if (las.minor == 3) las.global_encoding = 2;
+    if (las.minor >= 3) {
+      las.evlrs = {
+          {"LASF_Projection", 2112, "PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"US survey foot\",0.3048]]"}};
+    }
+    seeds.add(las.build());
+  }
+}
+
+void write_ply_seeds(Seeds seeds) {
+  const auto header = [](const std::string& format) {
+    return "ply\nformat " + format +
+           " 1.0\ncomment c\nelement a 2\nproperty list uchar int n\nelement vertex 2\n"
+           "property float x\nproperty double y\nproperty short z\nproperty list char uchar l\n"
+           "end_header\n";
+  };
+  seeds.add(header("binary_little_endian") + std::string(100, '\1'));
+  seeds.add(header("binary_big_endian") + std::string(100, '\1'));
+  seeds.add(header("ascii") + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n");
+  const std::string plain =
+      "element vertex 2\nproperty uint8 x\nproperty int32 y\nproperty float64 z\nend_header\n";
+  seeds.add("ply\nformat ascii 1.0\n" + plain + "1 2 3\n4 -5 6e-1\n");
+  seeds.add("ply\nformat binary_little_endian 1.0\n" + plain + std::string(26, '\2'));
+}
+
+void write_text_seeds(Seeds xyz, Seeds trajectory) {
+  xyz.add("2\n1 2 3 4\n5 6 7 8\n");
+  xyz.add("# c\n1.5;-2e3;+3\n4;5;6;7\n");
+  xyz.add("\xEF\xBB\xBF//X Z Y\n1 2 3\nnan inf 1\n");
+  xyz.add("a,z,y,x\n1,2,3,4\r\n5,6,7,8");
+  const std::string matrix = "1 0 0 5 0 1 0 6 0 0 1 7";
+  trajectory.add(std::string(1, '\0') + "# c\n" + matrix + "\n" + matrix + "\n");
+  trajectory.add("\1" + matrix + " 0 0 0 1\n");
+  trajectory.add(
+      "\2"
+      "1.5 1 2 3 0 0 0 1\n");
+  trajectory.add("\3#timestamp [ns], p_x\n1403636579758555392,1,2,3,1,0,0,0\n");
+  trajectory.add("\4t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n");
+  trajectory.add("\4x;y;z;r00;r01;r02;r10;r11;r12;r20;r21;r22\n1;2;3;1;0;0;0;1;0;0;0;1\n");
+}
+
+template <typename Value>
+void add_chunk(Seeds& seeds, const std::vector<Value>& values) {
+  std::vector<std::byte> bytes;
+  append_packed_chunk(std::span<const Value>(values), bytes);
+  const std::size_t count = values.size() - 1;
+  seeds.add(std::string{static_cast<char>(count % 256), static_cast<char>(count / 256)} +
+            std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+void write_chunk_seeds(Seeds seeds) {
+  for (const unsigned bits : {0u, 1u, 5u, 8u, 17u, 31u, 32u}) {
+    std::vector<std::int32_t> values{0};
+    for (std::uint32_t i = 1; i < 70; ++i) {
+      values.push_back(static_cast<std::int32_t>(static_cast<std::uint32_t>(
+          (std::uint64_t{i} * 0x9E3779B97F4A7C15 >> 32) & ((std::uint64_t{1} << bits) - 1))));
+    }
+    add_chunk(seeds, values);
+    add_chunk(seeds, std::vector<std::uint64_t>(values.begin(), values.end()));
+  }
+}
+
+void write_store_seeds(Seeds seeds, Seeds values) {
+  const ScratchFolder folder;
+  for (const std::size_t points : {0, 1, 65, 300}) {
+    write_las(folder / "a.las", cube_cloud(points, -4000, 4000, 3));
+    convert_quietly(conversion_of({folder / "a.las"}, seeds.next()));
+  }
+  for (char what = 0; what < 27; ++what) {
+    values.add(std::string(1, what) + std::string("\1\0\0\0\0\0\0\0\1\0", 10));
+  }
+}
+
+void write_result_seeds(Seeds seeds) {
+  for (const bool first_pose : {false, true}) {
+    for (const std::size_t rows : {0, 1, 20}) {
+      ResultHeader header = sample_header(first_pose);
+      write_result(seeds.next(), header, sample_rows(header, rows));
+      header.clearance = 0.5;
+      write_result(seeds.next(), header, sample_rows(header, rows), 1000,
+                   sample_clearances(header, rows));
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: fuzz_seeds FOLDER\n";
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  write_las_seeds({folder, "las"});
+  write_ply_seeds({folder, "ply"});
+  write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
+  write_chunk_seeds({folder, "packed_chunk"});
+  write_store_seeds({folder, "store"}, {folder, "store_values"});
+  write_result_seeds({folder, "result"});
+}
