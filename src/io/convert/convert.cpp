@@ -121,6 +121,7 @@ struct UnitInFlight {
 void write_unit(UnitInFlight& unit, StoreWriter& writer, Progress& progress) {
   while (!unit.packed.empty()) {
     for (const PackedCell& cell : unit.packed) {
+      throw_if_stopped(progress);
       writer.append(cell);
       progress.advance(cell.cell.count);
     }
@@ -136,6 +137,7 @@ void write_cells(const Distribution& distribution, const SplitTree& tree, const 
   using Flying = std::shared_ptr<UnitInFlight>;
   std::size_t next = 0;
   const auto number_of_next = [&](tbb::flow_control& flow) {
+    throw_if_stopped(progress);
     if (next == tree.units().size()) flow.stop();
     return next++;
   };

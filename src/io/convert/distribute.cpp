@@ -127,6 +127,7 @@ Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
       2 * static_cast<std::size_t>(threads),
       tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
                                     [&](tbb::flow_control& flow) {
+                                      throw_if_stopped(progress);
                                       auto batch = std::make_shared<QuantaBatch>();
                                       if (!environment.read(*batch)) flow.stop();
                                       return batch;
