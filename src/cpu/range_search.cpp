@@ -28,8 +28,7 @@ double longest_side(const Box& box) {
 }  // namespace
 
 RangeSearch::RangeSearch(const EnvironmentTree& environment, SettledPoints& settled,
-                         const ModelSpheres& model, const Question& question,
-                         PoseMarkLog& marks)
+                         const ModelSpheres& model, const Question& question, PoseMarkLog& marks)
     : environment_(environment),
       settled_(settled),
       model_(model),

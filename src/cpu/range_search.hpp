@@ -74,9 +74,8 @@ class RangeSearch {
     marks_.add(slot / kBlockPoints, std::uint64_t{1} << slot % kBlockPoints, pose);
   }
   void mark_node(const EnvironmentNode& node, std::uint32_t pose) {
-    settled_.mark_node(node, pose, [&](std::uint64_t word, std::uint64_t bits) {
-      marks_.add(word, bits, pose);
-    });
+    settled_.mark_node(
+        node, pose, [&](std::uint64_t word, std::uint64_t bits) { marks_.add(word, bits, pose); });
   }
   void put_point(std::size_t to, Columns from, std::size_t i, std::uint64_t slot) {
     x_[to] = from.x[i];

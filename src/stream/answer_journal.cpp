@@ -73,9 +73,9 @@ AnswerJournal::AnswerJournal(const std::filesystem::path& path, const JournalIde
       read_(read),
       finished_cells_(cloud.cells().size()),
       finished_poses_(question.poses.size()),
-      writer_((note_finished(),
-               read != nullptr ? JournalWriter::resume(path, *read, interval_seconds)
-                               : JournalWriter::create(path, identity, interval_seconds))) {}
+      writer_((note_finished(), read != nullptr
+                                    ? JournalWriter::resume(path, *read, interval_seconds)
+                                    : JournalWriter::create(path, identity, interval_seconds))) {}
 
 void AnswerJournal::note_finished() {
   if (read_ == nullptr) return;

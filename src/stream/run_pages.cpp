@@ -133,8 +133,7 @@ class Pipeline {
 
 Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                  std::span<const PlannedPage> pages, PageEngine& engine, const Question& question,
-                 int threads, Progress& progress, StageTimes& times,
-                 AnswerJournal* journal) {
+                 int threads, Progress& progress, StageTimes& times, AnswerJournal* journal) {
   Answer answer{HitSet(cloud.slot_count(), question.first_pose),
                 ClearanceSet(question.clearance > 0 ? cloud.slot_count() : 0)};
   if (journal != nullptr) journal->restore(answer);

@@ -17,8 +17,8 @@ namespace clearway {
 /// collects the answers, `threads` (0: all) pages at a time; with a device that works by itself,
 /// threads beyond the cores wait for it. Progress counts points. What a stage throws ends the run:
 /// no page is started any more, those under way are finished, then it is thrown on; likewise, with
-/// Interrupted, when the progress asks to stop. The pages fit the engine's slots. The journal, where
-/// there is one, keeps the answer of every page; what it held before is part of the answer.
+/// Interrupted, when the progress asks to stop. The pages fit the engine's slots. The journal,
+/// where there is one, keeps the answer of every page; what it held before is part of the answer.
 Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                  std::span<const PlannedPage> pages, PageEngine& engine, const Question& question,
                  int threads, Progress& progress, StageTimes& times,

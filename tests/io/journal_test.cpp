@@ -1,7 +1,7 @@
 #include "io/journal.hpp"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <thread>
 
 #include "core/error.hpp"
@@ -29,8 +29,7 @@ std::vector<std::uint64_t> numbers_in(const JournalReader& journal) {
   std::vector<std::uint64_t> numbers;
   journal.for_each([&numbers](JournalPayload payload) {
     const std::uint64_t number = payload.take_count();
-    CHECK(payload.take_text() ==
-          std::string(number % 40, static_cast<char>('a' + number % 26)));
+    CHECK(payload.take_text() == std::string(number % 40, static_cast<char>('a' + number % 26)));
     CHECK(payload.at_end());
     numbers.push_back(number);
   });
@@ -173,7 +172,9 @@ TEST_CASE("a payload is not read past its end") {
   CHECK_THROWS_AS(payload("").take_count(), InputError);
   CHECK_THROWS_AS(payload("\x80").take_count(), InputError);
   CHECK_THROWS_AS(payload("abc").take<std::uint32_t>(), InputError);
-  const std::string long_text = "\x05" "abcd";
+  const std::string long_text =
+      "\x05"
+      "abcd";
   CHECK_THROWS_WITH(payload(long_text).take_text(), Contains("here"));
   CHECK_THROWS_AS(payload(ten).take_count(), InputError);
   const std::string most = nine + '\1', too_much = nine + '\2';

@@ -62,9 +62,8 @@ class JournalledScene {
   std::optional<Answer> sweep(std::uint64_t most_pages) {
     const auto run = [&](AnswerJournal& journal, Progress& progress) {
       std::vector<PlannedCell> cells = scene.cells;
-      std::erase_if(cells, [&](const PlannedCell& cell) {
-        return journal.cell_finished(cell.cell);
-      });
+      std::erase_if(cells,
+                    [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
       const SlotLayout layout{3, smallest_page_bytes(scene.cloud, scene.cells), 1};
       SweepEngine engine(scene.cloud, scene.filter, layout);
       StageTimes times;
@@ -189,8 +188,7 @@ TEST_CASE("a kdtree search stopped again and again gives the answer of one that 
 TEST_CASE("a kdtree search goes on from a journal cut at any record") {
   JournalledScene s(true, 0);
   NoProgress progress;
-  const Answer expected{run_kdtree(s.scene.cloud, s.scene.question, {2}, progress),
-                        ClearanceSet()};
+  const Answer expected{run_kdtree(s.scene.cloud, s.scene.question, {2}, progress), ClearanceSet()};
   REQUIRE(s.kdtree(kNoStop));
   const std::string whole = bytes_of(s.path);
   std::uint64_t records = 0;
@@ -234,8 +232,8 @@ TEST_CASE("records that are not of the cloud and the question are refused") {
     return std::string(reinterpret_cast<const char*>(&squared), sizeof squared);
   };
   CHECK_NOTHROW(open_with(clearances, clearance + distance(0.01) + '\5'));
-  for (const double squared : {-1.0, std::numeric_limits<double>::quiet_NaN(),
-                               std::numeric_limits<double>::infinity()}) {
+  for (const double squared :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     refused(clearances, clearance + distance(squared) + '\5', "a distance that is none");
   }
 }

@@ -34,7 +34,8 @@ struct EngineReport {
   double context_seconds = 0;           ///< wall clock, like all of them
   double plan_seconds = 0, field_seconds = 0;
   StageTimes stages;
-  std::uint64_t pages = 0, page_bytes = 0;  ///< pages run, and the largest they may be
+  std::uint64_t resumed_cells = 0, resumed_poses = 0;  ///< known from a journal
+  std::uint64_t pages = 0, page_bytes = 0;             ///< pages run, and the largest they may be
   std::uint32_t slots = 0;
   std::uint64_t needed_bytes = 0;       ///< memory that the run takes at the most
   std::uint64_t write_bytes = 0;        ///< of --memory, what is left to write the answer with
@@ -47,10 +48,10 @@ struct EngineReport {
 using OpenJournal =
     std::function<AnswerJournal&(const std::string& engine, const std::string& device)>;
 
-/// Answers the question with the engine and device chosen, as far as the journal does not. Throws UsageError where that engine
-/// cannot, ResourceError where the device is not there or, before cells are read, where a memory
-/// bound is too little; InputError for a damaged cell or a journal that is refused; Interrupted
-/// when the progress asks to stop.
+/// Answers the question with the engine and device chosen, as far as the journal does not. Throws
+/// UsageError where that engine cannot, ResourceError where the device is not there or, before
+/// cells are read, where a memory bound is too little; InputError for a damaged cell or a journal
+/// that is refused; Interrupted when the progress asks to stop.
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
                   const OpenJournal& open_journal, Progress& progress, EngineReport& report);
 

@@ -131,8 +131,11 @@ void run_info(const Options& options) {
 
 void add_info(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("info", "Print what is in a store, a result or a journal");
-  command->add_option("FILE", options->file, "Store, result or journal")->type_name("FILE")->required();
+  CLI::App* command =
+      program.add_subcommand("info", "Print what is in a store, a result or a journal");
+  command->add_option("FILE", options->file, "Store, result or journal")
+      ->type_name("FILE")
+      ->required();
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer("Lengths in the environment's unit (metres).\nExample: clearway info site.h5");
   command->callback([options] { run_info(*options); });

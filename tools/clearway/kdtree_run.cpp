@@ -18,7 +18,8 @@ Answer run_kdtree_engine(const Store& store, const Question& question, const Eng
   check_memory(report.needed_bytes, options.memory_bytes);
   report.write_bytes = options.memory_bytes - kept - answer_bytes(store, question);
   const Stopwatch compute;
-  HitSet hits = run_kdtree(store, question, {.threads = options.threads, .journal = &journal}, progress);
+  HitSet hits =
+      run_kdtree(store, question, {.threads = options.threads, .journal = &journal}, progress);
   report.stages.compute = report.stages.total = compute.seconds();
   return {std::move(hits), ClearanceSet()};
 }

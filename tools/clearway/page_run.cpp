@@ -146,8 +146,8 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
   report.pages = pages.size();
   report.page_bytes = budget.layout().page_bytes;
   report.slots = engine->slots();
-  Answer answer =
-      run_pages(store, plan.cells, pages, *engine, question, kind.threads, progress, report.stages, &journal);
+  Answer answer = run_pages(store, plan.cells, pages, *engine, question, kind.threads, progress,
+                            report.stages, &journal);
   kind.finished(plan, *engine, report);
   return answer;
 }

@@ -86,6 +86,8 @@ nlohmann::ordered_json report_of(const Inputs& inputs, const Answer& answer,
           {"cells_total", inputs.store.cells().size()},
           {"cells_read", touched.cells},
           {"bytes_read", touched.bytes},
+          {"resumed_cells", engine.resumed_cells},
+          {"resumed_poses", engine.resumed_poses},
           {"pages", engine.pages},
           {"page_bytes", engine.page_bytes},
           {"slots", engine.slots},
@@ -128,10 +130,15 @@ void run(const RunOptions& options) {
   seconds.inputs = total.seconds();
   EngineReport engine;
   throw_if_stopped(progress);
-  const auto open_journal = [&](const std::string& name, const std::string& device)
-      -> AnswerJournal& { return journal.open(inputs.store, question, header, name, device); };
+  const auto open_journal = [&](const std::string& name,
+                                const std::string& device) -> AnswerJournal& {
+    return journal.open(inputs.store, question, header, name, device);
+  };
   const Answer answer =
       run_engine(inputs.store, question, options.engine, open_journal, progress, engine);
+
+  engine.resumed_cells = journal.earlier().cells;
+  engine.resumed_poses = journal.earlier().poses;
 
   const Stopwatch write;
   write_answer(inputs.store, answer, header, output.partial(), engine.write_bytes, progress);

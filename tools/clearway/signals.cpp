@@ -19,7 +19,8 @@ std::string last_words;
 // Handlers call what POSIX lists as async-signal-safe, and lock-free atomics.
 
 void end_now(int) {
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, last_words.data(), last_words.size());
+  [[maybe_unused]] const auto written =
+      ::write(STDERR_FILENO, last_words.data(), last_words.size());
   ::_exit(kInterrupted);
 }
 

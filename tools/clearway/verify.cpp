@@ -48,12 +48,14 @@ bool run_verify(const std::filesystem::path& file) {
 
 void add_verify(CLI::App& program, int& exit_code) {
   auto file = std::make_shared<std::filesystem::path>();
-  CLI::App* command =
-      program.add_subcommand("verify", "Re-read and check everything in a store, a result or a journal");
+  CLI::App* command = program.add_subcommand(
+      "verify", "Re-read and check everything in a store, a result or a journal");
   command->add_option("FILE", *file, "Store, result or journal")->type_name("FILE")->required();
   command->footer(
-      "Names every damaged cell (at most 20), of a journal the first record that is not whole. Exit\n"
-      "code 0: sound; 1: a fault, or not a complete store or result; 4: the file cannot be opened.\n"
+      "Names every damaged cell (at most 20), of a journal the first record that is not whole. "
+      "Exit\n"
+      "code 0: sound; 1: a fault, or not a complete store or result; 4: the file cannot be "
+      "opened.\n"
       "Example: clearway verify site.h5");
   command->callback([file, &exit_code] { exit_code = run_verify(*file) ? 0 : 1; });
 }
