@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <string>
+#include <utility>
 
 namespace clearway {
 namespace {
@@ -65,7 +66,7 @@ struct PoseRange {
 
 }  // namespace
 
-AnswerJournal::AnswerJournal(const std::filesystem::path& path, const JournalIdentity& identity,
+AnswerJournal::AnswerJournal(std::filesystem::path path, JournalIdentity identity,
                              const JournalReader* read, const PackedCloud& cloud,
                              const Question& question, double interval_seconds)
     : cloud_(cloud),
@@ -73,9 +74,11 @@ AnswerJournal::AnswerJournal(const std::filesystem::path& path, const JournalIde
       read_(read),
       finished_cells_(cloud.cells().size()),
       finished_poses_(question.poses.size()),
-      writer_((note_finished(), read != nullptr
-                                    ? JournalWriter::resume(path, *read, interval_seconds)
-                                    : JournalWriter::create(path, identity, interval_seconds))) {}
+      path_(std::move(path)),
+      identity_(std::move(identity)),
+      interval_seconds_(interval_seconds) {
+  note_finished();
+}
 
 void AnswerJournal::note_finished() {
   if (read_ == nullptr) return;
@@ -195,6 +198,18 @@ bool AnswerJournal::poses_finished(std::uint32_t first, std::uint32_t count) con
 
 // ---- appending
 
+void AnswerJournal::append(JournalRecord& record) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!writer_) {
+      writer_.emplace(read_ != nullptr
+                          ? JournalWriter::resume(path_, *read_, interval_seconds_)
+                          : JournalWriter::create(path_, identity_, interval_seconds_));
+    }
+  }
+  writer_->append(record);
+}
+
 void AnswerJournal::append_page(std::span<const PlannedCell> cells, const PageAnswer& answer) {
   JournalRecord record;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -210,7 +225,7 @@ void AnswerJournal::append_page(std::span<const PlannedCell> cells, const PageAn
     if (question_.clearance > 0) {
       put_clearances(record, part_of_cell(answer.clearances, i, cloud_.cell_slots()));
     }
-    writer_.append(record);
+    append(record);
   }
 }
 
@@ -238,7 +253,7 @@ void AnswerJournal::append_marks(std::span<PoseMark> marks) {
     if (question_.first_pose) record.put_count(mark.pose);
     word = mark.word;
   }
-  writer_.append(record);
+  append(record);
 }
 
 void AnswerJournal::append_finished_poses(std::uint32_t first, std::uint32_t count) {
@@ -246,7 +261,7 @@ void AnswerJournal::append_finished_poses(std::uint32_t first, std::uint32_t cou
   record.put(kFinishedPoses);
   record.put_count(first);
   record.put_count(count);
-  writer_.append(record);
+  append(record);
 }
 
 std::uint64_t AnswerJournal::most_bytes(const PackedCloud& cloud, const Question& question,

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,12 +20,11 @@ namespace clearway {
 /// work on pages, marks and finished poses from the others (docs/journal.md).
 class AnswerJournal final : public PoseJournal {
  public:
-  /// A new file, or, where `read` is given, the one that it read, to go on with. Throws InputError
-  /// naming the first record that cannot be of this cloud and question. All outlive it but path
-  /// and identity.
-  AnswerJournal(const std::filesystem::path& path, const JournalIdentity& identity,
-                const JournalReader* read, const PackedCloud& cloud, const Question& question,
-                double interval_seconds);
+  /// A new file, made by the first append, or, where `read` is given, the one that it read, to go
+  /// on with. Throws InputError naming the first record that cannot be of this cloud and question.
+  /// All outlive it but path and identity.
+  AnswerJournal(std::filesystem::path path, JournalIdentity identity, const JournalReader* read,
+                const PackedCloud& cloud, const Question& question, double interval_seconds);
 
   /// Adds what the file held to `answer`, of the same cloud and question.
   void restore(Answer& answer) const { replay_all(&answer.hits, &answer.clearances); }
@@ -43,6 +44,7 @@ class AnswerJournal final : public PoseJournal {
 
  private:
   void note_finished();
+  void append(JournalRecord& record);
   void replay_all(HitSet* hits, ClearanceSet* clearances) const;
   void replay_cell(JournalPayload& payload, HitSet* hits, ClearanceSet* clearances) const;
   void replay_marks(JournalPayload& payload, HitSet* hits) const;
@@ -55,7 +57,11 @@ class AnswerJournal final : public PoseJournal {
   const JournalReader* read_;
   std::vector<bool> finished_cells_;
   std::vector<bool> finished_poses_;
-  JournalWriter writer_;
+  std::filesystem::path path_;
+  JournalIdentity identity_;
+  double interval_seconds_;
+  std::mutex mutex_;
+  std::optional<JournalWriter> writer_;
 };
 
 /// How far the run of a journal came. Throws InputError for a record that is none of a run.

@@ -27,8 +27,8 @@ namespace {
 class Process {
  public:
   Process(const std::string& arguments, std::filesystem::path log) : log_(std::move(log)) {
-    std::string command =
-        std::string("exec '") + CLEARWAY_PROGRAM + "' " + arguments + " >'" + log_.string() + "' 2>&1";
+    std::string command = std::string("exec '") + CLEARWAY_PROGRAM + "' " + arguments + " >'" +
+                          log_.string() + "' 2>&1";
     char sh[] = "/bin/sh", c[] = "-c";
     char* words[] = {sh, c, command.data(), nullptr};
     if (::posix_spawn(&pid_, sh, nullptr, nullptr, words, environ) != 0) {
@@ -75,8 +75,8 @@ class SlowHall {
  private:
   SlowHall() {
     const std::string folder = quoted(folder_ / "");
-    if (run_program(folder_, "scene hall --points 500000 --model-points 10000 --poses 3000 -o " +
-                                 folder)
+    if (run_program(folder_,
+                    "scene hall --points 500000 --model-points 10000 --poses 3000 -o " + folder)
                 .exit_code != 0 ||
         run_program(folder_, "convert " + path("environment.las") + " --cell-points 500 -o " +
                                  path("site.h5"))
@@ -92,9 +92,9 @@ struct Work {
   std::string command(const std::string& options, const std::string& radius = "0.1",
                       const std::string& engine = "grid") const {
     return "run --env " + hall.path("site.h5") + " --model " + hall.path("model.ply") +
-           " --trajectory " + hall.path("trajectory.txt") +
-           " --engine " + engine + " --device cpu --first-pose --radius " + radius + " -o " +
-           quoted(output) + " " + options;
+           " --trajectory " + hall.path("trajectory.txt") + " --engine " + engine +
+           " --device cpu --first-pose --radius " + radius + " -o " + quoted(output) + " " +
+           options;
   }
   Outcome run(const std::string& options, const std::string& radius = "0.1",
               const std::string& engine = "grid") const {
@@ -132,8 +132,8 @@ struct Work {
 
   const SlowHall& hall = SlowHall::get();
   ScratchFolder folder;
-  std::filesystem::path output = (std::filesystem::create_directory(folder / "out"),
-                                  folder / "out" / "out.h5");
+  std::filesystem::path output =
+      (std::filesystem::create_directory(folder / "out"), folder / "out" / "out.h5");
   std::filesystem::path journal = journal_of(output);
 };
 
@@ -259,6 +259,14 @@ TEST_CASE("an existing result stays until a resumed run replaces it, and only wh
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.err, Contains("is the answer already"));
   CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("a run that is refused leaves no journal") {
+  const Work work;
+  check_refused(work.run("--memory 1K"), 4, "too little");
+  CHECK(work.files().empty());
+  check_refused(work.run("--between-poses"), 2, "--engine sweep");
+  CHECK(work.files().empty());
 }
 
 TEST_CASE("what is no journal is left alone") {

@@ -1,4 +1,5 @@
-// Reads the pages that a run on a GPU would read, and does nothing with them; prints one JSON object.
+// Reads the pages that a run on a GPU would read, and does nothing with them; prints one JSON
+// object.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -57,9 +58,8 @@ void measure(const Options& options) {
   const tool::QuestionTrees trees(question);
   const tool::SearchPlan plan(store, question, trees, {}, options.threads);
   const std::uint64_t cell_bytes = 6 * std::uint64_t{store.cell_points()} + 4096;
-  const SlotLayout layout{options.slots,
-                          std::max(plan.least_page_bytes(), options.cells * cell_bytes),
-                          options.cells};
+  const SlotLayout layout{
+      options.slots, std::max(plan.least_page_bytes(), options.cells * cell_bytes), options.cells};
   const std::vector<PlannedPage> pages =
       paginate(store, plan.cells, layout.page_bytes, layout.cells);
   NoEngine engine(store, question, layout);

@@ -87,7 +87,7 @@ RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
     return;
   }
   JournalReader read(path_);
-  if (!read.identity()) {
+  if (!read.identity() || read.records() == 0) {
     spdlog::info("{}: nothing in it yet, starts afresh", path_.string());
     remove();
     return;
