@@ -74,7 +74,8 @@ def torment(name, command, reference, output, kills, draw):
         output.unlink(missing_ok=True)
         while True:
             kill = draw.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM])
-            was_killed, text = killed(command(["--resume"], output), draw.random() * usual, kill)
+            delay = draw.random() * 1.3 * usual
+            was_killed, text = killed(command(["--resume"], output), delay, kill)
             made += was_killed
             inherited += "resumes with" in text and "resumes with 0 " not in text
             if not was_killed:

@@ -1,6 +1,8 @@
 // Journals, --resume, --force and signals of the program.
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -345,6 +347,25 @@ TEST_CASE("a conversion that is asked to stop leaves nothing behind") {
   }
   CHECK(stopped);
   CHECK(run_program(work.folder, command + " --resume").exit_code == 0);
+}
+
+TEST_CASE("what does not come to an end is given up within 5 seconds") {
+  const Work work;
+  const auto pipe = work.folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const int writer = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);  // never writes
+  REQUIRE(writer >= 0);
+  Process process("convert - -o " + quoted(work.output) + " <" + quoted(pipe),
+                  work.folder / "log.txt");
+  while (work.files().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the handlers are in place
+  const auto begin = steady_clock::now();
+  process.send(SIGTERM);
+  CHECK(process.wait() == 5);
+  CHECK(steady_clock::now() - begin < std::chrono::seconds(5));
+  CHECK_THAT(process.log(), Contains("interrupted before"));
+  CHECK(work.files() == Names{"out.h5.partial"});
+  ::close(writer);
 }
 
 TEST_CASE("options of the journal that make no sense are refused") {
