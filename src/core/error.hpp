@@ -26,4 +26,9 @@ struct ResourceError : Error {
   using Error::Error;
 };
 
+/// Stopped on request (core/progress.hpp), with nothing lost that a journal holds. Exit code 5.
+struct Interrupted : Error {
+  using Error::Error;
+};
+
 }  // namespace clearway

@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/error.hpp"
+
 namespace clearway {
 
-/// Receives the progress of a long operation. advance() may be called from several threads.
+/// Receives the progress of a long operation, and may ask it to stop. advance() and
+/// stop_requested() may be called from several threads.
 class Progress {
  public:
   virtual ~Progress() = default;
@@ -13,7 +16,14 @@ class Progress {
   virtual void begin(std::string_view stage, std::uint64_t total, std::string_view unit) = 0;
   virtual void advance(std::uint64_t units) = 0;
   virtual void end() = 0;
+  /// Whether the operation shall finish what is in flight, begin nothing more and throw
+  /// Interrupted.
+  virtual bool stop_requested() const { return false; }
 };
+
+inline void throw_if_stopped(const Progress& progress) {
+  if (progress.stop_requested()) throw Interrupted("interrupted");
+}
 
 /// Discards everything.
 class NoProgress final : public Progress {

@@ -75,10 +75,8 @@ class Tasks {
   }
   std::uint32_t sphere(std::uint64_t task) const { return spheres_[task % spheres_.size()]; }
 
-  /// The poses that are complete now that the task is.
-  std::uint32_t finish(std::uint64_t task) {
-    return --parts_left_[task / spheres_.size()] == 0 ? poses(task) : 0;
-  }
+  /// Whether all of the task's poses are complete now that the task is.
+  bool finish(std::uint64_t task) { return --parts_left_[task / spheres_.size()] == 0; }
 
  private:
   static constexpr std::uint64_t kTasksPerThread = 16;
@@ -105,22 +103,31 @@ struct Shared {
   Tasks& tasks;
   Progress& progress;
   KdTreeStatistics& statistics;
+  PoseJournal* journal;
   std::atomic<std::uint64_t> next_task = 0;
   std::mutex mutex{};
   FirstFailure failure{};
 };
 
-/// Takes tasks until none is left or a thread has failed.
+/// Takes tasks until none is left, a thread has failed or the run shall stop.
 void search_tasks(Shared& shared) {
-  RangeSearch search(shared.environment, shared.settled, shared.model, shared.question);
-  while (!shared.failure.happened()) {
+  PoseMarkLog marks(shared.journal);
+  RangeSearch search(shared.environment, shared.settled, shared.model, shared.question, marks);
+  while (!shared.failure.happened() && !shared.progress.stop_requested()) {
     const std::uint64_t task = shared.next_task++;
     if (task >= shared.tasks.count()) break;
-    const PoseTree poses(shared.question.poses, shared.tasks.first_pose(task),
-                         shared.tasks.poses(task), shared.model.box(),
-                         shared.question.between_poses);
-    search.search(poses, shared.model.node(shared.tasks.sphere(task)));
-    if (const std::uint32_t done = shared.tasks.finish(task)) shared.progress.advance(done);
+    const std::uint32_t first = shared.tasks.first_pose(task);
+    const std::uint32_t count = shared.tasks.poses(task);
+    const bool known = shared.journal != nullptr && shared.journal->poses_finished(first, count);
+    if (!known) {
+      const PoseTree poses(shared.question.poses, first, count, shared.model.box(),
+                           shared.question.between_poses);
+      search.search(poses, shared.model.node(shared.tasks.sphere(task)));
+      marks.flush();
+    }
+    if (!shared.tasks.finish(task)) continue;
+    if (shared.journal != nullptr && !known) shared.journal->append_finished_poses(first, count);
+    shared.progress.advance(count);
   }
   const std::lock_guard lock(shared.mutex);
   shared.statistics.tested_searches += search.tested_searches();
@@ -155,7 +162,8 @@ HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTr
     const EnvironmentTree environment(cloud, threads);
     SettledPoints settled(environment, hits);
     Tasks tasks(question, model, threads);
-    Shared shared{question, model, environment, settled, tasks, progress, counted};
+    if (options.journal != nullptr) options.journal->restore(hits);
+    Shared shared{question, model, environment, settled, tasks, progress, counted, options.journal};
 #pragma omp parallel num_threads(threads)
     {
       try {
@@ -165,6 +173,7 @@ HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTr
       }
     }
     shared.failure.rethrow();
+    if (shared.next_task < tasks.count()) throw Interrupted("interrupted");
     counted.allocated_bytes =
         hits.allocated_bytes() + environment.allocated_bytes() + settled.allocated_bytes();
   }

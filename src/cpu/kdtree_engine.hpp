@@ -4,13 +4,15 @@
 
 #include "core/hit_set.hpp"
 #include "core/packed_cloud.hpp"
+#include "core/pose_journal.hpp"
 #include "core/progress.hpp"
 #include "core/question.hpp"
 
 namespace clearway {
 
 struct KdTreeOptions {
-  int threads = 0;  ///< 0: all that OpenMP offers
+  int threads = 0;                 ///< 0: all that OpenMP offers
+  PoseJournal* journal = nullptr;  ///< keeps what is found; what it held before is not searched
 };
 
 struct KdTreeStatistics {
@@ -25,7 +27,8 @@ std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Question& ques
 
 /// Every point of `cloud` that the question's model touches: for every pose and model point a
 /// fixed-range search in the cloud's k-d tree, over the packed points. Poses are searched in
-/// parallel. Progress counts poses. Throws InputError for a damaged cell.
+/// parallel. Progress counts poses; where it asks to stop, the poses begun are finished and
+/// Interrupted is thrown. Throws InputError for a damaged cell.
 /// Source: Schauer et al. (the paper), section 3.1 (kd-CD-simple).
 HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTreeOptions& options,
                   Progress& progress, KdTreeStatistics* statistics = nullptr);

@@ -28,11 +28,12 @@ double longest_side(const Box& box) {
 }  // namespace
 
 RangeSearch::RangeSearch(const EnvironmentTree& environment, SettledPoints& settled,
-                         const ModelSpheres& model, const Question& question)
+                         const ModelSpheres& model, const Question& question, PoseMarkLog& marks)
     : environment_(environment),
       settled_(settled),
       model_(model),
       question_(question),
+      marks_(marks),
       radius_squared_(rounded_product(question.radius, question.radius)),
       cache_(environment.cloud()),
       x_(kDeepest * kBatchPoints),
@@ -117,7 +118,7 @@ bool RangeSearch::dismiss_or_take(const Query& query, const Candidate& candidate
   if (least_squared_distance(candidate.box, query.centre) > query.reach_squared) return true;
   if (query.hit_is_final &&
       greatest_squared_distance(candidate.box, query.centre) < radius_squared_) {
-    settled_.mark_node(candidate.node, query.poses.reference);
+    mark_node(candidate.node, query.poses.reference);
     return true;
   }
   return false;
@@ -170,7 +171,7 @@ void RangeSearch::gather_block(const Query& query, const EnvironmentNode& node) 
   for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
     if (squared_[i] < radius_squared_) {
-      settled_.mark(first_slot + i, query.poses.reference);
+      mark(first_slot + i, query.poses.reference);
       if (query.hit_is_final) continue;
     }
     put_point(gathered_, from, i, first_slot + i);
@@ -194,7 +195,7 @@ void RangeSearch::search_points(const Query& query, Points points) {
     if (squared_[i] > query.reach_squared) continue;
     if (settled_.point_settled(slot, query.poses.first)) continue;
     if (squared_[i] < radius_squared_) {
-      settled_.mark(slot, query.poses.reference);
+      mark(slot, query.poses.reference);
       if (query.hit_is_final) continue;
     }
     put_point(to++, from, i, slot);
@@ -224,7 +225,7 @@ void RangeSearch::test_points(const Query& query, Points points) {
     collide_any(columns(points), points.count, moved, leaf.padded, question_.radius, hit_.data());
   }
   for (std::size_t i = 0; i < points.count; ++i) {
-    if (hit_[i] != 0) settled_.mark(slots_[points.begin + i], pose);
+    if (hit_[i] != 0) mark(slots_[points.begin + i], pose);
   }
   tested_searches_ += leaf.count;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/pose_journal.hpp"
 #include "core/question.hpp"
 #include "cpu/block_cache.hpp"
 #include "cpu/environment_tree.hpp"
@@ -19,9 +20,9 @@ namespace clearway {
 class RangeSearch {
  public:
   /// All arguments must outlive it. Allocates its caches: about 3 MiB, and a little for the largest
-  /// leaf of the model.
+  /// leaf of the model. marks: gets what is marked.
   RangeSearch(const EnvironmentTree& environment, SettledPoints& settled, const ModelSpheres& model,
-              const Question& question);
+              const Question& question, PoseMarkLog& marks);
 
   /// Searches for every model point below `sphere` at every pose of `poses`. Throws InputError for
   /// a damaged cell.
@@ -68,6 +69,14 @@ class RangeSearch {
   void search_points(const Query& query, Points points);
   void refine_points(const Query& query, Points points);
   void test_points(const Query& query, Points points);
+  void mark(std::uint64_t slot, std::uint32_t pose) {
+    settled_.mark(slot, pose);
+    marks_.add(slot / kBlockPoints, std::uint64_t{1} << slot % kBlockPoints, pose);
+  }
+  void mark_node(const EnvironmentNode& node, std::uint32_t pose) {
+    settled_.mark_node(
+        node, pose, [&](std::uint64_t word, std::uint64_t bits) { marks_.add(word, bits, pose); });
+  }
   void put_point(std::size_t to, Columns from, std::size_t i, std::uint64_t slot) {
     x_[to] = from.x[i];
     y_[to] = from.y[i];
@@ -83,6 +92,7 @@ class RangeSearch {
   SettledPoints& settled_;
   const ModelSpheres& model_;
   const Question& question_;
+  PoseMarkLog& marks_;
   double radius_squared_;
   const PoseTree* pose_tree_ = nullptr;
 

@@ -82,15 +82,17 @@ class SettledPoints {
     }
   }
 
-  /// Marks every point of the node with `pose`.
-  void mark_node(const EnvironmentNode& node, std::uint32_t pose) {
+  /// Marks every point of the node with `pose`; visit(word, bits) is called of each block's.
+  template <typename Visit>
+  void mark_node(const EnvironmentNode& node, std::uint32_t pose, const Visit& visit) {
     if (node_settled(node, pose)) return;
     if (!node.is_block()) {
-      for (const EnvironmentNode& child : tree_.children(node)) mark_node(child, pose);
+      for (const EnvironmentNode& child : tree_.children(node)) mark_node(child, pose, visit);
       settle_node(node, pose);
       return;
     }
     const std::uint64_t index = tree_.block_index(node.cell, node.first_block);
+    visit(index, all_points(node.cell, node.first_block));
     if (!first_pose_) return hits_.mark_word(index, all_points(node.cell, node.first_block));
     for (std::uint32_t i = 0; i < tree_.points_in_block(node.cell, node.first_block); ++i) {
       hits_.mark(index * kBlockPoints + i, pose);

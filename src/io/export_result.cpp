@@ -34,10 +34,11 @@ Quanta quanta_of(const ResultReader& result, const ResultRows& rows) {
   return out;
 }
 
-QuantumBox bounds_of(const ResultReader& result) {
+QuantumBox bounds_of(const ResultReader& result, const Progress& progress) {
   std::optional<QuantumBox> box;
   ResultRowStream stream(result);
   for (ResultRows rows; stream.read(rows);) {
+    throw_if_stopped(progress);
     for (const auto& [x, y, z] : quanta_of(result, rows)) {
       const QuantumBox point{{x, y, z}, {x, y, z}};
       box = box ? united(*box, point) : point;
@@ -56,8 +57,8 @@ class RowSink {
 
 class LasSink final : public RowSink {
  public:
-  LasSink(const ResultReader& result, const File& file)
-      : result_(result), writer_(file, header_of(result)) {}
+  LasSink(const ResultReader& result, const File& file, const Progress& progress)
+      : result_(result), writer_(file, header_of(result, progress)) {}
 
   void write(const ResultRows& rows) override {
     writer_.write(quanta_of(result_, rows), rows.first_pose);
@@ -65,9 +66,9 @@ class LasSink final : public RowSink {
   void finish() override { writer_.finish(); }
 
  private:
-  static LasHeader header_of(const ResultReader& result) {
+  static LasHeader header_of(const ResultReader& result, const Progress& progress) {
     const ResultHeader& header = result.header();
-    return {header.quantisation, result.collisions(), bounds_of(result), header.crs_wkt,
+    return {header.quantisation, result.collisions(), bounds_of(result, progress), header.crs_wkt,
             header.first_pose};
   }
 
@@ -77,7 +78,7 @@ class LasSink final : public RowSink {
 
 class PlySink final : public RowSink {
  public:
-  PlySink(const ResultReader& result, const File& file)
+  PlySink(const ResultReader& result, const File& file, const Progress&)
       : writer_(file, PlyHeader{.points = result.collisions(),
                                 .coordinates = PlyCoordinates::kFloat64,
                                 .first_pose = result.header().first_pose}) {}
@@ -91,7 +92,7 @@ class PlySink final : public RowSink {
 
 class XyzSink final : public RowSink {
  public:
-  XyzSink(const ResultReader&, const File& file) : out_(file) {}
+  XyzSink(const ResultReader&, const File& file, const Progress&) : out_(file) {}
 
   void write(const ResultRows& rows) override {
     for (const Vec3& p : rows.xyz) out_ << p.x << " " << p.y << " " << p.z << "\n";
@@ -104,7 +105,7 @@ class XyzSink final : public RowSink {
 
 class CsvSink final : public RowSink {
  public:
-  CsvSink(const ResultReader& result, const File& file) : out_(file) {
+  CsvSink(const ResultReader& result, const File& file, const Progress&) : out_(file) {
     out_ << (result.header().first_pose ? "source,x,y,z,first_pose\n" : "source,x,y,z\n");
   }
 
@@ -122,11 +123,12 @@ class CsvSink final : public RowSink {
   TextWriter out_;
 };
 
-using MakeSink = std::unique_ptr<RowSink> (*)(const ResultReader&, const File&);
+using MakeSink = std::unique_ptr<RowSink> (*)(const ResultReader&, const File&, const Progress&);
 
 template <typename Sink>
-std::unique_ptr<RowSink> make_sink(const ResultReader& result, const File& file) {
-  return std::make_unique<Sink>(result, file);
+std::unique_ptr<RowSink> make_sink(const ResultReader& result, const File& file,
+                                   const Progress& progress) {
+  return std::make_unique<Sink>(result, file, progress);
 }
 
 std::string ending_of(const std::filesystem::path& output) {
@@ -155,10 +157,11 @@ void export_result(const ResultReader& result, const std::filesystem::path& outp
   PendingFile pending(output, overwrite);
   {
     const File file = File::create(pending.partial());
-    const auto sink = make(result, file);
+    const auto sink = make(result, file, progress);
     progress.begin("export", result.collisions(), "points");
     ResultRowStream stream(result);
     for (ResultRows rows; stream.read(rows);) {
+      throw_if_stopped(progress);
       sink->write(rows);
       progress.advance(rows.size());
     }
@@ -185,6 +188,7 @@ void export_clearances(const ResultReader& result, const std::filesystem::path& 
     progress.begin("export", result.clearances(), "points");
     ClearanceRowStream stream(result);
     for (ClearanceRows rows; stream.read(rows);) {
+      throw_if_stopped(progress);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         out << rows.source[i] << "," << rows.distance[i] << "," << rows.pose[i] << "\n";
       }

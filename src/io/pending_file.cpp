@@ -82,6 +82,11 @@ PendingFile::~PendingFile() {
   if (!published_) ::unlink(partial_.c_str());
 }
 
+void PendingFile::refuse_existing() {
+  overwrite_ = false;
+  check_output_name(final_, overwrite_);
+}
+
 void PendingFile::publish() {
   File::open_for_reading(partial_).sync();
   const unsigned flags = overwrite_ ? 0 : RENAME_NOREPLACE;

@@ -22,6 +22,9 @@ class PendingFile {
   /// Where to write: the final name with ".partial" appended.
   const std::filesystem::path& partial() const { return partial_; }
 
+  /// From now on an existing file is not overwritten. Throws UsageError where there is one.
+  void refuse_existing();
+
   /// fsync, rename to the final name, fsync of the folder. Writers must have closed the file.
   void publish();
 

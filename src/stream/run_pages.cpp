@@ -55,13 +55,14 @@ class Pipeline {
  public:
   Pipeline(const PackedCloud& cloud, std::span<const PlannedCell> cells,
            std::span<const PlannedPage> pages, PageEngine& engine, Progress& progress,
-           Answer& answer)
+           Answer& answer, AnswerJournal* journal)
       : cloud_(cloud),
         cells_(cells),
         pages_(pages),
         engine_(engine),
         progress_(progress),
         answer_(answer),
+        journal_(journal),
         free_slots_(engine.slots()),
         times_(pages.size()) {}
 
@@ -80,6 +81,7 @@ class Pipeline {
           search(page);
         }));
     const HandOver end(this);
+    if (next_ < pages_.size()) throw Interrupted("interrupted");
   }
 
   StageTimes times() const { return stage_times(times_); }
@@ -87,7 +89,7 @@ class Pipeline {
  private:
   PageInFlight next_page(tbb::flow_control& flow) {
     const HandOver scope(this);
-    if (next_ == pages_.size()) {
+    if (next_ == pages_.size() || progress_.stop_requested()) {
       flow.stop();
       return {};
     }
@@ -115,6 +117,7 @@ class Pipeline {
     times.compute = found.compute;
     times.collect.begin = Clock::now();
     collect_page(cloud_, cells_of(page), found, answer_);
+    if (journal_ != nullptr) journal_->append_page(cells_of(page), found);
     times.collect.end = Clock::now();
     free_slots_.give_back(page.slot);
     progress_.advance(points_of(cloud_, cells_of(page)));
@@ -126,6 +129,7 @@ class Pipeline {
   PageEngine& engine_;
   Progress& progress_;
   Answer& answer_;
+  AnswerJournal* const journal_;
   FreeSlots free_slots_;
   std::vector<PageTimes> times_;  ///< by page
   std::size_t next_ = 0;
@@ -135,15 +139,16 @@ class Pipeline {
 
 Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                  std::span<const PlannedPage> pages, PageEngine& engine, const Question& question,
-                 int threads, Progress& progress, StageTimes& times) {
+                 int threads, Progress& progress, StageTimes& times, AnswerJournal* journal) {
   Answer answer{HitSet(cloud.slot_count(), question.first_pose),
                 ClearanceSet(question.clearance > 0 ? cloud.slot_count() : 0)};
+  if (journal != nullptr) journal->restore(answer);
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   progress.begin("search", points_of(cloud, cells), "points");
   const Clock::time_point begin = Clock::now();
-  Pipeline pipeline(cloud, cells, pages, engine, progress, answer);
+  Pipeline pipeline(cloud, cells, pages, engine, progress, answer, journal);
   tbb::task_arena(threads).execute([&] { pipeline.run(); });
   times = pipeline.times();
   times.total = std::chrono::duration<double>(Clock::now() - begin).count();

@@ -7,6 +7,7 @@
 #include "core/page_engine.hpp"
 #include "core/progress.hpp"
 #include "core/question.hpp"
+#include "stream/answer_journal.hpp"
 #include "stream/paginate.hpp"
 #include "stream/stage_times.hpp"
 
@@ -15,11 +16,13 @@ namespace clearway {
 /// Stages the pages in their order into whichever slot of the engine is free, has them searched and
 /// collects the answers, `threads` (0: all) pages at a time; with a device that works by itself,
 /// threads beyond the cores wait for it. Progress counts points. What a stage throws ends the run:
-/// no page is started any more, those under way are finished, then it is thrown on. The pages fit
-/// the engine's slots.
+/// no page is started any more, those under way are finished, then it is thrown on; likewise, with
+/// Interrupted, when the progress asks to stop. The pages fit the engine's slots. The journal,
+/// where there is one, keeps the answer of every page; what it held before is part of the answer.
 Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                  std::span<const PlannedPage> pages, PageEngine& engine, const Question& question,
-                 int threads, Progress& progress, StageTimes& times);
+                 int threads, Progress& progress, StageTimes& times,
+                 AnswerJournal* journal = nullptr);
 
 /// Memory that run_pages takes beside the engine and the answer, bytes.
 std::uint64_t run_pages_bytes(std::size_t pages);

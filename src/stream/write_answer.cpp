@@ -160,9 +160,13 @@ void write_set(const Store& store, const Set& set, std::uint64_t count, std::uin
   std::uint64_t from = 0;
   for (std::uint64_t written = 0; written < count;) {
     RangePass<Row> pass(from, most, count - written);
-    for (const std::uint32_t cell : cells) pass.add_cell(store, set, cell, rows_of);
+    for (const std::uint32_t cell : cells) {
+      throw_if_stopped(progress);
+      pass.add_cell(store, set, cell, rows_of);
+    }
     const std::vector<Row> rows = pass.take();
     if (rows.empty()) break;  // finish() reports what is missing
+    throw_if_stopped(progress);
     append(rows);
     written += rows.size();
     from = rows.back().source + 1;

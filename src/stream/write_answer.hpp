@@ -14,7 +14,7 @@ namespace clearway {
 /// at `path`, ascending by source index. Takes at most `memory_bytes`, but no less than
 /// least_write_bytes(): where the rows exceed them, in several passes over the cells that have
 /// some, each for the next range of source indices. Throws InputError for a damaged cell,
-/// ResourceError for a full disk.
+/// ResourceError for a full disk, Interrupted when the progress asks to stop.
 void write_answer(const Store& store, const Answer& answer, const ResultHeader& header,
                   const std::filesystem::path& path, std::uint64_t memory_bytes,
                   Progress& progress);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "clearway/signals.hpp"
+
 namespace clearway::tool {
 namespace {
 
@@ -58,6 +60,8 @@ void ConsoleProgress::end() {
   const std::lock_guard lock(mutex_);
   if (terminal_ && drawn_ != start_) std::fputs("\r\033[K", stderr);
 }
+
+bool ConsoleProgress::stop_requested() const { return tool::stop_requested(); }
 
 void ConsoleProgress::draw(Clock::time_point now) {
   drawn_ = now;

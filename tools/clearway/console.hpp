@@ -12,13 +12,14 @@ namespace clearway::tool {
 void start_log();
 
 /// A progress bar with rate and time left on standard error where that is a terminal; nothing
-/// elsewhere.
+/// elsewhere. Asks to stop when a signal did (clearway/signals.hpp).
 class ConsoleProgress final : public Progress {
  public:
   ConsoleProgress();
   void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override;
   void advance(std::uint64_t units) override;
   void end() override;
+  bool stop_requested() const override;
 
  private:
   using Clock = std::chrono::steady_clock;

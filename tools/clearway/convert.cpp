@@ -8,6 +8,7 @@
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
 #include "clearway/options.hpp"
+#include "clearway/signals.hpp"
 #include "core/error.hpp"
 
 namespace clearway::tool {
@@ -17,6 +18,7 @@ struct Options {
   ConversionOptions conversion;
   std::string layout = "adaptive";
   double scale = 0;
+  bool resume = false;
 };
 
 std::optional<double> regular_size_of(const std::string& layout) {
@@ -56,8 +58,15 @@ void run_convert(Options& options) {
   ConversionOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
+  const std::string again = "the same command starts it again, from the beginning";
+  stop_on_signals(again);
   ConsoleProgress progress;
-  log_report(conversion, convert(conversion, progress));
+  if (options.resume) spdlog::info("a conversion keeps no journal: starts afresh");
+  try {
+    log_report(conversion, convert(conversion, progress));
+  } catch (const Interrupted&) {
+    throw Interrupted(conversion.output.string() + ": interrupted; " + again);
+  }
 }
 
 }  // namespace
@@ -92,7 +101,12 @@ void add_convert(CLI::App& program) {
   command->add_flag("--ignore-crs", conversion.ignore_crs,
                     "Take coordinates in degrees, or inputs in different units, as they are");
   command->add_flag("--strict", conversion.strict, "Refuse points that are not finite");
-  command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
+  CLI::Option* force =
+      command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
+  command
+      ->add_flag("--resume", options->resume,
+                 "Convert again after a conversion that was interrupted or killed; it begins anew")
+      ->excludes(force);
   command->footer(
       "Needs temporary disk beside the output: 20 bytes a point, 32 from standard input.\n"
       "LAZ and other formats by piping LAS: pdal translate in.laz STDOUT --writer las | "

@@ -52,7 +52,7 @@ PageEngineKind page_engine(const Store& store, const Question& question,
 }  // namespace
 
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
-                  Progress& progress, EngineReport& report) {
+                  const OpenJournal& open_journal, Progress& progress, EngineReport& report) {
   EngineOptions resolved = options;
   if (options.engine == "auto") resolved.engine = "sweep";
   check(question, resolved);
@@ -63,11 +63,12 @@ Answer run_engine(const Store& store, const Question& question, const EngineOpti
   report.device_name = device.name;
   report.context_seconds = device.context_seconds;
   report.searches = std::uint64_t{question.poses.size()} * question.model.size();
+  AnswerJournal& journal = open_journal(report.engine, report.device);
   if (resolved.engine == "kdtree") {
-    return run_kdtree_engine(store, question, resolved, progress, report);
+    return run_kdtree_engine(store, question, resolved, journal, progress, report);
   }
   return run_page_engine(store, question, resolved, page_engine(store, question, resolved, device),
-                         progress, report);
+                         journal, progress, report);
 }
 
 }  // namespace clearway::tool

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "core/progress.hpp"
 #include "core/question.hpp"
 #include "io/store.hpp"
+#include "stream/answer_journal.hpp"
 #include "stream/stage_times.hpp"
 
 namespace clearway::tool {
@@ -33,7 +35,8 @@ struct EngineReport {
   double plan_seconds = 0, field_seconds = 0;
   double engine_seconds = 0;  ///< of making the engine with its slots
   StageTimes stages;
-  std::uint64_t pages = 0, page_bytes = 0;  ///< pages run, and the largest they may be
+  std::uint64_t resumed_cells = 0, resumed_poses = 0;  ///< known from a journal
+  std::uint64_t pages = 0, page_bytes = 0;             ///< pages run, and the largest they may be
   std::uint32_t slots = 0;
   std::uint64_t needed_bytes = 0;       ///< memory that the run takes at the most
   std::uint64_t write_bytes = 0;        ///< of --memory, what is left to write the answer with
@@ -41,10 +44,16 @@ struct EngineReport {
   std::uint64_t peak_device_bytes = 0;  ///< allocated, without the CUDA context
 };
 
-/// Answers the question with the engine and device chosen. Throws UsageError where that engine
-/// cannot, ResourceError where the device is not there or, before cells are read, where a memory
-/// bound is too little; InputError for a damaged cell.
+/// The journal that a run with this engine ("sweep", "grid", "kdtree") on this device ("cpu",
+/// "cuda") keeps its answer in.
+using OpenJournal =
+    std::function<AnswerJournal&(const std::string& engine, const std::string& device)>;
+
+/// Answers the question with the engine and device chosen, as far as the journal does not. Throws
+/// UsageError where that engine cannot, ResourceError where the device is not there or, before
+/// cells are read, where a memory bound is too little; InputError for a damaged cell or a journal
+/// that is refused; Interrupted when the progress asks to stop.
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
-                  Progress& progress, EngineReport& report);
+                  const OpenJournal& open_journal, Progress& progress, EngineReport& report);
 
 }  // namespace clearway::tool

@@ -6,6 +6,7 @@
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
 #include "clearway/options.hpp"
+#include "clearway/signals.hpp"
 #include "io/export_result.hpp"
 
 namespace clearway::tool {
@@ -17,7 +18,7 @@ struct Options {
   bool force = false;
 };
 
-void run_export(const Options& options) {
+void export_rows(const Options& options) {
   const ResultReader result(options.result);
   ConsoleProgress progress;
   if (options.what == "clearance") {
@@ -28,6 +29,16 @@ void run_export(const Options& options) {
   export_result(result, options.output, options.force, progress);
   spdlog::info("{}: {} colliding points", options.output.string(),
                format_count(result.collisions()));
+}
+
+void run_export(const Options& options) {
+  const std::string again = "the same command starts it again";
+  stop_on_signals(again);
+  try {
+    export_rows(options);
+  } catch (const Interrupted&) {
+    throw Interrupted(options.output.string() + ": interrupted; " + again);
+  }
 }
 
 }  // namespace

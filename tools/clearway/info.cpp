@@ -10,8 +10,10 @@
 #include "clearway/standard_output.hpp"
 #include "io/file.hpp"
 #include "io/hdf5.hpp"
+#include "io/journal.hpp"
 #include "io/result.hpp"
 #include "io/store.hpp"
+#include "stream/answer_journal.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -73,6 +75,26 @@ ordered_json describe(const ResultReader& result) {
           {"trajectory_hash", hex(h.trajectory_hash)}};
 }
 
+ordered_json describe(const JournalReader& journal) {
+  const JournalledWork work = journalled_work(journal);
+  ordered_json description{{"kind", "journal"},
+                           {"version", kJournalVersion},
+                           {"records", journal.records()},
+                           {"finished_cells", work.cells},
+                           {"finished_poses", work.poses},
+                           {"torn", journal.torn()}};
+  if (journal.identity()) {
+    for (const auto& [name, value] : *journal.identity()) description[name] = value;
+  }
+  return description;
+}
+
+ordered_json describe_file(const std::filesystem::path& file) {
+  if (is_journal(file)) return describe(JournalReader(file));
+  if (hdf5::holds(file, "collisions")) return describe(ResultReader(file));
+  return describe(Store(file));
+}
+
 std::string text_of(const ordered_json& description) {
   std::size_t width = 0;
   for (const auto& [key, value] : description.items()) width = std::max(width, key.size());
@@ -99,9 +121,7 @@ struct Options {
 
 void run_info(const Options& options) {
   File::open_for_reading(options.file);  // a missing file is no malformed one
-  const bool result = hdf5::holds(options.file, "collisions");
-  const ordered_json description =
-      result ? describe(ResultReader(options.file)) : describe(Store(options.file));
+  const ordered_json description = describe_file(options.file);
   // Names of files need not be UTF-8.
   constexpr auto kReplace = ordered_json::error_handler_t::replace;
   print(options.json ? description.dump(2, ' ', false, kReplace) + "\n" : text_of(description));
@@ -111,8 +131,11 @@ void run_info(const Options& options) {
 
 void add_info(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("info", "Print what is in a store or a result");
-  command->add_option("FILE", options->file, "Store or result")->type_name("FILE")->required();
+  CLI::App* command =
+      program.add_subcommand("info", "Print what is in a store, a result or a journal");
+  command->add_option("FILE", options->file, "Store, result or journal")
+      ->type_name("FILE")
+      ->required();
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer("Lengths in the environment's unit (metres).\nExample: clearway info site.h5");
   command->callback([options] { run_info(*options); });

@@ -9,12 +9,13 @@
 
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
+#include "clearway/exit_code.hpp"
 #include "core/error.hpp"
 #include "io/mapped_file.hpp"
 
 namespace {
 
-enum ExitCode { kDone = 0, kWrongUsage = 2, kBadInput = 3, kResource = 4 };
+using namespace clearway::tool;
 
 void check_command(const CLI::App& program, int argc, char** argv) {
   const std::string name = argc > 1 ? argv[1] : "--help";
@@ -74,6 +75,9 @@ int main(int argc, char** argv) {
   } catch (const clearway::InputError& error) {
     spdlog::error("{}", error.what());
     return kBadInput;
+  } catch (const clearway::Interrupted& stopped) {
+    spdlog::error("{}", stopped.what());
+    return kInterrupted;
   } catch (const std::bad_alloc&) {
     spdlog::error("out of memory; a smaller --memory or fewer --threads may help");
     return kResource;

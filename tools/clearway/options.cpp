@@ -17,6 +17,16 @@ CLI::Validator positive_length() {
   return {check, ""};
 }
 
+CLI::Validator seconds_up_to(double most) {
+  const auto check = [most](const std::string& text) -> std::string {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    if (number && value >= 0 && value <= most) return "";
+    return text + ": expected seconds from 0 to " + std::to_string(static_cast<int>(most));
+  };
+  return {check, ""};
+}
+
 std::uint64_t parse_size(const std::string& option, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -9,6 +9,9 @@ namespace clearway::tool {
 /// Accepts a finite number of metres above 0.
 CLI::Validator positive_length();
 
+/// Accepts a number of seconds from 0 to `most`.
+CLI::Validator seconds_up_to(double most);
+
 /// An option that takes a size in bytes; "512M" and "4G" are powers of 1024.
 void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
                      const std::string& description);

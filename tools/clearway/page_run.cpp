@@ -52,7 +52,8 @@ class Budget {
         kind_(kind),
         trees_(question),
         kept_bytes_(program_bytes(options.threads) + input_bytes(store, question) +
-                    answer_bytes(store, question)) {}
+                    answer_bytes(store, question) +
+                    AnswerJournal::most_bytes(store, question, kind.threads)) {}
 
   void find() {
     if (options_.field_voxel > 0) {
@@ -69,7 +70,7 @@ class Budget {
     check_device_memory(smallest_device_bytes_, kind_.most_device_bytes);
   }
 
-  const SearchPlan& plan() const { return *plan_; }
+  SearchPlan& plan() { return *plan_; }
   const SlotLayout& layout() const { return layout_; }
   double field_seconds() const { return trees_.model_seconds + field_seconds_; }
   double plan_seconds() const { return trees_.motion_seconds + plan_seconds_; }
@@ -124,10 +125,11 @@ class Budget {
 }  // namespace
 
 Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
-                       const PageEngineKind& kind, Progress& progress, EngineReport& report) {
+                       const PageEngineKind& kind, AnswerJournal& journal, Progress& progress,
+                       EngineReport& report) {
   Budget budget(store, question, options, kind);
   budget.find();
-  const SearchPlan& plan = budget.plan();
+  SearchPlan& plan = budget.plan();
   report.plan_seconds = budget.plan_seconds();
   report.field_seconds = budget.field_seconds();
   report.needed_bytes = budget.needed_bytes();
@@ -135,6 +137,9 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
   spdlog::info("model field: voxel {:.4g} m, {} bricks, {}", plan.field.voxel(),
                format_count(plan.field.bricks()), format_size(plan.field.allocated_bytes()));
 
+  std::erase_if(plan.cells,
+                [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
+  throw_if_stopped(progress);
   const Stopwatch making;
   const std::unique_ptr<PageEngine> engine = kind.make(plan, budget.layout());
   report.engine_seconds = making.seconds();
@@ -143,8 +148,8 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
   report.pages = pages.size();
   report.page_bytes = budget.layout().page_bytes;
   report.slots = engine->slots();
-  Answer answer =
-      run_pages(store, plan.cells, pages, *engine, question, kind.threads, progress, report.stages);
+  Answer answer = run_pages(store, plan.cells, pages, *engine, question, kind.threads, progress,
+                            report.stages, &journal);
   kind.finished(plan, *engine, report);
   return answer;
 }

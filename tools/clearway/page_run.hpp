@@ -34,6 +34,7 @@ struct PageEngineKind {
 /// short, first the model field gets coarser, then slots fewer, then pages smaller. Throws
 /// ResourceError, before cells are read, naming the smallest budget that works.
 Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
-                       const PageEngineKind& kind, Progress& progress, EngineReport& report);
+                       const PageEngineKind& kind, AnswerJournal& journal, Progress& progress,
+                       EngineReport& report);
 
 }  // namespace clearway::tool

@@ -8,7 +8,9 @@
 #include "clearway/engines.hpp"
 #include "clearway/memory_use.hpp"
 #include "clearway/options.hpp"
+#include "clearway/run_journal.hpp"
 #include "clearway/run_options.hpp"
+#include "clearway/signals.hpp"
 #include "clearway/standard_output.hpp"
 #include "core/stopwatch.hpp"
 #include "io/content_hash.hpp"
@@ -24,6 +26,9 @@ namespace {
 struct Seconds {
   double inputs = 0, write = 0, total = 0;
 };
+
+constexpr const char* kHowToResume =
+    "the same command with --resume, without --force, goes on from what was finished";
 
 struct Inputs {
   explicit Inputs(const RunOptions& options)
@@ -82,6 +87,8 @@ nlohmann::ordered_json report_of(const Inputs& inputs, const Answer& answer,
           {"cells_total", inputs.store.cells().size()},
           {"cells_read", touched.cells},
           {"bytes_read", touched.bytes},
+          {"resumed_cells", engine.resumed_cells},
+          {"resumed_poses", engine.resumed_poses},
           {"pages", engine.pages},
           {"page_bytes", engine.page_bytes},
           {"slots", engine.slots},
@@ -99,15 +106,22 @@ void warn_of(const Inputs& inputs) {
   }
 }
 
-void run_run(const RunOptions& options) {
+void run(const RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
-  PendingFile output(options.output, options.force);
+  PendingFile output(options.output, options.force || options.resume);
+  stop_on_signals(kHowToResume);
+  RunJournal journal(output, options);
   ConsoleProgress progress;
   Seconds seconds;
   const Inputs inputs(options);
   warn_of(inputs);
+  const ResultHeader header = header_of(inputs, options);
+  if (journal.already_answered(inputs.store, header)) {
+    spdlog::info("{}: is the answer already; nothing to do", options.output.string());
+    return;
+  }
   const Question question{.model = inputs.model,
                           .poses = inputs.poses,
                           .radius = options.radius,
@@ -116,12 +130,21 @@ void run_run(const RunOptions& options) {
                           .clearance = options.clearance};
   seconds.inputs = total.seconds();
   EngineReport engine;
-  const Answer answer = run_engine(inputs.store, question, options.engine, progress, engine);
+  throw_if_stopped(progress);
+  const auto open_journal = [&](const std::string& name,
+                                const std::string& device) -> AnswerJournal& {
+    return journal.open(inputs.store, question, header, name, device);
+  };
+  const Answer answer =
+      run_engine(inputs.store, question, options.engine, open_journal, progress, engine);
+
+  engine.resumed_cells = journal.earlier().cells;
+  engine.resumed_poses = journal.earlier().poses;
 
   const Stopwatch write;
-  write_answer(inputs.store, answer, header_of(inputs, options), output.partial(),
-               engine.write_bytes, progress);
+  write_answer(inputs.store, answer, header, output.partial(), engine.write_bytes, progress);
   output.publish();
+  journal.remove();
   seconds.write = write.seconds();
   seconds.total = total.seconds();
   spdlog::info("{}: {} of {} environment points collide; engine {} on {}, {:.2f} s",
@@ -135,6 +158,14 @@ void run_run(const RunOptions& options) {
   if (options.json) {
     const std::uint64_t peak = memory.peak_bytes() + engine.pinned_bytes;
     print(report_of(inputs, answer, engine, peak, seconds).dump(2) + "\n");
+  }
+}
+
+void run_run(const RunOptions& options) {
+  try {
+    run(options);
+  } catch (const Interrupted&) {
+    throw Interrupted(options.output.string() + ": interrupted; " + kHowToResume);
   }
 }
 

@@ -106,7 +106,19 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);
   add_question(command, options);
   add_engine(command, options.engine);
-  command.add_flag("--force", options.force, "Overwrite an existing result");
+  CLI::Option* force = command.add_flag(
+      "--force", options.force, "Overwrite an existing result; drop the journal of an earlier run");
+  command
+      .add_flag("--resume", options.resume,
+                "Go on with a run of the same question that was interrupted or killed")
+      ->excludes(force);
+  command
+      .add_option("--journal-interval", options.journal_interval_seconds,
+                  "Seconds between two syncs of the journal to the disk: what a crash of the "
+                  "system can cost")
+      ->type_name("SECONDS")
+      ->check(seconds_up_to(3600))
+      ->capture_default_str();
   command.add_flag("--json", options.json, "Print one JSON object about the run");
 }
 

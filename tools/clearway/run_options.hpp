@@ -18,6 +18,8 @@ struct RunOptions {
   bool between_poses = false;
   TrajectoryOptions trajectory_options;
   bool force = false;
+  bool resume = false;
+  double journal_interval_seconds = 5;
   bool json = false;
 };
 

@@ -10,16 +10,26 @@
 #include "core/error.hpp"
 #include "io/file.hpp"
 #include "io/hdf5.hpp"
+#include "io/journal.hpp"
 #include "io/verify_result.hpp"
 #include "io/verify_store.hpp"
+#include "stream/answer_journal.hpp"
 
 namespace clearway::tool {
 namespace {
+
+std::vector<std::string> verify_journal(const std::filesystem::path& file) {
+  const JournalReader journal(file);
+  journalled_work(journal);
+  if (journal.torn().empty()) return {};
+  return {file.string() + ": " + journal.torn() + "; a run with --resume computes it again"};
+}
 
 std::vector<std::string> faults_of(const std::filesystem::path& file) {
   File::open_for_reading(file);  // a missing file is no damaged one
   ConsoleProgress progress;
   try {
+    if (is_journal(file)) return verify_journal(file);
     if (hdf5::holds(file, "collisions")) return verify_result(ResultReader(file), progress);
     return verify_store(Store(file), progress);
   } catch (const InputError& fault) {
@@ -38,12 +48,15 @@ bool run_verify(const std::filesystem::path& file) {
 
 void add_verify(CLI::App& program, int& exit_code) {
   auto file = std::make_shared<std::filesystem::path>();
-  CLI::App* command =
-      program.add_subcommand("verify", "Re-read and check everything in a store or a result");
-  command->add_option("FILE", *file, "Store or result")->type_name("FILE")->required();
+  CLI::App* command = program.add_subcommand(
+      "verify", "Re-read and check everything in a store, a result or a journal");
+  command->add_option("FILE", *file, "Store, result or journal")->type_name("FILE")->required();
   command->footer(
-      "Names every damaged cell (at most 20). Exit code 0: sound; 1: a fault, or not a complete\n"
-      "store or result; 4: the file cannot be opened.\nExample: clearway verify site.h5");
+      "Names every damaged cell (at most 20), of a journal the first record that is not whole. "
+      "Exit\n"
+      "code 0: sound; 1: a fault, or not a complete store or result; 4: the file cannot be "
+      "opened.\n"
+      "Example: clearway verify site.h5");
   command->callback([file, &exit_code] { exit_code = run_verify(*file) ? 0 : 1; });
 }
 

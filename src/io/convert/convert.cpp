@@ -122,6 +122,7 @@ struct UnitInFlight {
 void write_unit(UnitInFlight& unit, StoreWriter& writer, Progress& progress) {
   while (!unit.packed.empty()) {
     for (const PackedCell& cell : unit.packed) {
+      throw_if_stopped(progress);
       writer.append(cell);
       progress.advance(cell.cell.count);
     }
@@ -138,6 +139,7 @@ void write_cells(const Distribution& distribution, const SplitTree& tree, const 
   std::size_t next = 0;
   const auto number_of_next = [&](tbb::flow_control& flow) {
     const HandOver scope(&next);
+    throw_if_stopped(progress);
     if (next == tree.units().size()) flow.stop();
     return next++;
   };

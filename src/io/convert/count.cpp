@@ -24,7 +24,7 @@ std::vector<Bin> count_bins(EnvironmentSource& environment, const Lattice& latti
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
   for_each_batch(
-      environment, threads,
+      environment, threads, progress,
       [&](const QuantaBatch& batch) {
         hash.add(batch);
         points += batch.quanta.size();
@@ -101,7 +101,7 @@ void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
       [&tree] { return Refinement(tree.overfull()); });
   environment.rewind();
   for_each_batch(
-      environment, threads, [](const QuantaBatch&) {},
+      environment, threads, progress, [](const QuantaBatch&) {},
       [&](const QuantaBatch& batch) {
         Refinement& counter = counters.local();
         for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
@@ -121,7 +121,7 @@ void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
 
 }  // namespace
 
-void for_each_batch(EnvironmentSource& environment, int threads,
+void for_each_batch(EnvironmentSource& environment, int threads, const Progress& progress,
                     const std::function<void(const QuantaBatch&)>& in_order,
                     const std::function<void(const QuantaBatch&)>& work) {
   using Batch = std::shared_ptr<QuantaBatch>;
@@ -132,6 +132,7 @@ void for_each_batch(EnvironmentSource& environment, int threads,
                                     [&](tbb::flow_control& flow) {
                                       const HandOver scope(&work);
                                       auto batch = std::make_shared<QuantaBatch>();
+                                      throw_if_stopped(progress);
                                       if (environment.read(*batch)) {
                                         in_order(*batch);
                                       } else {

@@ -11,8 +11,9 @@
 namespace clearway {
 
 /// Reads the environment once from its start, in order, and hands every batch to `work`, several
-/// threads at a time; `in_order` sees the batches first, one by one.
-void for_each_batch(EnvironmentSource& environment, int threads,
+/// threads at a time; `in_order` sees the batches first, one by one. Throws Interrupted when the
+/// progress asks to stop.
+void for_each_batch(EnvironmentSource& environment, int threads, const Progress& progress,
                     const std::function<void(const QuantaBatch&)>& in_order,
                     const std::function<void(const QuantaBatch&)>& work);
 

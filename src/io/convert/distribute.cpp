@@ -130,6 +130,7 @@ Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
       tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
                                     [&](tbb::flow_control& flow) {
                                       const HandOver scope(&writer);
+                                      throw_if_stopped(progress);
                                       auto batch = std::make_shared<QuantaBatch>();
                                       if (!environment.read(*batch)) flow.stop();
                                       return batch;

@@ -1,0 +1,377 @@
+// Journals, --resume, --force and signals of the program.
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "io/journal.hpp"
+#include "io/pending_file.hpp"
+#include "program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+using std::chrono::steady_clock;
+
+namespace {
+
+/// A process of the built program, its output in a file.
+class Process {
+ public:
+  Process(const std::string& arguments, std::filesystem::path log) : log_(std::move(log)) {
+    std::string command = std::string("exec '") + CLEARWAY_PROGRAM + "' " + arguments + " >'" +
+                          log_.string() + "' 2>&1";
+    char sh[] = "/bin/sh", c[] = "-c";
+    char* words[] = {sh, c, command.data(), nullptr};
+    if (::posix_spawn(&pid_, sh, nullptr, nullptr, words, environ) != 0) {
+      throw std::runtime_error("cannot start the program");
+    }
+  }
+  ~Process() {
+    if (pid_ > 0) {
+      ::kill(pid_, SIGKILL);
+      wait();
+    }
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void send(int signal) const { ::kill(pid_, signal); }
+  bool running() {
+    if (pid_ > 0 && ::waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = 0;
+    return pid_ > 0;
+  }
+  /// Exit code, or minus the signal that killed it.
+  int wait() {
+    if (pid_ > 0) ::waitpid(pid_, &status_, 0);
+    pid_ = 0;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+  }
+  std::string log() const { return bytes_of(log_); }
+
+ private:
+  std::filesystem::path log_;
+  pid_t pid_ = 0;
+  int status_ = 0;
+};
+
+/// A hall that engine grid searches for a second, made once.
+class SlowHall {
+ public:
+  static const SlowHall& get() {
+    static const SlowHall hall;
+    return hall;
+  }
+  std::string path(const std::string& name) const { return quoted(folder_ / name); }
+
+ private:
+  SlowHall() {
+    const std::string folder = quoted(folder_ / "");
+    if (run_program(folder_,
+                    "scene hall --points 500000 --model-points 10000 --poses 3000 -o " + folder)
+                .exit_code != 0 ||
+        run_program(folder_, "convert " + path("environment.las") + " --cell-points 500 -o " +
+                                 path("site.h5"))
+                .exit_code != 0) {
+      throw std::runtime_error("no hall");
+    }
+  }
+
+  ScratchFolder folder_;
+};
+
+struct Work {
+  std::string command(const std::string& options, const std::string& radius = "0.1",
+                      const std::string& engine = "grid") const {
+    return "run --env " + hall.path("site.h5") + " --model " + hall.path("model.ply") +
+           " --trajectory " + hall.path("trajectory.txt") + " --engine " + engine +
+           " --device cpu --first-pose --radius " + radius + " -o " + quoted(output) + " " +
+           options;
+  }
+  Outcome run(const std::string& options, const std::string& radius = "0.1",
+              const std::string& engine = "grid") const {
+    return run_program(folder, command(options, radius, engine));
+  }
+  /// A run with a file of these bytes instead of one of the hall's.
+  Outcome run_with(const std::string& name, const std::string& bytes) const {
+    put_bytes(folder / "other.txt", bytes);
+    std::string changed = command("--resume");
+    const std::string before = hall.path(name);
+    changed.replace(changed.find(before), before.size(), quoted(folder / "other.txt"));
+    return run_program(folder, changed);
+  }
+  /// Starts a run and lets it finish a few cells.
+  void start_and(int signal, const std::string& options = "") const {
+    Process process(command(options), folder / "log.txt");
+    wait_for_records(process, 20);
+    process.send(signal);
+    REQUIRE(process.wait() == (signal == SIGKILL ? -SIGKILL : 5));
+  }
+  void wait_for_records(Process& process, std::uint64_t records) const {
+    while (!std::filesystem::exists(journal) || JournalReader(journal).records() < records) {
+      REQUIRE(process.running());
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(output.parent_path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  const SlowHall& hall = SlowHall::get();
+  ScratchFolder folder;
+  std::filesystem::path output =
+      (std::filesystem::create_directory(folder / "out"), folder / "out" / "out.h5");
+  std::filesystem::path journal = journal_of(output);
+};
+
+using Names = std::vector<std::string>;
+
+void check_refused(const Outcome& outcome, int exit_code, const std::string& message) {
+  CHECK(outcome.exit_code == exit_code);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains(message));
+}
+
+}  // namespace
+
+TEST_CASE("a run that is asked to stop says how to resume, and resumes") {
+  const Work work;
+  for (const int signal : {SIGTERM, SIGINT}) {
+    CAPTURE(signal);
+    Process process(work.command(""), work.folder / "log.txt");
+    work.wait_for_records(process, 20);
+    const auto begin = steady_clock::now();
+    process.send(signal);
+    CHECK(process.wait() == 5);
+    CHECK(steady_clock::now() - begin < std::chrono::seconds(5));
+    CHECK_THAT(process.log(), Contains("interrupted") && Contains("--resume"));
+    CHECK(work.files() == Names{"out.h5.journal"});
+    CHECK(JournalReader(work.journal).torn().empty());
+    std::filesystem::remove(work.journal);
+  }
+  work.start_and(SIGTERM);
+  const Outcome resumed = work.run("--resume --json");
+  REQUIRE(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with") && Contains("cells finished"));
+  const json report = json::parse(resumed.out);
+  CHECK(report["pages"].get<int>() + report["resumed_cells"].get<int>() > 0);
+  CHECK(report["resumed_cells"].get<int>() >= 20);
+  CHECK(work.files() == Names{"out.h5"});
+  const std::string bytes = bytes_of(work.output);
+  REQUIRE(work.run("--force").exit_code == 0);
+  CHECK((bytes_of(work.output) == bytes));
+}
+
+TEST_CASE("a second signal ends a run at once") {
+  const Work work;
+  Process process(work.command(""), work.folder / "log.txt");
+  work.wait_for_records(process, 20);
+  process.send(SIGSTOP);  // both are there when it goes on
+  process.send(SIGTERM);
+  process.send(SIGINT);
+  process.send(SIGCONT);
+  CHECK(process.wait() == 5);
+  CHECK_THAT(process.log(), Contains("before what was in flight was finished"));
+  CHECK(work.run("--resume").exit_code == 0);
+}
+
+TEST_CASE("an unfinished journal is neither used nor dropped unasked") {
+  const Work work;
+  work.start_and(SIGKILL);
+  const std::string found = bytes_of(work.journal);
+  check_refused(work.run(""), 2, "--resume goes on with it, --force starts afresh");
+  check_refused(work.run(""), 2, "an unfinished run with engine grid on cpu, radius 0.1");
+  check_refused(work.run("--resume --force"), 2, "--force");
+  check_refused(work.run("--resume", "0.2"), 2, "its radius is 0.1, expected 0.2");
+  check_refused(work.run("--resume", "0.1", "kdtree"), 2, "its engine is grid, expected kdtree");
+  check_refused(work.run("--resume --precision float"), 2, "its precision is missing");
+  check_refused(work.run("--resume --between-poses", "0.1", "sweep"), 2, "between_poses is no");
+  check_refused(work.run_with("model.ply", "1 2 3\n"), 2, "its model is ");
+  check_refused(work.run_with("trajectory.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"), 2,
+                "its trajectory is ");
+  CHECK((bytes_of(work.journal) == found));
+
+  const Outcome info = run_program(work.folder, "info --json " + quoted(work.journal));
+  REQUIRE(info.exit_code == 0);
+  CHECK(json::parse(info.out)["kind"] == "journal");
+  CHECK(json::parse(info.out)["finished_cells"] >= 19);
+  CHECK(json::parse(info.out)["radius"] == "0.1");
+
+  const Outcome forced = work.run("--force");
+  CHECK(forced.exit_code == 0);
+  CHECK_THAT(forced.err, Contains("journal of an unfinished run removed"));
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("a run with other threads and memory resumes") {
+  const Work work;
+  work.start_and(SIGKILL, "--threads 1");
+  const Outcome resumed = work.run("--resume --threads 3 --memory 1G");
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with"));
+}
+
+TEST_CASE("resuming without a journal starts afresh and says so") {
+  const Work work;
+  const Outcome outcome = work.run("--resume");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("no journal to resume, starts afresh"));
+  check_refused(work.run("--resume"), 2, "exists already");
+  put_bytes(work.journal, "CLWYJ");
+  CHECK_THAT(work.run("--force").err, Contains("removed, starts afresh"));
+  std::filesystem::remove(work.output);
+  put_bytes(work.journal, "CLWYJ");
+  CHECK_THAT(work.run("").err, Contains("nothing in it yet"));
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("an existing result stays until a resumed run replaces it, and only where asked for") {
+  const Work work;
+  REQUIRE(work.run("", "0.05").exit_code == 0);
+  const std::string old = bytes_of(work.output);
+  work.start_and(SIGKILL, "--force");
+  CHECK((bytes_of(work.output) == old));
+  CHECK(work.run("--resume").exit_code == 0);
+  const std::string done = bytes_of(work.output);
+  CHECK((done != old));
+  CHECK(work.files() == Names{"out.h5"});
+
+  std::filesystem::remove(work.output);
+  work.start_and(SIGKILL);
+  put_bytes(work.output, "of somebody else");
+  check_refused(work.run("--resume"), 2, "exists already");
+  CHECK(bytes_of(work.output) == "of somebody else");
+  put_bytes(work.output, done);  // as if killed between the result's name and its journal's end
+  const Outcome outcome = work.run("--resume");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("is the answer already"));
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("a run that is refused leaves no journal") {
+  const Work work;
+  check_refused(work.run("--memory 1K"), 4, "too little");
+  CHECK(work.files().empty());
+  check_refused(work.run("--between-poses"), 2, "--engine sweep");
+  CHECK(work.files().empty());
+}
+
+TEST_CASE("what is no journal is left alone") {
+  const Work work;
+  put_bytes(work.journal, "a diary");
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 2, "move it away");
+  }
+  CHECK(bytes_of(work.journal) == "a diary");
+  std::filesystem::remove(work.journal);
+  std::filesystem::create_symlink(work.folder / "elsewhere", work.journal);
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 2, "move it away");
+  }
+  CHECK_FALSE(std::filesystem::exists(work.folder / "elsewhere"));
+}
+
+TEST_CASE("a flipped byte of a journal is detected or does no harm") {
+  const Work work;
+  work.start_and(SIGKILL);
+  const std::string whole = bytes_of(work.journal).substr(0, 700);
+  put_bytes(work.journal, whole);
+  REQUIRE(run_program(work.folder, "verify " + quoted(work.journal)).exit_code <= 1);
+  std::filesystem::remove(work.journal);
+  REQUIRE(work.run("").exit_code == 0);
+  const std::string expected = bytes_of(work.output);
+  for (std::size_t at = 0; at < whole.size(); at += 7) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 8);
+    put_bytes(work.journal, bytes);
+    CAPTURE(at);
+    const Outcome verified = run_program(work.folder, "verify " + quoted(work.journal));
+    CHECK(verified.exit_code == 1);
+    if (at >= 16) CHECK_THAT(verified.out, Contains("record "));
+    if (at % 13 != 0) continue;
+    std::filesystem::remove(work.output);
+    const Outcome outcome = work.run("--resume");
+    if (outcome.exit_code == 0) {
+      CHECK((bytes_of(work.output) == expected));
+    } else {
+      CHECK((outcome.exit_code == 2 || outcome.exit_code == 3));
+      CHECK_FALSE(std::filesystem::exists(work.output));
+    }
+  }
+}
+
+TEST_CASE("two runs of one output: the second is refused and leaves the first's journal alone") {
+  const Work work;
+  Process first(work.command(""), work.folder / "log.txt");
+  work.wait_for_records(first, 5);
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 4, "another process is writing it");
+  }
+  CHECK(first.wait() == 0);
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("a conversion that is asked to stop leaves nothing behind") {
+  const Work work;
+  const std::string command = "convert " + work.hall.path("environment.las") +
+                              " --cell-points 500 -o " + quoted(work.output);
+  bool stopped = false;
+  for (int delay = 20; delay < 2000 && !stopped; delay += 20) {
+    Process process(command + " --resume", work.folder / "log.txt");
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+    process.send(SIGTERM);
+    const int code = process.wait();
+    if (code == -SIGTERM) continue;  // before it could listen
+    stopped = code == 5;
+    REQUIRE((stopped || code == 0));
+    if (stopped) {
+      CHECK_THAT(process.log(), Contains("interrupted") && Contains("again"));
+      CHECK(work.files().empty());
+    }
+    std::filesystem::remove(work.output);
+  }
+  CHECK(stopped);
+  CHECK(run_program(work.folder, command + " --resume").exit_code == 0);
+}
+
+TEST_CASE("what does not come to an end is given up within 5 seconds") {
+  const Work work;
+  const auto pipe = work.folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const int writer = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);  // never writes
+  REQUIRE(writer >= 0);
+  Process process("convert - -o " + quoted(work.output) + " <" + quoted(pipe),
+                  work.folder / "log.txt");
+  while (work.files().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the handlers are in place
+  const auto begin = steady_clock::now();
+  process.send(SIGTERM);
+  CHECK(process.wait() == 5);
+  CHECK(steady_clock::now() - begin < std::chrono::seconds(5));
+  CHECK_THAT(process.log(), Contains("interrupted before"));
+  CHECK(work.files() == Names{"out.h5.partial"});
+  ::close(writer);
+}
+
+TEST_CASE("options of the journal that make no sense are refused") {
+  const Work work;
+  for (const char* seconds : {"-1", "nan", "x", "4000"}) {
+    check_refused(work.run(std::string("--journal-interval ") + seconds), 2, "--journal-interval");
+  }
+  CHECK(work.run("--journal-interval 0").exit_code == 0);
+}

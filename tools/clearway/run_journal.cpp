@@ -1,0 +1,147 @@
+#include "clearway/run_journal.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "clearway/options.hpp"
+#include "core/error.hpp"
+
+namespace clearway::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kReplaces = "overwrites";
+
+std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+std::string work_text(const JournalledWork& work) {
+  if (work.poses > 0) return format_count(work.poses) + " poses finished";
+  return format_count(work.cells) + " cells finished";
+}
+
+std::string value_of(const JournalIdentity& identity, const std::string& name) {
+  for (const auto& [field, value] : identity) {
+    if (field == name) return value;
+  }
+  return "unknown";
+}
+
+JournalIdentity identity_of(const Store& store, const ResultHeader& header,
+                            const EngineOptions& options, const std::string& engine,
+                            const std::string& device, bool replaces) {
+  JournalIdentity identity{{"environment", hex(store.fingerprint())},
+                           {"model", hex(header.model_hash)},
+                           {"trajectory", hex(header.trajectory_hash)},
+                           {"radius", fmt::format("{}", header.radius)},
+                           {"first_pose", yes_or_no(header.first_pose)},
+                           {"clearance", fmt::format("{}", header.clearance)},
+                           {"between_poses", yes_or_no(header.between_poses)},
+                           {"engine", engine},
+                           {"device", device},
+                           {kReplaces, yes_or_no(replaces)}};
+  if (options.float_precision) {  // then the answer depends on the cells
+    identity.emplace_back("precision", "float");
+    identity.emplace_back("grid_cell", fmt::format("{}", options.grid_cell));
+  }
+  return identity;
+}
+
+bool answers(const fs::path& file, const ResultHeader& question) {
+  try {
+    return ResultReader(file).header() == question;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code failed;
+  fs::remove(path, failed);
+  if (failed) throw ResourceError(path.string() + ": cannot remove: " + failed.message());
+}
+
+}  // namespace
+
+RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
+    : output_(output),
+      options_(options),
+      path_(journal_of(options.output)),
+      replaces_(options.force && fs::exists(options.output)) {
+  std::error_code none;
+  if (!fs::exists(fs::symlink_status(path_, none))) {
+    if (options.resume) spdlog::info("{}: no journal to resume, starts afresh", path_.string());
+    return;
+  }
+  if (!fs::is_regular_file(fs::symlink_status(path_)) ||
+      (fs::file_size(path_) > 0 && !is_journal(path_))) {
+    throw UsageError(path_.string() +
+                     ": is in the place of this output's journal and is none; move it away, or "
+                     "choose another output");
+  }
+  if (options.force) {
+    spdlog::info("{}: journal of an unfinished run removed, starts afresh", path_.string());
+    remove();
+    return;
+  }
+  JournalReader read(path_);
+  if (!read.identity() || read.records() == 0) {
+    spdlog::info("{}: nothing in it yet, starts afresh", path_.string());
+    remove();
+    return;
+  }
+  earlier_ = journalled_work(read);
+  if (!options.resume) {
+    throw UsageError(fmt::format(
+        "{}: an unfinished run with engine {} on {}, radius {}, {}; --resume goes on with it, "
+        "--force starts afresh",
+        path_.string(), value_of(*read.identity(), "engine"), value_of(*read.identity(), "device"),
+        value_of(*read.identity(), "radius"), work_text(earlier_)));
+  }
+  if (!read.torn().empty()) {
+    spdlog::info("{}: {}; it is cut off and computed again", path_.string(), read.torn());
+  }
+  replaces_ = value_of(*read.identity(), kReplaces) == yes_or_no(true);
+  read_.emplace(std::move(read));
+}
+
+bool RunJournal::already_answered(const Store& store, const ResultHeader& header) {
+  if (replaces_) return false;
+  if (read_ && fs::exists(options_.output)) {
+    const JournalIdentity& earlier = *read_->identity();
+    const bool same =
+        difference(earlier, identity_of(store, header, options_.engine, value_of(earlier, "engine"),
+                                        value_of(earlier, "device"), false))
+            .empty();
+    if (same && answers(options_.output, header)) {
+      remove();
+      return true;
+    }
+  }
+  output_.refuse_existing();
+  return false;
+}
+
+AnswerJournal& RunJournal::open(const Store& store, const Question& question,
+                                const ResultHeader& header, const std::string& engine,
+                                const std::string& device) {
+  const JournalIdentity identity =
+      identity_of(store, header, options_.engine, engine, device, replaces_);
+  if (read_) {
+    const std::string differs = difference(*read_->identity(), identity);
+    if (!differs.empty()) {
+      throw UsageError(path_.string() + ": belongs to another run: its " + differs +
+                       "; give the options and files that it was started with, or --force to "
+                       "start afresh");
+    }
+    spdlog::info("{}: resumes with {}", path_.string(), work_text(earlier_));
+  }
+  return answers_.emplace(path_, identity, read_ ? &*read_ : nullptr, store, question,
+                          options_.journal_interval_seconds);
+}
+
+void RunJournal::remove() { remove_file(path_); }
+
+}  // namespace clearway::tool

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "clearway/run_options.hpp"
+#include "io/journal.hpp"
+#include "io/pending_file.hpp"
+#include "io/result.hpp"
+#include "stream/answer_journal.hpp"
+
+namespace clearway::tool {
+
+/// The journal beside the output of `clearway run`: what an earlier run left there, and what this
+/// one keeps.
+class RunJournal {
+ public:
+  /// Looks for an earlier journal, and removes it where options.force or nothing is in it. Throws
+  /// UsageError, saying what was found and what to do, where there is one and not options.resume.
+  /// The output is this process's alone; output and options outlive it.
+  RunJournal(PendingFile& output, const RunOptions& options);
+
+  /// Whether the earlier run published its result, of this question, and was only kept from
+  /// removing its journal; that is then done. Throws UsageError where another output is there that
+  /// this run may not overwrite.
+  bool already_answered(const Store& store, const ResultHeader& header);
+
+  /// The journal of this question, engine and device to keep the answer in. Throws UsageError,
+  /// naming what differs, where the earlier one is of others.
+  AnswerJournal& open(const Store& store, const Question& question, const ResultHeader& header,
+                      const std::string& engine, const std::string& device);
+
+  /// After the result was published.
+  void remove();
+
+  /// Of the earlier run.
+  const JournalledWork& earlier() const { return earlier_; }
+
+ private:
+  PendingFile& output_;
+  const RunOptions& options_;
+  std::filesystem::path path_;
+  std::optional<JournalReader> read_;
+  JournalledWork earlier_;
+  bool replaces_;  ///< an existing output is to be overwritten
+  std::optional<AnswerJournal> answers_;
+};
+
+}  // namespace clearway::tool
