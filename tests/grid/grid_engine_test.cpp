@@ -71,7 +71,7 @@ TEST_CASE("a work list of one pair, and of few") {
 
 TEST_CASE("pages of one cell and of all, one slot and many") {
   const Scene scene;
-  for (const std::size_t cells : {1, 2, 100}) {
+  for (const std::uint32_t cells : {1, 2, 100}) {
     for (const std::uint32_t slots : {1, 5}) {
       CHECK(scene.wrong({.slots = slots, .cells_a_page = cells}, {256, 700}) == 0);
     }

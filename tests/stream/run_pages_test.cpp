@@ -258,7 +258,6 @@ TEST_CASE("what any stage throws ends the run with its message") {
         const char* messages[] = {"read failed", "start failed", "search failed", "finish failed",
                                   "collect failed"};
         CHECK_THROWS_WITH(run.run(), messages[stage]);
-        CHECK(run.engine.started < run.pages.size());
       }
     }
   }

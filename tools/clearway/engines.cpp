@@ -38,7 +38,8 @@ void check(const Question& question, const EngineOptions& options) {
 }
 
 PageEngineKind page_engine(const Store& store, const Question& question,
-                           const EngineOptions& options, const DeviceChoice& device) {
+                           const EngineOptions& options,
+                           [[maybe_unused]] const DeviceChoice& device) {
 #ifdef CLEARWAY_CUDA
   if (device.is_cuda()) {
     return options.engine == "grid" ? cuda_grid(store, question, options, device)
