@@ -2,6 +2,7 @@
 // named, and nothing that looks finished.
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "hall.hpp"
@@ -66,8 +67,8 @@ std::vector<Command> commands(const Site& site) {
        "out.h5"},
       {"convert text", "convert " + site.path("scan.xyz") + " --threads 2" + to("text.h5"),
        "text.h5"},
-      {"sweep", site.search() + " --first-pose" + to("sweep.h5"), "sweep.h5"},
-      {"kdtree", site.search() + " --engine kdtree" + to("kdtree.h5"), "kdtree.h5"},
+      {"sweep", site.search() + " --force --first-pose" + to("sweep.h5"), "sweep.h5"},
+      {"kdtree", site.search() + " --force --engine kdtree" + to("kdtree.h5"), "kdtree.h5"},
       {"export las", "export " + site.path("made.h5") + to("out.las"), "out.las"},
       {"export csv", "export " + site.path("made.h5") + to("out.csv"), "out.csv"}};
 }
@@ -79,8 +80,11 @@ void write_text(const Site& site) {
   put_bytes(site.file("scan.xyz"), text);
 }
 
+/// The journal of a run that stopped may stay.
 std::size_t files_in(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+  return static_cast<std::size_t>(std::count_if(
+      fs::directory_iterator(folder), {},
+      [](const fs::directory_entry& entry) { return entry.path().extension() != ".journal"; }));
 }
 
 }  // namespace
