@@ -3,19 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/point_box.hpp"
+
 namespace clearway {
 namespace {
-
-Box box_of(std::span<const Vec3> points) {
-  Box box{points[0], points[0]};
-  for (const Vec3& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
-    }
-  }
-  return box;
-}
 
 /// Between the nearest points of two boxes.
 double least_squared_distance(const Box& a, const Box& b) {
@@ -24,14 +15,6 @@ double least_squared_distance(const Box& a, const Box& b) {
     d[k] = std::max({b.lo[k] - a.hi[k], a.lo[k] - b.hi[k], 0.0});
   }
   return squared_length(d[0], d[1], d[2]);
-}
-
-int longest_side(const Box& box) {
-  int longest = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (box.hi[k] - box.lo[k] > box.hi[longest] - box.lo[longest]) longest = k;
-  }
-  return longest;
 }
 
 }  // namespace

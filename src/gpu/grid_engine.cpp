@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "gpu/cuda_event.hpp"
 #include "gpu/cuda_stream.hpp"
+#include "gpu/device_clock.hpp"
 #include "gpu/grid_kernels.hpp"
 #include "gpu/grid_on_device.hpp"
 #include "gpu/pinned_buffer.hpp"
@@ -98,9 +98,6 @@ class CudaGridEngine::Impl {
       pinned_bytes_ += slots_.back().pinned_bytes();
     }
     check_cuda(cudaMemset(statistics_.data(), 0, statistics_.bytes()));
-    base_.record(nullptr);
-    base_.synchronise();
-    base_time_ = Clock::now();
   }
 
   ~Impl() {
@@ -136,8 +133,8 @@ class CudaGridEngine::Impl {
             .first_poses = {reinterpret_cast<const std::uint32_t*>(answer + layout.first_poses_at),
                             scene_.first_pose() ? layout.points : 0},
             .clearances = {},
-            .upload = {time_of(slot.begun), time_of(slot.uploaded)},
-            .compute = {time_of(slot.uploaded), time_of(slot.searched)}};
+            .upload = {clock_.time_of(slot.begun), clock_.time_of(slot.uploaded)},
+            .compute = {clock_.time_of(slot.uploaded), clock_.time_of(slot.searched)}};
   }
 
   GridStatistics statistics() const {
@@ -204,19 +201,13 @@ class CudaGridEngine::Impl {
             .first_poses = scene_.first_pose() ? first_poses : nullptr};
   }
 
-  Clock::time_point time_of(const CudaEvent& event) const {
-    return base_time_ + std::chrono::duration_cast<Clock::duration>(
-                            std::chrono::duration<double>(event.seconds_since(base_)));
-  }
-
   int device_;
   SlotLayout options_;
   const GridScene& scene_;
   GridOnDevice on_device_;
   DeviceBuffer<GridStatistics> statistics_;
   std::deque<Slot> slots_;
-  CudaEvent base_;  ///< happened at base_time_
-  Clock::time_point base_time_;
+  DeviceClock clock_;
   std::uint64_t device_bytes_ = 0, pinned_bytes_ = 0;
 };
 

@@ -19,7 +19,7 @@ class SweepBlock {
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  static constexpr std::uint32_t kQueue = 64;
+  static constexpr std::uint32_t kQueue = SweepSubtrees::kMost;
   static constexpr std::uint32_t kOpen = 96;
 
   /// What the lanes share.
@@ -142,7 +142,7 @@ class SweepBlock {
   CLEARWAY_HD void search_points() {
     const SweepSubtrees subtrees{shared_.queue, queued_};
     for (std::uint32_t i = 0; i < halves(); ++i) {
-      const std::uint32_t half = 2 * block_ + i;
+      const std::uint32_t half = SweepWork::kHalves * block_ + i;
       if (!job_.sweep.hits_follow_from_clearance()) {
         SweepHits<Warp>(job_, statistics_).search_half(half, subtrees, false);
       }
@@ -155,20 +155,16 @@ class SweepBlock {
     const SweepWork& work = job_.work;
     const auto nodes = SweepWork::room<Warp>(&work.counts->nodes, queued_, work.node_capacity);
     if (!nodes.fits()) return false;
-    const auto parts = static_cast<std::uint32_t>(divide_up(queued_, SweepWork::kEntryNodes));
     const auto entries =
-        SweepWork::room<Warp>(&work.counts->entries, parts * halves(), work.entry_capacity);
+        SweepWork::room<Warp>(&work.counts->entries, halves(), work.entry_capacity);
     Warp::each([&](std::uint32_t lane) {
       for (std::uint32_t i = lane; i < queued_; i += kWarpLanes) {
         work.nodes[nodes.first + i] = shared_.queue[i];
       }
-      for (std::uint32_t i = lane; i < entries.written(); i += kWarpLanes) {
-        const std::uint32_t first = i % parts * SweepWork::kEntryNodes;
-        const std::uint32_t left = queued_ - first;
-        work.entries[entries.first + i] = {
-            entries.fits() ? 2 * block_ + i / parts : SweepWork::kNone, nodes.first + first,
-            left < SweepWork::kEntryNodes ? left : SweepWork::kEntryNodes};
-      }
+      if (lane >= entries.written()) return;
+      work.entries[entries.first + lane] = {
+          entries.fits() ? SweepWork::kHalves * block_ + lane : SweepWork::kNone, nodes.first,
+          queued_};
     });
     return entries.fits();
   }
@@ -178,8 +174,8 @@ class SweepBlock {
     const std::uint32_t first = Warp::add(&job_.work.counts->whole, halves(), SweepWork::kNone);
     Warp::each([&](std::uint32_t lane) {
       if (lane >= halves()) return;
-      job_.work.entries[job_.work.entry_capacity + first + lane] = {2 * block_ + lane, 0,
-                                                                    SweepWork::kWhole};
+      job_.work.entries[job_.work.entry_capacity + first + lane] = {
+          SweepWork::kHalves * block_ + lane, 0, SweepWork::kWhole};
     });
   }
 

@@ -20,8 +20,8 @@ class SweepClearances {
   CLEARWAY_HD SweepClearances(const SweepPage& job, std::uint32_t half,
                               PerLane<SweepStatistics>& statistics)
       : job_(job),
-        block_(half / kHalves),
-        first_(half % kHalves * kWarpLanes),
+        block_(half / SweepWork::kHalves),
+        first_(half % SweepWork::kHalves * kWarpLanes),
         cell_(job.cell_of_block(block_)),
         limit_(rounded_product(job.sweep.clearance, job.sweep.clearance)),
         statistics_(statistics) {}
@@ -53,8 +53,6 @@ class SweepClearances {
   }
 
  private:
-  static constexpr std::uint32_t kHalves = kBlockPoints / kWarpLanes;
-
   CLEARWAY_HD std::uint32_t slot(std::uint32_t lane) const {
     return block_ * kBlockPoints + first_ + lane;
   }

@@ -2,9 +2,9 @@
 #include <atomic>
 #include <vector>
 
-#include "gpu/cuda_event.hpp"
 #include "gpu/cuda_stream.hpp"
 #include "gpu/device_array.hpp"
+#include "gpu/device_clock.hpp"
 #include "gpu/pinned_buffer.hpp"
 #include "gpu/sweep_block.hpp"
 #include "gpu/sweep_engine.hpp"
@@ -250,9 +250,6 @@ class CudaSweepEngine::Impl {
       pinned_bytes_ += slots_.back().host_page.bytes() + slots_.back().host_answer.bytes();
     }
     check_cuda(cudaMemset(tallies_.data(), 0, tallies_.bytes()));
-    base_.record(nullptr);
-    base_.synchronise();
-    base_time_ = Clock::now();
   }
 
   ~Impl() {
@@ -283,15 +280,12 @@ class CudaSweepEngine::Impl {
                           ? reinterpret_cast<Clearance*>(answer + layout.clearances_at())
                           : nullptr,
         .work = slot.work.ref()};
-    slot.begun.record(stream);
-    check_cuda(cudaMemcpyAsync(slot.page.data(), slot.host_page.data(), shape.bytes(),
-                               cudaMemcpyHostToDevice, stream));
-    slot.uploaded.record(stream);
-    search(job, stream);
-    slot.searched.record(stream);
-    check_cuda(cudaMemcpyAsync(slot.host_answer.data(), answer, layout.bytes(),
-                               cudaMemcpyDeviceToHost, stream));
-    slot.finished.record(stream);
+    try {
+      enqueue(slot, job, layout.bytes());
+    } catch (...) {
+      cudaStreamSynchronize(stream);  // nothing of the slot stays in flight
+      throw;
+    }
   }
 
   PageAnswer finish(std::uint32_t index) {
@@ -307,8 +301,8 @@ class CudaSweepEngine::Impl {
                         layout.first_poses},
         .clearances = {reinterpret_cast<const Clearance*>(answer + layout.clearances_at()),
                        layout.clearances},
-        .upload = {time_of(slot.begun), time_of(slot.uploaded)},
-        .compute = {time_of(slot.uploaded), time_of(slot.searched)}};
+        .upload = {clock_.time_of(slot.begun), clock_.time_of(slot.uploaded)},
+        .compute = {clock_.time_of(slot.uploaded), clock_.time_of(slot.searched)}};
   }
 
   SweepStatistics statistics() const {
@@ -327,6 +321,20 @@ class CudaSweepEngine::Impl {
   std::uint64_t pinned_bytes() const { return pinned_bytes_; }
 
  private:
+  /// Not synchronised.
+  void enqueue(const Slot& slot, const SweepPage& job, std::uint64_t answer_bytes) const {
+    const cudaStream_t stream = slot.stream.get();
+    slot.begun.record(stream);
+    check_cuda(cudaMemcpyAsync(slot.page.data(), slot.host_page.data(), slot.shape.bytes(),
+                               cudaMemcpyHostToDevice, stream));
+    slot.uploaded.record(stream);
+    search(job, stream);
+    slot.searched.record(stream);
+    check_cuda(cudaMemcpyAsync(slot.host_answer.data(), slot.answer.data(), answer_bytes,
+                               cudaMemcpyDeviceToHost, stream));
+    slot.finished.record(stream);
+  }
+
   /// Enqueued on `stream`, not synchronised.
   void search(const SweepPage& job, cudaStream_t stream) const {
     const auto grid = static_cast<unsigned>(divide_up(job.block_count(), kWarpsPerBlock));
@@ -358,19 +366,13 @@ class CudaSweepEngine::Impl {
     return device;
   }
 
-  Clock::time_point time_of(const CudaEvent& event) const {
-    return base_time_ + std::chrono::duration_cast<Clock::duration>(
-                            std::chrono::duration<double>(event.seconds_since(base_)));
-  }
-
   int device_;
   unsigned resident_;
   Quantisation quantisation_;
   SweepOnDevice sweep_;
   DeviceBuffer<unsigned long long> tallies_;
   std::vector<Slot> slots_;
-  CudaEvent base_;  ///< happened at base_time_
-  Clock::time_point base_time_;
+  DeviceClock clock_;
   std::uint64_t device_bytes_, pinned_bytes_;
 };
 

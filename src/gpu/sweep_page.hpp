@@ -30,7 +30,6 @@ struct SweepWork {
   };
   static constexpr std::uint32_t kNone = 0xffffffff;   ///< half or point of a place not used
   static constexpr std::uint32_t kWhole = 0xffffffff;  ///< node_count
-  static constexpr std::uint32_t kEntryNodes = 64;     ///< of an entry, at most
   static constexpr std::uint32_t kHalves = 2;          ///< of a block
 
   std::uint32_t* nodes;

@@ -4,31 +4,17 @@
 #include <cmath>
 
 #include "core/kd_order.hpp"
+#include "core/point_box.hpp"
 #include "core/predicate.hpp"
 #include "core/sweep_bounds.hpp"
 
 namespace clearway {
 namespace {
 
-Box box_of(std::span<const Vec3> points) {
-  Box box{points[0], points[0]};
-  for (const Vec3& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
-    }
-  }
-  return box;
-}
-
 /// Orders the points so that each run of `unit` is compact.
 void sort_by_splits(std::span<Vec3> points, std::uint64_t unit) {
   if (points.size() <= unit) return;
-  const Box box = box_of(points);
-  int axis = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
-  }
+  const int axis = longest_side(box_of(points));
   const std::uint64_t left = left_count(points.size(), unit);
   std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(left), points.end(),
                    [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
