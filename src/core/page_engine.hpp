@@ -46,18 +46,17 @@ class PageEngine {
  public:
   virtual ~PageEngine() = default;
 
-  /// How many pages may be in flight, over all devices; at least 1. Pages go to the free slots in
-  /// the order of their numbers first, so slots that are neighbours should be on different devices.
+  /// How many pages may be in flight; at least 1.
   virtual std::uint32_t slots() const = 0;
 
   /// The memory of a slot's page, to be filled: as many bytes in every slot, on kPageAlignment.
   virtual std::span<std::byte> page(std::uint32_t slot) = 0;
 
-  /// Starts the search of the page in the slot, whose shape fits it. A GPU goes on by itself. Where
-  /// it throws, nothing of the slot is in flight.
+  /// Searches the page in the slot, whose shape fits it; a GPU goes on by itself after the call.
+  /// Where it throws, nothing of the slot is in flight.
   virtual void start(std::uint32_t slot, const PageShape& shape) = 0;
 
-  /// Waits for the answer, which stays valid until the slot is started again. Throws what became of
+  /// Waits, where a GPU searches, for the answer, which stays valid until the slot is started again. Throws what became of
   /// the search; the slot is then no longer in flight.
   virtual PageAnswer finish(std::uint32_t slot) = 0;
 };

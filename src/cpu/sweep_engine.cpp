@@ -8,27 +8,29 @@ SweepEngine::SweepEngine(const PackedCloud& cloud, const SweepFilter& filter,
     : cloud_(cloud),
       filter_(filter),
       pool_(cloud, filter.question(), layout),
-      shapes_(layout.slots) {}
+      answers_(layout.slots) {}
 
-PageAnswer SweepEngine::finish(std::uint32_t slot) {
+void SweepEngine::start(std::uint32_t slot, const PageShape& shape) {
   const Clock::time_point begin = Clock::now();
-  const PageRef page{pool_.page(slot).data(), shapes_[slot]};
+  const PageRef page{pool_.page(slot).data(), shape};
   const std::size_t blocks = cloud_.blocks_per_cell(), slots = cloud_.cell_slots();
   std::unique_ptr<CellSearch> search = take_search();
-  for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
+  for (std::uint32_t i = 0; i < shape.cells; ++i) {
     search->run(
         page, i,
         {part_of_cell(pool_.hits(slot), i, blocks), part_of_cell(pool_.first_poses(slot), i, slots),
          part_of_cell(pool_.clearances(slot), i, slots)});
   }
   give_back(std::move(search));
-  const std::size_t cells = page.shape.cells;
-  return {.hits = pool_.hits(slot).first(cells * blocks),
-          .first_poses =
-              pool_.first_poses(slot).first(filter_.question().first_pose ? cells * slots : 0),
-          .clearances =
-              pool_.clearances(slot).first(filter_.question().clearance > 0 ? cells * slots : 0),
-          .compute = {begin, Clock::now()}};
+  const std::size_t cells = shape.cells;
+  answers_[slot] = {
+      .hits = pool_.hits(slot).first(cells * blocks),
+      .first_poses =
+          pool_.first_poses(slot).first(filter_.question().first_pose ? cells * slots : 0),
+      .clearances =
+          pool_.clearances(slot).first(filter_.question().clearance > 0 ? cells * slots : 0),
+      .upload = {},
+      .compute = {begin, Clock::now()}};
 }
 
 std::unique_ptr<CellSearch> SweepEngine::take_search() {

@@ -11,17 +11,17 @@
 namespace clearway {
 
 /// The sweep engine on the CPU: descends a cell's implicit tree and the motion tree together, down
-/// to points, each decoded once. `finish` computes, in the thread that calls it.
+/// to points, each decoded once. `start` searches, in the thread that calls it.
 class SweepEngine final : public PageEngine {
  public:
   /// The cloud and the filter outlive it. Allocates its slots; beside them, at the most
-  /// CellSearch::most_bytes for each thread that is in `finish` at a time.
+  /// CellSearch::most_bytes for each thread that is in `start` at a time.
   SweepEngine(const PackedCloud& cloud, const SweepFilter& filter, const SlotLayout& layout);
 
   std::uint32_t slots() const override { return pool_.layout().slots; }
   std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
-  void start(std::uint32_t slot, const PageShape& shape) override { shapes_[slot] = shape; }
-  PageAnswer finish(std::uint32_t slot) override;
+  void start(std::uint32_t slot, const PageShape& shape) override;
+  PageAnswer finish(std::uint32_t slot) override { return answers_[slot]; }
 
   /// Of all searches so far. Not during one.
   const SweepStatistics& statistics() const { return statistics_; }
@@ -33,9 +33,9 @@ class SweepEngine final : public PageEngine {
   const PackedCloud& cloud_;
   const SweepFilter& filter_;
   PagePool pool_;
-  std::vector<PageShape> shapes_;  ///< by slot
+  std::vector<PageAnswer> answers_;  ///< by slot
   std::mutex mutex_;
-  std::vector<std::unique_ptr<CellSearch>> idle_;  ///< no more than threads were ever in finish
+  std::vector<std::unique_ptr<CellSearch>> idle_;  ///< no more than threads were ever in start
   SweepStatistics statistics_;
 };
 

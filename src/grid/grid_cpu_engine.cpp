@@ -56,7 +56,7 @@ struct GridCpuEngine::Slot {
   std::vector<std::uint32_t> open;  ///< pairs
   PageShape shape;
   GridPageView view{};
-  Clock::time_point started{};
+  PageAnswer answer;
   GridStatistics statistics;
 };
 
@@ -135,16 +135,12 @@ std::span<std::byte> GridCpuEngine::page(std::uint32_t slot) {
   return {reinterpret_cast<std::byte*>(slots_[slot]->page.data()), layout_.page_bytes};
 }
 
-void GridCpuEngine::start(std::uint32_t slot, const PageShape& shape) {
+void GridCpuEngine::start(std::uint32_t index, const PageShape& shape) {
   assert(shape.bytes() <= layout_.page_bytes && shape.cells <= layout_.cells);
-  slots_[slot]->shape = shape;
-  slots_[slot]->started = Clock::now();
-}
-
-PageAnswer GridCpuEngine::finish(std::uint32_t index) {
   Slot& slot = *slots_[index];
-  PageAnswer answer;
-  answer.upload = {slot.started, slot.started};
+  slot.shape = shape;
+  PageAnswer& answer = slot.answer;
+  answer = {};
   answer.compute.begin = Clock::now();
   slot.statistics = {};
   slot.view = {.page = {page(index).data(), slot.shape},
@@ -171,8 +167,9 @@ PageAnswer GridCpuEngine::finish(std::uint32_t index) {
   answer.compute.end = Clock::now();
   const std::lock_guard lock(mutex_);
   statistics_.add(slot.statistics);
-  return answer;
 }
+
+PageAnswer GridCpuEngine::finish(std::uint32_t slot) { return slots_[slot]->answer; }
 
 GridStatistics GridCpuEngine::statistics() const {
   const std::lock_guard lock(mutex_);

@@ -1,9 +1,11 @@
 #include "stream/run_pages.hpp"
 
 #include <tbb/global_control.h>
+#include <tbb/parallel_for_each.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <deque>
 #include <mutex>
 #include <vector>
@@ -21,8 +23,7 @@ std::uint64_t points_of(const PackedCloud& cloud, std::span<const PlannedCell> c
   return points;
 }
 
-/// The slots that hold no page. The one that is free longest goes first, so that a device gets the
-/// next page as soon as it has room for one.
+/// The slots that hold no page.
 class FreeSlots {
  public:
   explicit FreeSlots(std::uint32_t slots) {
@@ -31,8 +32,8 @@ class FreeSlots {
   /// There is one: no more pages are under way than there are slots.
   std::uint32_t take() {
     const std::lock_guard lock(mutex_);
-    const std::uint32_t slot = free_.front();
-    free_.pop_front();
+    const std::uint32_t slot = free_.back();
+    free_.pop_back();
     return slot;
   }
   void give_back(std::uint32_t slot) {
@@ -42,104 +43,138 @@ class FreeSlots {
 
  private:
   std::mutex mutex_;
-  std::deque<std::uint32_t> free_;
+  std::vector<std::uint32_t> free_;
 };
 
-/// A page on its way through the pipeline.
+/// What the lanes share: pages are taken in their order by whichever lane has a slot for one.
+struct Pages {
+  const PackedCloud& cloud;
+  const std::span<const PlannedCell> cells;
+  const std::span<const PlannedPage> pages;
+  Progress& progress;
+  Answer& answer;
+  AnswerJournal* const journal;
+  std::vector<PageTimes> times = std::vector<PageTimes>(pages.size());
+  std::atomic<std::size_t> next = 0;
+
+  std::span<const PlannedCell> cells_of(std::size_t page) const { return pages[page].of(cells); }
+};
+
 struct PageInFlight {
   std::size_t page;
   std::uint32_t slot;
 };
 
-class Pipeline {
+struct SearchedPage {
+  PageInFlight page;
+  PageAnswer found;
+};
+
+/// The way of pages through one engine.
+class Lane {
  public:
-  Pipeline(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-           std::span<const PlannedPage> pages, PageEngine& engine, Progress& progress,
-           Answer& answer, AnswerJournal* journal)
-      : cloud_(cloud),
-        cells_(cells),
-        pages_(pages),
+  Lane(Pages& pages, PageEngine& engine)
+      : pages_(pages),
         engine_(engine),
-        progress_(progress),
-        answer_(answer),
-        journal_(journal),
         free_slots_(engine.slots()),
-        times_(pages.size()) {}
+        started_(engine.slots(), false) {}
+
+  /// What a failed run has left in flight is waited for.
+  ~Lane() {
+    for (std::uint32_t slot = 0; slot < started_.size(); ++slot) {
+      if (!started_[slot]) continue;
+      try {
+        engine_.finish(slot);
+      } catch (...) {  // another exception ends the run already
+      }
+    }
+  }
+  Lane(const Lane&) = delete;
+  Lane& operator=(const Lane&) = delete;
 
   void run() {
-    { const HandOver begin(this); }
-    constexpr auto serial = tbb::filter_mode::serial_in_order;
     constexpr auto parallel = tbb::filter_mode::parallel;
     tbb::parallel_pipeline(
         engine_.slots(),
-        tbb::make_filter<void, PageInFlight>(serial, [this](tbb::flow_control& flow) {
-          return next_page(flow);
-        }) & tbb::make_filter<PageInFlight, PageInFlight>(parallel, [this](PageInFlight page) {
-          stage(page);
-          return page;
-        }) & tbb::make_filter<PageInFlight, void>(parallel, [this](PageInFlight page) {
-          search(page);
-        }));
-    const HandOver end(this);
-    if (next_ < pages_.size()) throw Interrupted("interrupted");
+        tbb::make_filter<void, PageInFlight>(
+            tbb::filter_mode::serial_in_order,
+            [this](tbb::flow_control& flow) { return next_page(flow); }) &
+            tbb::make_filter<PageInFlight, PageInFlight>(parallel,
+                                                         [this](PageInFlight page) {
+                                                           start(page);
+                                                           return page;
+                                                         }) &
+            tbb::make_filter<PageInFlight, SearchedPage>(
+                tbb::filter_mode::serial_out_of_order,
+                [this](PageInFlight page) { return finish(page); }) &
+            tbb::make_filter<SearchedPage, void>(
+                parallel, [this](const SearchedPage& page) { collect(page); }));
   }
-
-  StageTimes times() const { return stage_times(times_); }
 
  private:
   PageInFlight next_page(tbb::flow_control& flow) {
-    const HandOver scope(this);
-    if (next_ == pages_.size() || progress_.stop_requested()) {
-      flow.stop();
-      return {};
+    const HandOver scope(&pages_);
+    if (!pages_.progress.stop_requested()) {
+      const std::size_t page = pages_.next++;
+      if (page < pages_.pages.size()) return {page, free_slots_.take()};
     }
-    return {next_++, free_slots_.take()};
+    flow.stop();
+    return {};
   }
 
-  std::span<const PlannedCell> cells_of(PageInFlight page) const {
-    return pages_[page.page].of(cells_);
-  }
-
-  void stage(PageInFlight page) {
-    const HandOver scope(this);
-    Interval& time = times_[page.page].read;
+  void start(PageInFlight page) {
+    const HandOver scope(&pages_);
+    Interval& time = pages_.times[page.page].read;
     time.begin = Clock::now();
-    stage_page(cloud_, cells_of(page), engine_.page(page.slot));
+    stage_page(pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot));
     time.end = Clock::now();
+    engine_.start(page.slot, pages_.pages[page.page].shape);
+    started_[page.slot] = true;
   }
 
-  void search(PageInFlight page) {
-    const HandOver scope(this);
-    PageTimes& times = times_[page.page];
-    engine_.start(page.slot, pages_[page.page].shape);
-    const PageAnswer found = engine_.finish(page.slot);
+  SearchedPage finish(PageInFlight page) {
+    const HandOver scope(&pages_);
+    started_[page.slot] = false;
+    return {page, engine_.finish(page.slot)};
+  }
+
+  void collect(const SearchedPage& searched) {
+    const HandOver scope(&pages_);
+    const auto [page, slot] = searched.page;
+    const PageAnswer& found = searched.found;
+    const auto cells = pages_.cells_of(page);
+    PageTimes& times = pages_.times[page];
     times.upload = found.upload;
     times.compute = found.compute;
     times.collect.begin = Clock::now();
-    collect_page(cloud_, cells_of(page), found, answer_);
-    if (journal_ != nullptr) journal_->append_page(cells_of(page), found);
+    collect_page(pages_.cloud, cells, found, pages_.answer);
+    if (pages_.journal != nullptr) pages_.journal->append_page(cells, found);
     times.collect.end = Clock::now();
-    free_slots_.give_back(page.slot);
-    progress_.advance(points_of(cloud_, cells_of(page)));
+    free_slots_.give_back(slot);
+    pages_.progress.advance(points_of(pages_.cloud, cells));
   }
 
-  const PackedCloud& cloud_;
-  const std::span<const PlannedCell> cells_;
-  const std::span<const PlannedPage> pages_;
+  Pages& pages_;
   PageEngine& engine_;
-  Progress& progress_;
-  Answer& answer_;
-  AnswerJournal* const journal_;
   FreeSlots free_slots_;
-  std::vector<PageTimes> times_;  ///< by page
-  std::size_t next_ = 0;
+  std::vector<char> started_;  ///< by slot: whether the engine has a page to finish
 };
+
+void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {
+  std::deque<Lane> lanes;
+  for (PageEngine* engine : engines) lanes.emplace_back(pages, *engine);
+  { const HandOver begin(&pages); }
+  tbb::parallel_for_each(lanes, [](Lane& lane) { lane.run(); });
+  const HandOver end(&pages);
+  if (pages.next < pages.pages.size()) throw Interrupted("interrupted");
+}
 
 }  // namespace
 
 Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                 std::span<const PlannedPage> pages, PageEngine& engine, const Question& question,
-                 int threads, Progress& progress, StageTimes& times, AnswerJournal* journal) {
+                 std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
+                 const Question& question, int threads, Progress& progress, StageTimes& times,
+                 AnswerJournal* journal) {
   Answer answer{HitSet(cloud.slot_count(), question.first_pose),
                 ClearanceSet(question.clearance > 0 ? cloud.slot_count() : 0)};
   if (journal != nullptr) journal->restore(answer);
@@ -148,9 +183,9 @@ Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                                   static_cast<std::size_t>(threads));
   progress.begin("search", points_of(cloud, cells), "points");
   const Clock::time_point begin = Clock::now();
-  Pipeline pipeline(cloud, cells, pages, engine, progress, answer, journal);
-  tbb::task_arena(threads).execute([&] { pipeline.run(); });
-  times = pipeline.times();
+  Pages shared{cloud, cells, pages, progress, answer, journal};
+  tbb::task_arena(threads).execute([&] { run_lanes(shared, engines); });
+  times = stage_times(shared.times);
   times.total = std::chrono::duration<double>(Clock::now() - begin).count();
   progress.end();
   return answer;

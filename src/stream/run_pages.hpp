@@ -13,15 +13,15 @@
 
 namespace clearway {
 
-/// Stages the pages in their order into whichever slot of the engine is free, has them searched and
-/// collects the answers, `threads` (0: all) pages at a time; with a device that works by itself,
-/// threads beyond the cores wait for it. Progress counts points. What a stage throws ends the run:
+/// Stages the pages in their order into whichever slot of an engine is free, has them searched and
+/// collects the answers, with `threads` (0: all); for each engine, one of them at the most waits for
+/// a device. Progress counts points. What a stage throws ends the run:
 /// no page is started any more, those under way are finished, then it is thrown on; likewise, with
-/// Interrupted, when the progress asks to stop. The pages fit the engine's slots. The journal,
+/// Interrupted, when the progress asks to stop. The pages fit the slots of every engine. The journal,
 /// where there is one, keeps the answer of every page; what it held before is part of the answer.
 Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                 std::span<const PlannedPage> pages, PageEngine& engine, const Question& question,
-                 int threads, Progress& progress, StageTimes& times,
+                 std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
+                 const Question& question, int threads, Progress& progress, StageTimes& times,
                  AnswerJournal* journal = nullptr);
 
 /// Memory that run_pages takes beside the engine and the answer, bytes.

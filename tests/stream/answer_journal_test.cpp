@@ -66,9 +66,10 @@ class JournalledScene {
                     [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
       const SlotLayout layout{3, smallest_page_bytes(scene.cloud, scene.cells), 1};
       SweepEngine engine(scene.cloud, scene.filter, layout);
+      PageEngine* const engines[] = {&engine};
       StageTimes times;
       const auto pages = paginate(scene.cloud, cells, layout.page_bytes, 1);
-      return run_pages(scene.cloud, cells, pages, engine, scene.question, 2, progress, times,
+      return run_pages(scene.cloud, cells, pages, engines, scene.question, 2, progress, times,
                        &journal);
     };
     return resume(most_pages, run);
@@ -260,12 +261,13 @@ TEST_CASE("a journal that cannot grow ends the run with its error") {
   AnswerJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.question, kNever);
   const SlotLayout layout{3, smallest_page_bytes(s.scene.cloud, s.scene.cells), 1};
   SweepEngine engine(s.scene.cloud, s.scene.filter, layout);
+  PageEngine* const engines[] = {&engine};
   const auto pages = paginate(s.scene.cloud, s.scene.cells, layout.page_bytes, 1);
   StageTimes times;
   NoProgress progress;
   {
     const FileSizeLimit limit(300);
-    CHECK_THROWS_WITH(run_pages(s.scene.cloud, s.scene.cells, pages, engine, s.scene.question, 2,
+    CHECK_THROWS_WITH(run_pages(s.scene.cloud, s.scene.cells, pages, engines, s.scene.question, 2,
                                 progress, times, &journal),
                       Contains("a.journal: cannot write"));
   }

@@ -23,9 +23,7 @@ using Act = std::function<void(std::uint32_t)>;
 class TestEngine final : public PageEngine {
  public:
   TestEngine(const PlannedScene& scene, const SlotLayout& layout)
-      : engine_(scene.cloud, scene.filter, layout),
-        searches_(layout.slots),
-        pages_of_slot(layout.slots) {}
+      : engine_(scene.cloud, scene.filter, layout), searches_(layout.slots) {}
 
   ~TestEngine() override {
     for (const auto& search : searches_) violations += search.valid();
@@ -42,11 +40,9 @@ class TestEngine final : public PageEngine {
     const std::uint32_t page = started++;
     violations += searches_[slot].valid() || shape.bytes() > engine_.page(slot).size();
     if (before_start) before_start(page);
-    ++pages_of_slot[slot];
-    engine_.start(slot, shape);
-    searches_[slot] = std::async(std::launch::async, [this, slot, page] {
+    searches_[slot] = std::async(std::launch::async, [this, slot, shape, page] {
       if (in_search) in_search(page);
-      if (slow_slot) slow_slot(slot);
+      engine_.start(slot, shape);
       return engine_.finish(slot);
     });
   }
@@ -64,16 +60,13 @@ class TestEngine final : public PageEngine {
     return answer;
   }
 
-  Act before_start, in_search, after_finish, slow_slot;
+  Act before_start, in_search, after_finish;
   std::atomic<std::uint32_t> started{0}, finished{0};
   static inline std::atomic<int> violations{0};
 
  private:
   SweepEngine engine_;
   std::vector<std::future<PageAnswer>> searches_;
-
- public:
-  std::vector<std::atomic<int>> pages_of_slot;
 };
 
 /// A cloud with something to do before each read.
@@ -133,7 +126,13 @@ struct Run {
         pages(paginate(planned.cloud, planned.cells, layout.page_bytes, page_cells)) {}
 
   Answer run(int threads = 4) {
-    return run_pages(cloud, scene.cells, pages, engine, scene.question, threads, progress, times);
+    PageEngine* const engines[] = {&engine};
+    return run_pages(cloud, scene.cells, pages, engines, scene.question, threads, progress, times);
+  }
+
+  Answer run_with(TestEngine& another, int threads) {
+    PageEngine* const engines[] = {&engine, &another};
+    return run_pages(cloud, scene.cells, pages, engines, scene.question, threads, progress, times);
   }
 
   const PlannedScene& scene;
@@ -305,12 +304,32 @@ TEST_CASE("a damaged cell in the middle ends the run and is named") {
   CHECK(TestEngine::violations == 0);
 }
 
-TEST_CASE("a slot that is free again gets the next page: the faster ones do more") {
+TEST_CASE("of two engines the faster one gets more pages, and the answer is the same") {
   const PlannedScene scene({64, 0}, 6000);
-  Run run(scene, 4, 1);
-  REQUIRE(run.pages.size() > 40);
-  run.engine.slow_slot = [](std::uint32_t slot) { sleep_ms(slot == 3 ? 200 : 0); };
-  const Answer answer = run.run(8);
-  CHECK(wrong_slots(scene, answer) == 0);
-  CHECK(8U * run.engine.pages_of_slot[3] < run.pages.size());
+  for (const int threads : {1, 2, 8}) {
+    Run run(scene, 2, 1);
+    TestEngine slow(scene, run.layout);
+    REQUIRE(run.pages.size() > 40);
+    slow.in_search = [](std::uint32_t) { sleep_ms(100); };
+    const Answer answer = run.run_with(slow, threads);
+    CHECK(wrong_slots(scene, answer) == 0);
+    CHECK(run.engine.finished + slow.finished == run.pages.size());
+    if (threads > 2) CHECK(4U * slow.finished < run.engine.finished);
+  }
+  CHECK(TestEngine::violations == 0);
+}
+
+TEST_CASE(
+    "what one of two engines throws ends the run, and nothing is left in flight in the other") {
+  const PlannedScene scene({64, 0}, 6000);
+  for (const std::uint32_t at : {0U, 3U}) {
+    Run run(scene, 3, 1);
+    TestEngine another(scene, run.layout);
+    run.engine.in_search = throwing_at<ResourceError>(at, "search failed");
+    another.in_search = [](std::uint32_t) { sleep_ms(10); };
+    CHECK_THROWS_WITH(run.run_with(another, 4), "search failed");
+    CHECK(run.engine.finished == run.engine.started);
+    CHECK(another.finished == another.started);
+  }
+  CHECK(TestEngine::violations == 0);
 }

@@ -163,8 +163,9 @@ Answer run_sweep(const PackedCloud& cloud, const Question& question, int threads
                           .page_bytes = 2 * smallest_page_bytes(cloud, cells),
                           .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
   const std::unique_ptr<PageEngine> engine = make(filter, cloud, layout);
+  PageEngine* const engines[] = {engine.get()};
   StageTimes times;
-  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), *engine,
+  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), engines,
                    question, threads, progress, times);
 }
 

@@ -58,7 +58,8 @@ HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRu
     NoProgress progress;
     StageTimes times;
     const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page);
-    return clearway::run_pages(cloud, cells, pages, engine, question, 3, progress, times).hits;
+    PageEngine* const engines[] = {&engine};
+    return clearway::run_pages(cloud, cells, pages, engines, question, 3, progress, times).hits;
   });
 }
 

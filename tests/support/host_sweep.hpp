@@ -19,19 +19,19 @@ class HostSweep final : public PageEngine {
       : sweep_(sweep),
         quantisation_(cloud.quantisation()),
         pool_(cloud, question_of(sweep), layout),
-        shapes_(layout.slots),
+        answers_(layout.slots),
         entries_(entries) {}
 
   std::uint32_t slots() const override { return pool_.layout().slots; }
   std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
-  void start(std::uint32_t slot, const PageShape& shape) override { shapes_[slot] = shape; }
+  PageAnswer finish(std::uint32_t slot) override { return answers_[slot]; }
 
-  PageAnswer finish(std::uint32_t slot) override {
+  void start(std::uint32_t slot, const PageShape& shape) override {
     const std::span hits = pool_.hits(slot);
     const std::span first_poses = pool_.first_poses(slot);
     const std::span clearances = pool_.clearances(slot);
     SweepPage job{.sweep = sweep_,
-                  .page = {pool_.page(slot).data(), shapes_[slot]},
+                  .page = {pool_.page(slot).data(), shape},
                   .quantisation = quantisation_,
                   .hits = hits.data(),
                   .first_poses = first_poses.empty() ? nullptr : first_poses.data(),
@@ -46,9 +46,9 @@ class HostSweep final : public PageEngine {
                 2 * entries_, entries_,       entries_,     entries_};
     run(job);
     const std::size_t points = std::size_t{blocks} * kBlockPoints;
-    return {.hits = hits.first(blocks),
-            .first_poses = first_poses.first(first_poses.empty() ? 0 : points),
-            .clearances = clearances.first(clearances.empty() ? 0 : points)};
+    answers_[slot] = {.hits = hits.first(blocks),
+                      .first_poses = first_poses.first(first_poses.empty() ? 0 : points),
+                      .clearances = clearances.first(clearances.empty() ? 0 : points)};
   }
 
  private:
@@ -84,7 +84,7 @@ class HostSweep final : public PageEngine {
   SweepRef sweep_;
   Quantisation quantisation_;
   PagePool pool_;
-  std::vector<PageShape> shapes_;
+  std::vector<PageAnswer> answers_;
   std::uint32_t entries_;
 };
 

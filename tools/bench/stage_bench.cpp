@@ -26,7 +26,7 @@ struct Options {
   std::string environment, model, trajectory;
   double radius = 0.1;
   int threads = 0;
-  std::uint32_t slots = 32, cells = 16;
+  std::uint32_t slots = 64, cells = 16;
 };
 
 /// Finds nothing, at once.
@@ -116,7 +116,8 @@ void measure(const Options& options) {
   NoEngine engine(store, question, layout);
   NoProgress progress;
   StageTimes times;
-  run_pages(store, plan.cells, pages, engine, question, options.threads, progress, times);
+  PageEngine* const engines[] = {&engine};
+  run_pages(store, plan.cells, pages, engines, question, options.threads, progress, times);
   nlohmann::ordered_json out{{"pages", pages.size()},
                              {"cells_read", store.touched().cells},
                              {"bytes_read", store.touched().bytes},

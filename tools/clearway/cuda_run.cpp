@@ -4,7 +4,6 @@
 
 #include "clearway/grid_run.hpp"
 #include "clearway/sweep_run.hpp"
-#include "core/engine_group.hpp"
 #include "gpu/grid_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 
@@ -12,7 +11,7 @@ namespace clearway::tool {
 namespace {
 
 /// Small pages, many in flight: a page takes a reading thread about a millisecond.
-constexpr std::uint32_t kMostSlots = 32;
+constexpr std::uint32_t kMostSlots = 64;
 constexpr std::uint32_t kPageCells = 16;
 /// A third of the usual voxel: a GPU has the bandwidth for a larger field, and fewer exact searches
 /// keep its warps together.
@@ -30,24 +29,23 @@ PageEngineKind cuda_kind(const Store& store, const EngineOptions& options,
   kind.most_slots = kMostSlots;
   kind.page_cells = kPageCells;
   kind.page_bytes = usual_page_bytes(store);
-  kind.threads = options.threads + static_cast<int>(kMostSlots * device.gpus.size());
+  kind.threads = options.threads + static_cast<int>(device.gpus.size());
   kind.most_device_bytes = device.memory_bytes;
   return kind;
 }
 
-/// One engine on each device, as one.
 template <typename Make>
-std::unique_ptr<PageEngine> on_each(const DeviceChoice& device, Make make) {
-  std::vector<std::unique_ptr<PageEngine>> engines;
+PageEngines on_each(const DeviceChoice& device, Make make) {
+  PageEngines engines;
   for (const int gpu : device.gpus) engines.push_back(make(gpu));
-  return std::make_unique<EngineGroup>(std::move(engines));
+  return engines;
 }
 
-/// Adds up what the engines of a group took, and their statistics.
+/// Adds up what the engines took, and their statistics.
 template <typename Engine, typename Statistics>
-Statistics report_of(const PageEngine& engine, EngineReport& report) {
+Statistics report_of(const PageEngines& engines, EngineReport& report) {
   Statistics total;
-  for (const auto& one : dynamic_cast<const EngineGroup&>(engine).engines()) {
+  for (const auto& one : engines) {
     const auto& on_device = dynamic_cast<const Engine&>(*one);
     total.add(on_device.statistics());
     report.peak_device_bytes = std::max(report.peak_device_bytes, on_device.device_bytes());
@@ -75,8 +73,8 @@ PageEngineKind cuda_sweep(const Store& store, const EngineOptions& options,
       return std::make_unique<CudaSweepEngine>(gpu, plan.filter.ref(), store, layout);
     });
   };
-  kind.finished = [](const SearchPlan&, const PageEngine& engine, EngineReport& report) {
-    log_statistics(report_of<CudaSweepEngine, SweepStatistics>(engine, report));
+  kind.finished = [](const SearchPlan&, const PageEngines& engines, EngineReport& report) {
+    log_statistics(report_of<CudaSweepEngine, SweepStatistics>(engines, report));
   };
   return kind;
 }
@@ -99,8 +97,9 @@ PageEngineKind cuda_grid(const Store& store, const Question& question, const Eng
       return std::make_unique<CudaGridEngine>(gpu, scene.of(plan), layout);
     });
   };
-  kind.finished = [scene](const SearchPlan& plan, const PageEngine& engine, EngineReport& report) {
-    log_statistics(scene.of(plan), report_of<CudaGridEngine, GridStatistics>(engine, report));
+  kind.finished = [scene](const SearchPlan& plan, const PageEngines& engines,
+                          EngineReport& report) {
+    log_statistics(scene.of(plan), report_of<CudaGridEngine, GridStatistics>(engines, report));
   };
   return kind;
 }

@@ -37,10 +37,13 @@ PageEngineKind cpu_grid(const Store& store, const Question& question,
     return grid.size_bytes() + layout.slots * GridCpuEngine::slot_bytes(grid, layout);
   };
   kind.make = [scene](const SearchPlan& plan, const SlotLayout& layout) {
-    return std::make_unique<GridCpuEngine>(scene.of(plan), layout);
+    PageEngines engines;
+    engines.push_back(std::make_unique<GridCpuEngine>(scene.of(plan), layout));
+    return engines;
   };
-  kind.finished = [scene](const SearchPlan& plan, const PageEngine& engine, EngineReport&) {
-    log_statistics(scene.of(plan), dynamic_cast<const GridCpuEngine&>(engine).statistics());
+  kind.finished = [scene](const SearchPlan& plan, const PageEngines& engines, EngineReport&) {
+    log_statistics(scene.of(plan),
+                   dynamic_cast<const GridCpuEngine&>(*engines.front()).statistics());
   };
   return kind;
 }

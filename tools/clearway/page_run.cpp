@@ -141,16 +141,20 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
                 [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
   throw_if_stopped(progress);
   const Stopwatch making;
-  const std::unique_ptr<PageEngine> engine = kind.make(plan, budget.layout());
+  const PageEngines engines = kind.make(plan, budget.layout());
   report.engine_seconds = making.seconds();
   const std::vector<PlannedPage> pages =
       paginate(store, plan.cells, budget.layout().page_bytes, budget.layout().cells);
   report.pages = pages.size();
   report.page_bytes = budget.layout().page_bytes;
-  report.slots = engine->slots();
-  Answer answer = run_pages(store, plan.cells, pages, *engine, question, kind.threads, progress,
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) {
+    report.slots += engine->slots();
+    lanes.push_back(engine.get());
+  }
+  Answer answer = run_pages(store, plan.cells, pages, lanes, question, kind.threads, progress,
                             report.stages, &journal);
-  kind.finished(plan, *engine, report);
+  kind.finished(plan, engines, report);
   return answer;
 }
 

@@ -11,6 +11,9 @@
 
 namespace clearway::tool {
 
+/// One for each device.
+using PageEngines = std::vector<std::unique_ptr<PageEngine>>;
+
 /// How an engine that works on pages is made and what it needs.
 struct PageEngineKind {
   std::uint32_t most_slots = 1;  ///< with less memory, fewer
@@ -25,9 +28,9 @@ struct PageEngineKind {
   std::function<std::uint64_t(const SearchPlan&, const SlotLayout&)> device_bytes = {};
   std::uint64_t most_device_bytes = 0;
   /// Slots of the layout are those of each device.
-  std::function<std::unique_ptr<PageEngine>(const SearchPlan&, const SlotLayout&)> make;
+  std::function<PageEngines(const SearchPlan&, const SlotLayout&)> make;
   /// Called once after the last page: for the log, and for what only the engine can report.
-  std::function<void(const SearchPlan&, const PageEngine&, EngineReport&)> finished;
+  std::function<void(const SearchPlan&, const PageEngines&, EngineReport&)> finished;
 };
 
 /// Plans the question within options.memory_bytes, makes the engine and runs it. Where memory is

@@ -33,10 +33,12 @@ PageEngineKind cpu_sweep(const Store& store, const Question& question,
                CellSearch::most_bytes(store, question, plan.most_poses());
   };
   kind.make = [&store](const SearchPlan& plan, const SlotLayout& layout) {
-    return std::make_unique<SweepEngine>(store, plan.filter, layout);
+    PageEngines engines;
+    engines.push_back(std::make_unique<SweepEngine>(store, plan.filter, layout));
+    return engines;
   };
-  kind.finished = [](const SearchPlan&, const PageEngine& engine, EngineReport&) {
-    log_statistics(dynamic_cast<const SweepEngine&>(engine).statistics());
+  kind.finished = [](const SearchPlan&, const PageEngines& engines, EngineReport&) {
+    log_statistics(dynamic_cast<const SweepEngine&>(*engines.front()).statistics());
   };
   return kind;
 }
