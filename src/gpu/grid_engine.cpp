@@ -98,6 +98,7 @@ class CudaGridEngine::Impl {
       pinned_bytes_ += slots_.back().pinned_bytes();
     }
     check_cuda(cudaMemset(statistics_.data(), 0, statistics_.bytes()));
+    check_cuda(cudaDeviceSynchronize());  // the slots' streams do not wait for copies and memsets
   }
 
   ~Impl() {

@@ -250,6 +250,7 @@ class CudaSweepEngine::Impl {
       pinned_bytes_ += slots_.back().host_page.bytes() + slots_.back().host_answer.bytes();
     }
     check_cuda(cudaMemset(tallies_.data(), 0, tallies_.bytes()));
+    check_cuda(cudaDeviceSynchronize());  // the slots' streams do not wait for copies and memsets
   }
 
   ~Impl() {

@@ -99,6 +99,7 @@ PageEngineKind cuda_grid(const Store& store, const Question& question, const Eng
   };
   kind.finished = [scene](const SearchPlan& plan, const PageEngines& engines,
                           EngineReport& report) {
+    report.grid_cell = scene.of(plan).grid_cell();
     log_statistics(scene.of(plan), report_of<CudaGridEngine, GridStatistics>(engines, report));
   };
   return kind;

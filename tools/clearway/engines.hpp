@@ -35,6 +35,7 @@ struct EngineReport {
   double plan_seconds = 0, field_seconds = 0;
   double engine_seconds = 0;  ///< of making the engine with its slots
   StageTimes stages;
+  double field_voxel = 0, grid_cell = 0;  ///< metres, of what the engine built; 0: nothing
   std::uint64_t resumed_cells = 0, resumed_poses = 0;  ///< known from a journal
   std::uint64_t pages = 0, page_bytes = 0;             ///< pages run, and the largest they may be
   std::uint32_t slots = 0;

@@ -41,7 +41,9 @@ PageEngineKind cpu_grid(const Store& store, const Question& question,
     engines.push_back(std::make_unique<GridCpuEngine>(scene.of(plan), layout));
     return engines;
   };
-  kind.finished = [scene](const SearchPlan& plan, const PageEngines& engines, EngineReport&) {
+  kind.finished = [scene](const SearchPlan& plan, const PageEngines& engines,
+                            EngineReport& report) {
+    report.grid_cell = scene.of(plan).grid_cell();
     log_statistics(scene.of(plan),
                    dynamic_cast<const GridCpuEngine&>(*engines.front()).statistics());
   };

@@ -132,6 +132,7 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
   SearchPlan& plan = budget.plan();
   report.plan_seconds = budget.plan_seconds();
   report.field_seconds = budget.field_seconds();
+  report.field_voxel = plan.field.voxel();
   report.needed_bytes = budget.needed_bytes();
   report.write_bytes = budget.write_bytes();
   spdlog::info("model field: voxel {:.4g} m, {} bricks, {}", plan.field.voxel(),

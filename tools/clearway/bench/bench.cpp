@@ -1,0 +1,181 @@
+#include "clearway/bench/bench.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <map>
+
+#include "clearway/bench/machine.hpp"
+#include "clearway/bench/program.hpp"
+#include "core/error.hpp"
+#ifdef CLEARWAY_CUDA
+#include "gpu/devices.hpp"
+#endif
+
+namespace clearway::tool {
+namespace {
+
+bool use_cuda(const std::string& device) {
+#ifdef CLEARWAY_CUDA
+  const bool found = cuda_device_count() > 0;
+#else
+  const bool found = false;
+#endif
+  if (device == "cuda" && !found) throw ResourceError("no GPU; --device cpu measures without");
+  return found && device != "cpu";
+}
+
+Json header_of(const std::string& experiment, const BenchOptions& options, bool cuda) {
+  return {{"experiment", experiment},
+          {"size", options.size},
+          {"machine", machine_description()},
+          {"clearway", program_description()},
+          {"parameters",
+           {{"device", cuda ? "cuda" : "cpu"},
+            {"repetitions", options.repetitions},
+            {"scenes", options.scenes},
+            {"memory", options.memory},
+            {"device_memory", options.device_memory}}}};
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace
+
+SceneSize scene_size(const std::string& scene, bool full) {
+  static const std::map<std::string, SceneSize> kFull{{"mine", {806'183'400, 100'000, 17'795}},
+                                                      {"hall", {55'872'714, 214'489, 17'234}},
+                                                      {"plant", {350'109'065, 434'700, 398'999}},
+                                                      {"tunnel", {18'919'000, 28'622, 19'392}}};
+  static const std::map<std::string, SceneSize> kSmall{{"mine", {4'000'000, 10'000, 1'800}},
+                                                       {"hall", {1'110'000, 20'000, 1'700}},
+                                                       {"plant", {2'000'000, 40'000, 8'000}},
+                                                       {"tunnel", {500'000, 5'000, 1'900}}};
+  return (full ? kFull : kSmall).at(scene);
+}
+
+Bench::Bench(const std::string& experiment, const BenchOptions& options)
+    : options_(options),
+      cuda_(use_cuda(options.device)),
+      record_(options.output, header_of(experiment, options, cuda_), options.resume,
+              options.force) {
+  std::filesystem::create_directories(options_.work);
+}
+
+SceneFiles Bench::scene(const std::string& name) {
+  const std::filesystem::path folder = options_.work / (name + "-" + options_.size);
+  SceneFiles files{.environment = folder / "environment.las",
+                   .store = {},
+                   .model = folder / "model.ply",
+                   .trajectory = folder / "trajectory.txt"};
+  if (!std::filesystem::exists(files.trajectory)) {
+    const SceneSize size = scene_size(name, full());
+    spdlog::info("{}: making the scene", folder.string());
+    output_of_program({"scene", name, "-o", folder.string(), "--points",
+                       std::to_string(size.points), "--model-points",
+                       std::to_string(size.model_points), "--poses", std::to_string(size.poses),
+                       "--force"});
+  }
+  files.store = store(name + "-" + options_.size, files.environment);
+  return files;
+}
+
+std::filesystem::path Bench::store(const std::string& name,
+                                   const std::filesystem::path& environment,
+                                   const std::vector<std::string>& options) {
+  std::filesystem::path path = options_.work / (name + ".h5");
+  if (!std::filesystem::exists(path)) {
+    spdlog::info("{}: converting", path.string());
+    output_of_program(
+        joined({"convert", environment.string(), "-o", path.string(), "--memory", options_.memory},
+               options));
+  }
+  return path;
+}
+
+std::filesystem::path Bench::answer(const std::string& name, const SceneFiles& files,
+                                    const std::vector<std::string>& run_options) {
+  std::filesystem::path path = options_.work / (name + "-" + options_.size + ".h5");
+  if (!std::filesystem::exists(path)) output_of_program(command(files, path, run_options));
+  return path;
+}
+
+EngineChoice Bench::engine(const std::string& name) const {
+  const std::string engine = name.substr(0, name.find(' '));
+  const std::string device = name.ends_with("cuda") ? "cuda" : "cpu";
+  std::vector<std::string> run_options{"--engine", engine, "--device", device};
+  const bool exact = name.find("float") == std::string::npos;
+  if (!exact) run_options = joined(std::move(run_options), {"--precision", "float"});
+  if (device == "cuda") {
+    run_options = joined(std::move(run_options), {"--device-memory", options_.device_memory});
+  }
+  return {name, run_options, exact};
+}
+
+std::vector<EngineChoice> Bench::exact_engines() const {
+  std::vector<EngineChoice> engines{engine("kdtree cpu"), engine("sweep cpu")};
+  if (!full() || !cuda_) engines.push_back(engine("grid cpu"));
+  if (cuda_) {
+    engines.push_back(engine("grid cuda"));
+    engines.push_back(engine("sweep cuda"));
+  }
+  return engines;
+}
+
+std::vector<std::string> Bench::command(const SceneFiles& files,
+                                        const std::filesystem::path& result,
+                                        const std::vector<std::string>& run_options) const {
+  std::vector<std::string> arguments{"run",
+                                     "--env",
+                                     files.store.string(),
+                                     "--model",
+                                     files.model.string(),
+                                     "--trajectory",
+                                     files.trajectory.string(),
+                                     "-o",
+                                     result.string(),
+                                     "--force",
+                                     "--json"};
+  const auto given = [&](const char* option) {
+    return std::find(run_options.begin(), run_options.end(), option) != run_options.end();
+  };
+  if (!given("--radius")) arguments = joined(std::move(arguments), {"--radius", kRadius});
+  if (!given("--memory")) arguments = joined(std::move(arguments), {"--memory", options_.memory});
+  return joined(std::move(arguments), run_options);
+}
+
+Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& files,
+                    const std::vector<std::string>& run_options, const Judge& judge,
+                    std::optional<int> repetitions, bool may_fail) {
+  if (const Json* known = record_.find(key)) return *known;
+  spdlog::info("{}", key);
+  const std::filesystem::path result = options_.work / "result.h5";
+  Json one{{"key", key}, {"parameters", std::move(parameters)}, {"runs", Json::array()}};
+  for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
+    const ProgramRun run = run_program(command(files, result, run_options));
+    if (run.exit_code != 0) {
+      if (!may_fail) throw ResourceError("clearway bench: " + key + ": " + run.log);
+      one["failed"] = {{"exit_code", run.exit_code}, {"log", run.log}};
+      return record_.add(std::move(one));
+    }
+    Json report = Json::parse(run.output);
+    report["wall_seconds"] = run.wall_seconds;
+    report["peak_resident_bytes"] = run.peak_bytes;
+    one["runs"].push_back(std::move(report));
+  }
+  if (judge) one["findings"] = judge(result);
+  return record_.add(std::move(one));
+}
+
+Json Bench::keep(const std::string& key, Json parameters, const std::function<Json()>& findings) {
+  if (const Json* known = record_.find(key)) return *known;
+  spdlog::info("{}", key);
+  Json found = findings();
+  return record_.add(
+      {{"key", key}, {"parameters", std::move(parameters)}, {"findings", std::move(found)}});
+}
+
+}  // namespace clearway::tool

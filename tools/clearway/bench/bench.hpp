@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/bench/record.hpp"
+
+namespace clearway::tool {
+
+struct BenchOptions {
+  std::filesystem::path output, work;
+  std::string size = "small";   ///< "small" or "full"
+  std::string device = "auto";  ///< "auto", "cpu" or "cuda"
+  int repetitions = 3;
+  std::vector<std::string> scenes{"mine", "hall", "plant", "tunnel"};
+  std::string memory = "4G", device_memory = "2G";
+  bool resume = false, force = false;
+};
+
+/// How large a scene is.
+struct SceneSize {
+  std::uint64_t points, model_points, poses;
+};
+
+SceneSize scene_size(const std::string& scene, bool full);
+
+/// A question to be asked: a store, a model and a trajectory.
+struct SceneFiles {
+  std::filesystem::path environment;  ///< LAS
+  std::filesystem::path store, model, trajectory;
+};
+
+/// An engine on a device, with options of `clearway run`.
+struct EngineChoice {
+  std::string name;  ///< of the choice, for charts: "sweep cuda"
+  std::vector<std::string> options;
+  bool exact = true;
+};
+
+/// Runs `clearway` again and again, and keeps what it reports.
+class Bench {
+ public:
+  Bench(const std::string& experiment, const BenchOptions& options);
+
+  const BenchOptions& options() const { return options_; }
+  bool full() const { return options_.size == "full"; }
+  bool cuda() const { return cuda_; }
+  const std::filesystem::path& work() const { return options_.work; }
+
+  /// Made on the first call, kept in the work folder.
+  SceneFiles scene(const std::string& name);
+  /// A store of an environment, made on the first call; `name` is that of its file.
+  std::filesystem::path store(const std::string& name, const std::filesystem::path& environment,
+                              const std::vector<std::string>& options = {});
+
+  /// A result, made on the first call and kept; no case.
+  std::filesystem::path answer(const std::string& name, const SceneFiles& files,
+                               const std::vector<std::string>& run_options);
+
+  /// The engines of this machine: those on the GPU where there is one, and the CPU's.
+  std::vector<EngineChoice> exact_engines() const;
+  EngineChoice engine(const std::string& name) const;
+
+  /// What is said of a result, added to the case as "findings".
+  using Judge = std::function<Json(const std::filesystem::path& result)>;
+
+  bool has(const std::string& key) const { return record_.find(key) != nullptr; }
+
+  /// `run` on these files, `repetitions` times (those of the options where it is not given), unless
+  /// the file has the case already. Every report, with wall clock and peak memory, goes to "runs".
+  /// A run that fails with an exit code goes to "failed" instead, where that is allowed; otherwise
+  /// it throws.
+  Json measure(const std::string& key, Json parameters, const SceneFiles& files,
+               const std::vector<std::string>& run_options, const Judge& judge = {},
+               std::optional<int> repetitions = {}, bool may_fail = false);
+
+  /// Any other case.
+  Json keep(const std::string& key, Json parameters, const std::function<Json()>& findings);
+
+ private:
+  std::vector<std::string> command(const SceneFiles& files, const std::filesystem::path& result,
+                                   const std::vector<std::string>& run_options) const;
+
+  BenchOptions options_;
+  bool cuda_;
+  Record record_;
+};
+
+/// The radius of all experiments that do not vary it, metres (the paper's).
+inline constexpr const char* kRadius = "0.1";
+
+// One an experiment (docs/evaluation.md).
+void bench_table(Bench& bench);
+void bench_threads(Bench& bench);
+void bench_grid(Bench& bench);
+void bench_datasets(Bench& bench);
+void bench_points(Bench& bench);
+void bench_accuracy(Bench& bench);
+void bench_stability(Bench& bench);
+void bench_scaling(Bench& bench);
+
+}  // namespace clearway::tool

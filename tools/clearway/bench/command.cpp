@@ -1,0 +1,92 @@
+#include <memory>
+
+#include "clearway/bench/bench.hpp"
+#include "clearway/commands.hpp"
+#include "clearway/options.hpp"
+#include "clearway/signals.hpp"
+#include "core/error.hpp"
+
+namespace clearway::tool {
+namespace {
+
+constexpr const char* kHowToResume = "the same command with --resume goes on from there";
+
+struct Experiment {
+  const char* name;
+  void (*run)(Bench&);
+  const char* help;
+};
+
+constexpr Experiment kExperiments[] = {
+    {"table", bench_table, "Colliding points of every engine on the four scenes (Table 1)"},
+    {"threads", bench_threads, "Speed by the number of threads (Fig. 1)"},
+    {"grid", bench_grid, "Time of each step by grid resolution and layout (Fig. 2)"},
+    {"datasets", bench_datasets, "Time of every engine and device on the four scenes (Fig. 3)"},
+    {"points", bench_points, "Time by the number of environment points, 111 samples (Fig. 4)"},
+//    {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
+//    {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
+    {"scaling", bench_scaling, "Time by poses, model points, radius and cell size"},
+};
+
+void run_bench(const Experiment& experiment, const BenchOptions& options) {
+  stop_on_signals(kHowToResume);
+  try {
+    Bench bench(experiment.name, options);
+    experiment.run(bench);
+  } catch (const Interrupted&) {
+    throw Interrupted(options.output.string() + ": interrupted; " + kHowToResume);
+  }
+}
+
+void add_options(CLI::App& command, BenchOptions& options) {
+  command.add_option("-o,--output", options.output, "The figures, a JSON file")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--work", options.work,
+                  "Folder for scenes, stores and results, which are kept there")
+      ->type_name("DIR")
+      ->required();
+  command
+      .add_option("--size", options.size,
+                  "small: minutes on 2 cores; full: the paper's sizes, for a machine with a GPU")
+      ->check(CLI::IsMember({"small", "full"}))
+      ->capture_default_str();
+  command
+      .add_option("--device", options.device,
+                  "cpu measures no GPU; auto measures one where there is one")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  command.add_option("--repetitions", options.repetitions, "Runs of every case")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--scenes", options.scenes, "Scenes of table and datasets (default: all)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
+  command.add_option("--memory", options.memory, "--memory of every run and conversion")
+      ->capture_default_str();
+  command.add_option("--device-memory", options.device_memory, "--device-memory of every run")
+      ->capture_default_str();
+  CLI::Option* force = command.add_flag("--force", options.force, "Replace an existing file");
+  command.add_flag("--resume", options.resume, "Go on with a file of the same experiment")
+      ->excludes(force);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program) {
+  CLI::App* command = program.add_subcommand(
+      "bench", "Measure Clearway: the paper's experiments and ours, as JSON for charts");
+  command->require_subcommand(1);
+  for (const Experiment& experiment : kExperiments) {
+    const auto options = std::make_shared<BenchOptions>();
+    CLI::App* one = command->add_subcommand(experiment.name, experiment.help);
+    add_options(*one, *options);
+    one->callback([&experiment, options] { run_bench(experiment, *options); });
+  }
+  command->footer(
+      "Every case is a `clearway run` in a process of its own; tools/charts.py draws the files.\n"
+      "Example: clearway bench table -o table.json --work /tmp/scenes");
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace clearway::tool {
+
+/// Processor, cores, memory, GPUs and system of this machine.
+nlohmann::ordered_json machine_description();
+
+/// Version and commit of this program, compiler and libraries.
+nlohmann::ordered_json program_description();
+
+}  // namespace clearway::tool

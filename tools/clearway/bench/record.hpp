@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace clearway::tool {
+
+using Json = nlohmann::ordered_json;
+
+/// The JSON file of an experiment: what was measured where, and its cases, each written as soon as
+/// it is there, so that an experiment that was stopped goes on where it was.
+class Record {
+ public:
+  /// header: experiment, size, machine, clearway, parameters. An existing file is refused with
+  /// UsageError unless `force`, which replaces it, or `resume`, which goes on with it where its
+  /// header is the same.
+  Record(std::filesystem::path path, const Json& header, bool resume, bool force);
+
+  /// The case of that key, or nullptr.
+  const Json* find(const std::string& key) const;
+  /// Adds and gives back a case, which has a "key" of its own. Throws ResourceError where the file
+  /// cannot be written.
+  Json add(Json of_case);
+
+ private:
+  void write() const;
+
+  std::filesystem::path path_;
+  Json all_;
+};
+
+}  // namespace clearway::tool

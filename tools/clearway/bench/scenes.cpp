@@ -1,0 +1,54 @@
+// Every engine on the four scenes: Table 1 (colliding points) and Fig. 3 (time).
+#include "clearway/bench/bench.hpp"
+#include "core/error.hpp"
+#include "io/compare_results.hpp"
+
+namespace clearway::tool {
+namespace {
+
+Json compared(const std::filesystem::path& result, const std::filesystem::path& reference) {
+  const Comparison found = compare_results(ResultReader(result), ResultReader(reference), 0);
+  return {{"common", found.common},
+          {"only_here", found.only_in_a},
+          {"only_in_reference", found.only_in_b},
+          {"equal", found.equal()}};
+}
+
+/// The engines that decide exactly, and float alone as the paper's GPU method.
+std::vector<EngineChoice> engines_of_table(const Bench& bench) {
+  std::vector<EngineChoice> engines = bench.exact_engines();
+  engines.push_back(bench.engine(bench.cuda() ? "grid float cuda" : "grid float cpu"));
+  return engines;
+}
+
+}  // namespace
+
+void bench_table(Bench& bench) {
+  std::string differing;
+  for (const std::string& scene : bench.options().scenes) {
+    const SceneFiles files = bench.scene(scene);
+    const auto reference =
+        bench.answer("reference-" + scene, files, bench.engine("sweep cpu").options);
+    for (const EngineChoice& engine : engines_of_table(bench)) {
+      const Json found = bench.measure(
+          scene + "/" + engine.name,
+          {{"scene", scene}, {"engine", engine.name}, {"exact", engine.exact}}, files,
+          engine.options,
+          [&](const std::filesystem::path& result) { return compared(result, reference); }, 1);
+      if (engine.exact && !found["findings"]["equal"]) differing += " " + scene + "/" + engine.name;
+    }
+  }
+  if (!differing.empty()) throw Error("engines that are exact differ:" + differing);
+}
+
+void bench_datasets(Bench& bench) {
+  for (const std::string& scene : bench.options().scenes) {
+    const SceneFiles files = bench.scene(scene);
+    for (const EngineChoice& engine : bench.exact_engines()) {
+      bench.measure(scene + "/" + engine.name, {{"scene", scene}, {"engine", engine.name}}, files,
+                    engine.options);
+    }
+  }
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,25 @@
+// Fig. 1: speed by the number of threads.
+#include <thread>
+
+#include "clearway/bench/bench.hpp"
+
+namespace clearway::tool {
+void bench_threads(Bench& bench) {
+  const SceneFiles files = bench.scene("hall");
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int step = cores > 8 ? cores / 8 : 1;
+  for (const std::string name : {"kdtree cpu", "sweep cpu"}) {
+    const auto measure = [&](int threads) {
+      EngineChoice engine = bench.engine(name);
+      engine.options.insert(engine.options.end(), {"--threads", std::to_string(threads)});
+      bench.measure(name + "/" + std::to_string(threads) + " threads",
+                    {{"scene", "hall"}, {"engine", name}, {"threads", threads}}, files,
+                    engine.options);
+    };
+    measure(1);
+    for (int threads = step == 1 ? 2 : step; threads <= 2 * cores; threads += step)
+      measure(threads);
+  }
+}
+
+}  // namespace clearway::tool
