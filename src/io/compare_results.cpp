@@ -122,8 +122,7 @@ ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader
       from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
       [&] {
         ++out.common;
-        const bool same =
-            from_a.distance() == from_b.distance() && from_a.pose() == from_b.pose();
+        const bool same = from_a.distance() == from_b.distance() && from_a.pose() == from_b.pose();
         if (!same) ++out.differing;
       });
   return out;
