@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "core/error.hpp"
-#include "io/result_rows.hpp"
+#include "io/result_cursor.hpp"
 
 namespace clearway {
 namespace {
@@ -62,59 +62,6 @@ std::vector<QuestionDifference> question_differences(const ResultHeader& a, cons
   return out;
 }
 
-/// One row after the other.
-template <typename Stream, typename Rows>
-class Cursor {
- public:
-  explicit Cursor(const ResultReader& reader) : stream_(reader) { stream_.read(rows_); }
-
-  bool at_end() const { return rows_.size() == 0; }
-  std::uint64_t source() const { return rows_.source[at_]; }
-  void advance() {
-    if (++at_ < rows_.size()) return;
-    at_ = 0;
-    stream_.read(rows_);
-  }
-
- protected:
-  Stream stream_;
-  Rows rows_;
-  std::size_t at_ = 0;
-};
-
-class RowCursor : public Cursor<ResultRowStream, ResultRows> {
- public:
-  using Cursor::Cursor;
-  Vec3 xyz() const { return rows_.xyz[at_]; }
-  std::optional<std::uint32_t> first_pose() const {
-    return rows_.first_pose.empty() ? std::nullopt : std::optional(rows_.first_pose[at_]);
-  }
-};
-
-class ClearanceCursor : public Cursor<ClearanceRowStream, ClearanceRows> {
- public:
-  using Cursor::Cursor;
-  std::pair<double, std::uint32_t> value() const { return {rows_.distance[at_], rows_.pose[at_]}; }
-};
-
-/// Advances two cursors together, calling for each source index what applies.
-template <typename Cursor, typename OnlyA, typename OnlyB, typename Both>
-void merge(Cursor& a, Cursor& b, OnlyA only_in_a, OnlyB only_in_b, Both in_both) {
-  while (!a.at_end() || !b.at_end()) {
-    if (b.at_end() || (!a.at_end() && a.source() < b.source())) {
-      only_in_a();
-      a.advance();
-    } else if (a.at_end() || b.source() < a.source()) {
-      only_in_b();
-      b.advance();
-    } else {
-      in_both();
-      a.advance();
-      b.advance();
-    }
-  }
-}
-
 class Merge {
  public:
   Merge(const ResultReader& a, const ResultReader& b, std::size_t kept)
@@ -126,7 +73,7 @@ class Merge {
   }
 
   Comparison run() {
-    merge(
+    merge_rows(
         a_, b_,
         [&] {
           ++out_.only_in_a;
@@ -171,11 +118,12 @@ ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader
   out.in_a = a.clearances();
   out.in_b = b.clearances();
   ClearanceCursor from_a(a), from_b(b);
-  merge(
+  merge_rows(
       from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
       [&] {
         ++out.common;
-        if (from_a.value() != from_b.value()) ++out.differing;
+        const bool same = from_a.distance() == from_b.distance() && from_a.pose() == from_b.pose();
+        if (!same) ++out.differing;
       });
   return out;
 }
