@@ -72,8 +72,8 @@ class Resampler {
     if (total / max_motion_ <= static_cast<double>(most_added)) return;
     const double enough = total / static_cast<double>(most_added) * 1.01;
     throw UsageError("--max-motion " + shown(max_motion_) + " takes more than " +
-                     std::to_string(most_added) + " additional poses, most of them between " +
-                     named(at) + ", " + shown(longest) + " m apart; expected " + shown(enough) +
+                     std::to_string(most_added) + " additional poses; the farthest apart, " +
+                     shown(longest) + " m, are " + named(at) + "; expected " + shown(enough) +
                      " or more");
   }
 

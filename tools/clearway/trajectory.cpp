@@ -47,6 +47,15 @@ std::vector<Pose> thin(const std::vector<Pose>& poses, const Box& model, double 
   return kept;
 }
 
+std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model, const Options& options,
+                          const Change& change, Progress& progress) {
+  try {
+    return change(poses, model, options.max_motion, progress);
+  } catch (const InputError& error) {
+    throw InputError(options.input.string() + ": " + error.what());
+  }
+}
+
 void write_changed(const Options& options, const Change& change) {
   refuse_overwriting(options.output, {options.input, options.model});
   PendingFile output(options.output, options.force);
@@ -54,7 +63,7 @@ void write_changed(const Options& options, const Change& change) {
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   const Box model = box_of(read_model(options.model));
   ConsoleProgress progress;
-  const std::vector<Pose> after = change(before, model, options.max_motion, progress);
+  const std::vector<Pose> after = changed(before, model, options, change, progress);
   throw_if_stopped(progress);
   write_trajectory(after, File::create(output.partial()));
   output.publish();
