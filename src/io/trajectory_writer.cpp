@@ -4,7 +4,8 @@
 
 namespace clearway {
 
-void write_trajectory(std::span<const Pose> poses, const File& file) {
+void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress) {
+  progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
   for (const Pose& pose : poses) {
     for (std::size_t row = 0; row < 3; ++row) {
@@ -12,8 +13,11 @@ void write_trajectory(std::span<const Pose> poses, const File& file) {
       out << pose.translation[row] << " ";
     }
     out << "0 0 0 1\n";
+    throw_if_stopped(progress);
+    progress.advance(1);
   }
   out.flush();
+  progress.end();
 }
 
 }  // namespace clearway

@@ -232,14 +232,25 @@ TEST_CASE("a pose spline stays near its chords at corners, stops and jumps") {
   CHECK(worst <= 0.5);
 }
 
-TEST_CASE("a turn on the spot stays on the spot") {
+TEST_CASE("a turn on the spot stays on the spot, and a straight way beside it straight") {
+  const double noise = GENERATE(0.0, 1e-6);
+  Random random(16);
   std::vector<Pose> poses;
-  for (int i = 0; i < 5; ++i) poses.push_back(translation({i * 1.0, 0, 0}));
-  for (int i = 1; i < 5; ++i) poses.push_back(rotation({0, 0, 1}, 0.4 * i, {4, 0, 0}));
-  for (int i = 1; i < 5; ++i) poses.push_back(rotation({0, 0, 1}, 1.6, {4, i * 1.0, 0}));
+  const auto add = [&](double angle, double x, double y) {
+    poses.push_back(rotation({0, 0, 1}, angle + uniform(random, 0, noise),
+                             {x + uniform(random, 0, noise), y + uniform(random, 0, noise), 0}));
+  };
+  for (int i = 0; i < 5; ++i) add(0, i, 0);
+  for (int i = 1; i < 5; ++i) add(0.4 * i, 4, 0);
+  for (int i = 1; i < 5; ++i) add(1.6, 4, i);
   const Curve curve(poses);
-  for (std::size_t i = 4; i < 8; ++i) {
-    CHECK(position_distance(curve.spline.between(i).at(0.5), poses[4]) <= 1e-15);
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    const Pose middle = curve.spline.between(i).at(0.5);
+    if (i >= 4 && i < 8) {
+      CHECK(position_distance(middle, poses[4]) <= 4 * noise + 1e-15);
+    } else {
+      CHECK(rotation_distance(middle, poses[i]) <= 4 * noise + 1e-15);
+    }
   }
 }
 

@@ -13,7 +13,8 @@ namespace {
 
 std::vector<Pose> written_and_read(const ScratchFolder& folder, const std::vector<Pose>& poses) {
   const auto path = folder / "path.txt";
-  write_trajectory(poses, File::create(path));
+  NoProgress progress;
+  write_trajectory(poses, File::create(path), progress);
   return read_trajectory(path, {TrajectoryFormat::kMatrix, true});
 }
 
@@ -32,7 +33,8 @@ TEST_CASE("a written trajectory reads back to the same numbers") {
 
 TEST_CASE("a pose is written as a row-major 4 x 4 matrix") {
   const ScratchFolder folder;
+  NoProgress progress;
   write_trajectory(std::vector<Pose>{{{1, 2, 3, 4, 5, 6, 7, 8, 9}, {0.1, 11, 12}}},
-                   File::create(folder / "path.txt"));
+                   File::create(folder / "path.txt"), progress);
   CHECK(bytes_of(folder / "path.txt") == "1 2 3 0.1 4 5 6 11 7 8 9 12 0 0 0 1\n");
 }

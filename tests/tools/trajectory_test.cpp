@@ -27,7 +27,8 @@ struct Files {
                                {5e5 + i, uniform(random, 0, 1), 0}));
     }
     poses.insert(poses.begin() + 10, 5, poses[10]);
-    write_trajectory(poses, File::create(folder / "path.txt"));
+    NoProgress progress;
+    write_trajectory(poses, File::create(folder / "path.txt"), progress);
   }
 
   std::string path(const std::string& name) const { return quoted(folder / name); }

@@ -64,8 +64,7 @@ void write_changed(const Options& options, const Change& change) {
   const Box model = box_of(read_model(options.model));
   ConsoleProgress progress;
   const std::vector<Pose> after = changed(before, model, options, change, progress);
-  throw_if_stopped(progress);
-  write_trajectory(after, File::create(output.partial()));
+  write_trajectory(after, File::create(output.partial()), progress);
   output.publish();
 
   const double motion_before = largest_motion(model, before);
