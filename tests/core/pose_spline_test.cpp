@@ -229,7 +229,7 @@ TEST_CASE("a pose spline stays near its chords at corners, stops and jumps") {
       worst = std::max(worst, detour / length);
     }
   }
-  CHECK(worst <= 0.5);
+  CHECK(worst <= 0.15);
 }
 
 TEST_CASE("a turn on the spot stays on the spot, and a straight way beside it straight") {
