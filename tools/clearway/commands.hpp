@@ -14,5 +14,6 @@ void add_info(CLI::App& program);
 void add_verify(CLI::App& program, int& exit_code);
 void add_scene(CLI::App& program);
 void add_bench(CLI::App& program);
+void add_trajectory(CLI::App& program);
 
 }  // namespace clearway::tool

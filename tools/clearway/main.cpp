@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   clearway::tool::add_verify(program, exit_code);
   clearway::tool::add_scene(program);
   clearway::tool::add_bench(program);
+  clearway::tool::add_trajectory(program);
   check_command(program, argc, argv);
   try {
     program.parse(argc, argv);

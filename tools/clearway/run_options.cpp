@@ -1,7 +1,5 @@
 #include "clearway/run_options.hpp"
 
-#include <map>
-
 #include "clearway/options.hpp"
 
 namespace clearway::tool {
@@ -26,22 +24,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
-  const std::map<std::string, TrajectoryFormat> formats{{"auto", TrajectoryFormat::kAuto},
-                                                        {"matrix", TrajectoryFormat::kMatrix},
-                                                        {"tum", TrajectoryFormat::kTum},
-                                                        {"euroc", TrajectoryFormat::kEuroc},
-                                                        {"csv", TrajectoryFormat::kCsv}};
-  command
-      .add_option_function<std::string>(
-          "--trajectory-format",
-          [formats, &format = options.trajectory_options.format](const std::string& name) {
-            format = formats.at(name);
-          },
-          "Format of the trajectory where a guess could go wrong (default: auto)")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "matrix", "tum", "euroc", "csv"}));
-  command.add_flag("--allow-non-rigid", options.trajectory_options.allow_non_rigid,
-                   "Accept matrices that scale or shear");
+  add_trajectory_options(command, options.trajectory_options);
 }
 
 void add_question(CLI::App& command, RunOptions& options) {
