@@ -3,10 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "clearway/bench/machine.hpp"
 #include "clearway/bench/program.hpp"
+#include "clearway/bench/variants.hpp"
 #include "core/error.hpp"
 #ifdef CLEARWAY_CUDA
 #include "gpu/devices.hpp"
@@ -42,6 +44,14 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
+
+Json failure_of(const ProgramRun& run) {
+  if (run.timed_out) return {{"after_seconds", run.wall_seconds}};
+  return {{"exit_code", run.exit_code}, {"log", run.log}};
+}
+
+/// Beyond the radius by more than any method is expected to err, metres.
+constexpr const char* kTruthClearance = "0.3";
 
 }  // namespace
 
@@ -103,6 +113,41 @@ std::filesystem::path Bench::answer(const std::string& name, const SceneFiles& f
   return path;
 }
 
+std::filesystem::path Bench::truth(const std::string& name, const SceneFiles& files) {
+  std::vector<std::string> run_options = engine(cuda_ ? "sweep cuda" : "sweep cpu").options;
+  run_options.insert(run_options.end(), {"--clearance", kTruthClearance});
+  return answer("truth-" + name, files, run_options);
+}
+
+SceneFiles Bench::shifted(const std::string& name, const SceneFiles& files, const Vec3& shift) {
+  const std::string of_shift = name + "-" + options_.size + "-shifted-" +
+                               std::to_string(std::llround(shift.x)) + "-" +
+                               std::to_string(std::llround(shift.y));
+  SceneFiles moved = files;
+  moved.environment = options_.work / "shifted.las";
+  moved.trajectory = options_.work / (of_shift + ".txt");
+  moved.store = options_.work / (of_shift + ".h5");
+  if (!std::filesystem::exists(moved.store)) {
+    write_shifted_poses(files.trajectory, moved.trajectory, shift);
+    shift_environment(files.environment, moved.environment, shift);
+    store(of_shift, moved.environment);
+    std::filesystem::remove(moved.environment);
+  }
+  return moved;
+}
+
+Json Bench::convert(const std::filesystem::path& environment, const std::filesystem::path& path,
+                    const std::vector<std::string>& convert_options) {
+  const ProgramRun run = run_program(joined({"convert", environment.string(), "-o", path.string(),
+                                             "--memory", options_.memory, "--force"},
+                                            convert_options),
+                                     options_.limit_seconds);
+  if (run.exit_code != 0) return {{"failed", failure_of(run)}};
+  return {{"convert_seconds", run.wall_seconds},
+          {"convert_peak_bytes", run.peak_bytes},
+          {"store_bytes", std::filesystem::file_size(path)}};
+}
+
 EngineChoice Bench::engine(const std::string& name) const {
   const std::string engine = name.substr(0, name.find(' '));
   const std::string device = name.ends_with("cuda") ? "cuda" : "cpu";
@@ -155,10 +200,10 @@ Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& f
   const std::filesystem::path result = options_.work / "result.h5";
   Json one{{"key", key}, {"parameters", std::move(parameters)}, {"runs", Json::array()}};
   for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
-    const ProgramRun run = run_program(command(files, result, run_options));
+    const ProgramRun run = run_program(command(files, result, run_options), options_.limit_seconds);
     if (run.exit_code != 0) {
       if (!may_fail) throw ResourceError("clearway bench: " + key + ": " + run.log);
-      one["failed"] = {{"exit_code", run.exit_code}, {"log", run.log}};
+      one["failed"] = failure_of(run);
       return record_.add(std::move(one));
     }
     Json report = Json::parse(run.output);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clearway/bench/record.hpp"
+#include "core/vec3.hpp"
 
 namespace clearway::tool {
 
@@ -18,6 +19,7 @@ struct BenchOptions {
   int repetitions = 3;
   std::vector<std::string> scenes{"mine", "hall", "plant", "tunnel"};
   std::string memory = "4G", device_memory = "2G";
+  double limit_seconds = 120;  ///< of one run; one that takes longer is stopped, and has failed
   bool resume = false, force = false;
 };
 
@@ -60,6 +62,17 @@ class Bench {
   /// A result, made on the first call and kept; no case.
   std::filesystem::path answer(const std::string& name, const SceneFiles& files,
                                const std::vector<std::string>& run_options);
+
+  /// The exact set of these files with exact distances of all points nearer than 0.3 m.
+  std::filesystem::path truth(const std::string& name, const SceneFiles& files);
+
+  /// The scene moved by whole metres: environment and poses.
+  SceneFiles shifted(const std::string& name, const SceneFiles& files, const Vec3& shift);
+
+  /// `convert` into a store that replaces one of that name; its wall clock, peak memory and size,
+  /// or that it failed.
+  Json convert(const std::filesystem::path& environment, const std::filesystem::path& store,
+               const std::vector<std::string>& convert_options);
 
   /// The engines of this machine: those on the GPU where there is one, and the CPU's.
   std::vector<EngineChoice> exact_engines() const;

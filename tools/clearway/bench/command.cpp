@@ -23,8 +23,8 @@ constexpr Experiment kExperiments[] = {
     {"grid", bench_grid, "Time of each step by grid resolution and layout (Fig. 2)"},
     {"datasets", bench_datasets, "Time of every engine and device on the four scenes (Fig. 3)"},
     {"points", bench_points, "Time by the number of environment points, 111 samples (Fig. 4)"},
-//    {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
-//    {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
+    {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
+    {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
     {"scaling", bench_scaling, "Time by poses, model points, radius and cell size"},
 };
 
@@ -63,6 +63,11 @@ void add_options(CLI::App& command, BenchOptions& options) {
   command.add_option("--scenes", options.scenes, "Scenes of table and datasets (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
+  command
+      .add_option("--limit", options.limit_seconds,
+                  "Seconds after which a run is stopped and counted as failed")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
   command.add_option("--memory", options.memory, "--memory of every run and conversion")
       ->capture_default_str();
   command.add_option("--device-memory", options.device_memory, "--device-memory of every run")

@@ -1,7 +1,10 @@
 #include "clearway/bench/program.hpp"
 
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/pidfd.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,9 +35,16 @@ std::string joined(const std::vector<std::string>& arguments) {
   return line;
 }
 
+/// Whether the process ends within that time; a signal to this one ends the wait too.
+bool ends_within(pid_t process, double seconds) {
+  const File handle = File::adopt(::pidfd_open(process, 0), "process");
+  pollfd ended{.fd = handle.descriptor(), .events = POLLIN, .revents = 0};
+  return ::poll(&ended, 1, static_cast<int>(1e3 * seconds)) != 0;
+}
+
 }  // namespace
 
-ProgramRun run_program(std::vector<std::string> arguments) {
+ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds) {
   const std::string line = joined(arguments);
   arguments.insert(arguments.begin(), "clearway");
   std::vector<char*> words;
@@ -51,15 +61,19 @@ ProgramRun run_program(std::vector<std::string> arguments) {
       ::posix_spawn(&child, "/proc/self/exe", &actions, nullptr, words.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw ResourceError(line + ": cannot start: " + std::strerror(error));
+  const bool timed_out = limit_seconds > 0 && !ends_within(child, limit_seconds);
+  if (timed_out) ::kill(child, SIGTERM);
   int status = 0;
   struct rusage usage {};
   while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
   ProgramRun run{.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+                 .timed_out = timed_out,
                  .output = text_of(output),
                  .log = text_of(log),
                  .wall_seconds = wall.seconds(),
                  .peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
+  if (timed_out && !stop_requested()) return run;
   if (stop_requested() || run.exit_code == kInterrupted) throw Interrupted(line + ": interrupted");
   if (run.exit_code < 0) {
     throw ResourceError(line + ": ended by signal " + std::to_string(WTERMSIG(status)));

@@ -1,18 +1,10 @@
 // Every engine on the four scenes: Table 1 (colliding points) and Fig. 3 (time).
 #include "clearway/bench/bench.hpp"
+#include "clearway/bench/judges.hpp"
 #include "core/error.hpp"
-#include "io/compare_results.hpp"
 
 namespace clearway::tool {
 namespace {
-
-Json compared(const std::filesystem::path& result, const std::filesystem::path& reference) {
-  const Comparison found = compare_results(ResultReader(result), ResultReader(reference), 0);
-  return {{"common", found.common},
-          {"only_here", found.only_in_a},
-          {"only_in_reference", found.only_in_b},
-          {"equal", found.equal()}};
-}
 
 /// The engines that decide exactly, and float alone as the paper's GPU method.
 std::vector<EngineChoice> engines_of_table(const Bench& bench) {

@@ -1,0 +1,33 @@
+#include "clearway/bench/judges.hpp"
+
+#include "clearway/bench/misclassified.hpp"
+#include "io/compare_results.hpp"
+
+namespace clearway::tool {
+Json compared(const std::filesystem::path& result, const std::filesystem::path& reference) {
+  const Comparison found = compare_results(ResultReader(result), ResultReader(reference), 0);
+  return {{"common", found.common},
+          {"only_here", found.only_in_a},
+          {"only_in_reference", found.only_in_b},
+          {"equal", found.equal()}};
+}
+
+Json judged(const std::filesystem::path& result, const std::filesystem::path& truth) {
+  const Misclassified wrong = misclassified(ResultReader(truth), ResultReader(result));
+  const std::uint64_t count = wrong.false_hits + wrong.misses;
+  return {{"false_hits", wrong.false_hits},
+          {"misses", wrong.misses},
+          {"share", static_cast<double>(count) /
+                        static_cast<double>(std::max<std::uint64_t>(wrong.environment_points, 1))},
+          {"beyond", wrong.beyond},
+          {"largest_distance", wrong.largest_distance},
+          {"histogram", wrong.histogram}};
+}
+
+Json near_boundary(const std::filesystem::path& truth) {
+  const ResultReader reader(truth);
+  return {{"environment_points", reader.header().environment_points},
+          {"within_ulps", points_near_boundary(reader, reader.header().radius)}};
+}
+
+}  // namespace clearway::tool

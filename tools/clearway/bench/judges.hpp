@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "clearway/bench/record.hpp"
+
+/// What is said of a result.
+namespace clearway::tool {
+
+/// How its set differs from a reference's, about the same environment.
+Json compared(const std::filesystem::path& result, const std::filesystem::path& reference);
+
+/// How many points it decides wrongly, and how far from the boundary (misclassified.hpp).
+Json judged(const std::filesystem::path& result, const std::filesystem::path& truth);
+
+/// How many points lie within 2^i ulps of the radius, i from 0.
+Json near_boundary(const std::filesystem::path& truth);
+
+}  // namespace clearway::tool
