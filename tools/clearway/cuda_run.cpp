@@ -76,7 +76,7 @@ PageEngineKind cuda_sweep(const Store& store, const EngineOptions& options,
     });
   };
   kind.finished = [](const SearchPlan&, const PageEngine& engine, EngineReport& report) {
-    log_statistics(report_of<CudaSweepEngine, SweepStatistics>(engine, report));
+    report_statistics(report_of<CudaSweepEngine, SweepStatistics>(engine, report), report);
   };
   return kind;
 }

@@ -15,10 +15,14 @@ constexpr std::uint32_t kSlotsAhead = 2;
 
 }  // namespace
 
-void log_statistics(const SweepStatistics& s) {
+void report_statistics(const SweepStatistics& s, EngineReport& report) {
   spdlog::info("tests: {} of boxes, {} of points ({} points), {} exact", format_count(s.node_tests),
                format_count(s.point_tests), format_count(s.points_tested),
                format_count(s.exact_tests));
+  if (report.tolerance) {
+    report.tolerance->settled_by_bounds = s.settled_tests;
+    spdlog::info("tolerance: {} exact tests spared by bounds", format_count(s.settled_tests));
+  }
 }
 
 PageEngineKind cpu_sweep(const Store& store, const Question& question,
@@ -35,8 +39,8 @@ PageEngineKind cpu_sweep(const Store& store, const Question& question,
   kind.make = [&store](const SearchPlan& plan, const SlotLayout& layout) {
     return std::make_unique<SweepEngine>(store, plan.filter, layout);
   };
-  kind.finished = [](const SearchPlan&, const PageEngine& engine, EngineReport&) {
-    log_statistics(dynamic_cast<const SweepEngine&>(engine).statistics());
+  kind.finished = [](const SearchPlan&, const PageEngine& engine, EngineReport& report) {
+    report_statistics(dynamic_cast<const SweepEngine&>(engine).statistics(), report);
   };
   return kind;
 }
