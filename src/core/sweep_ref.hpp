@@ -118,8 +118,7 @@ struct SweepRef {
         collides(e, transform(motion.poses[node.mid], model.points[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
-    // Only now, and only at single poses, so that the answer does not depend on the nodes looked
-    // at.
+    // Not earlier, and only at single poses: the answer must not depend on the nodes looked at.
     if (settled_from < radius && node.count == 1 &&
         farther(back.least, squared_lower, settled_from + rounding)) {
       ++statistics.settled_tests;

@@ -77,12 +77,6 @@ class KeptPoints {
  public:
   KeptPoints(std::span<const Vec3> model, double cover)
       : points_(model), origin_(box_of(model).lo), cover_(std::max(cover, 0.0)) {
-    // Of a cell's surface few points are kept, and most balls of radius `cover` lie in one cell.
-    const Box box = box_of(model);
-    const int longest = longest_side(box);
-    const double side = (box.hi[longest] - box.lo[longest]) / std::sqrt(model.size());
-    cell_ = std::max(4 * cover_, side);
-    if (!(cell_ > 0)) cell_ = 1;
     squared_cover_ = cover > 0 ? cover * cover * (1 - 16 * kUnitRoundoff) : -1;
     first_.assign(std::bit_ceil(model.size()), kNone);
     next_.assign(model.size(), kNone);
@@ -121,7 +115,10 @@ class KeptPoints {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  double cell_along(int axis, double at) const { return std::floor((at - origin_[axis]) / cell_); }
+  /// Cells are so large that most balls of radius `cover` lie in one, and hold few kept points.
+  double cell_along(int axis, double at) const {
+    return cover_ > 0 ? std::floor((at - origin_[axis]) / (4 * cover_)) : at;
+  }
 
   std::size_t bucket_of(double x, double y, double z) const {
     std::uint64_t hash = 0;
@@ -136,7 +133,6 @@ class KeptPoints {
   Vec3 origin_;
   double cover_;
   double squared_cover_;
-  double cell_;
   std::vector<std::uint32_t> first_;  ///< point of a bucket
   std::vector<std::uint32_t> next_;   ///< of the same bucket, by point
 };

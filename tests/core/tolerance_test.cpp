@@ -128,6 +128,43 @@ TEST_CASE("equal poses in a row are one at any motion") {
   for (const double most : {-1.0, 0.0, 1e-9}) CHECK(kept_poses(poses, kBox, most).size() == 30);
 }
 
+TEST_CASE("thinning makes distances no larger than the tolerance allows") {
+  Random random(6);
+  long double largest = 0;  // growth, of the tolerance
+  for (int trial = 0; trial < 500; ++trial) {
+    const double tolerance = std::exp(uniform(random, -14, -1));
+    const double far = trial % 3 == 0 ? 5e6 : 0;
+    const Vec3 along = random_direction(random);
+    const double step = tolerance * uniform(random, 0, 1.1);
+    const double move = tolerance * uniform(random, -1.1, 1.1);
+    std::vector<Vec3> model;
+    std::vector<Pose> poses;
+    for (int i = 0; i < 3; ++i) {
+      model.push_back({i * step * along.x, i * step * along.y, i * step * along.z});
+      poses.push_back(
+          translation({i * move * along.x, i * move * along.y, far + i * move * along.z}));
+    }
+    const ThinnedQuestion thinned(
+        {.model = model, .poses = poses, .radius = 0.5, .tolerance = tolerance});
+    const Question& question = thinned.question();
+    for (const double side : {-0.5, 0.5}) {
+      const Vec3 e{side * along.x, side * along.y, far + side * along.z};
+      long double least = HUGE_VALL, least_thinned = HUGE_VALL;
+      for (const Pose& pose : poses) {
+        for (const Vec3& m : model) least = std::min(least, distance(e, transform(pose, m)));
+      }
+      for (const Pose& pose : question.poses) {
+        for (const Vec3& m : question.model) {
+          least_thinned = std::min(least_thinned, distance(e, transform(pose, m)));
+        }
+      }
+      largest = std::max(largest, (least_thinned - least) / tolerance);
+    }
+  }
+  CHECK(largest <= 1);
+  CHECK(largest > 0.8);
+}
+
 TEST_CASE("a thinned question spends at most its tolerance") {
   Random random(5);
   for (const double far : {0.0, 5e6}) {
@@ -141,7 +178,7 @@ TEST_CASE("a thinned question spends at most its tolerance") {
       pose.translation[1] += far;
       pose = stretched(pose, {3, 0.5, 1});
     }
-    for (const double tolerance : {1e-12, 1e-9, 1e-3, 0.05, 0.4}) {
+    for (const double tolerance : {1e-12, 3e-10, 1e-9, 1e-3, 0.05, 0.4}) {
       const Question asked{.model = model, .poses = poses, .radius = 0.5, .tolerance = tolerance};
       const ThinnedQuestion thinned(asked);
       const Question& question = thinned.question();

@@ -93,6 +93,35 @@ TEST_CASE("distances that grow by all of the tolerance") {
   CHECK(differing > 300);  // the tolerance is made use of
 }
 
+// The same, where the field's candidate is one of many points just too far to be taken, so that
+// bounds settle what the thinning made too far.
+TEST_CASE("a tolerance spent on thinning and then on bounds") {
+  Random random(4);
+  std::uint64_t differing = 0;
+  for (int trial = 0; trial < 250; ++trial) {
+    CAPTURE(trial);
+    const double radius = uniform(random, 0.1, 2);
+    const double tolerance = radius * uniform(random, 0.4, 0.65);
+    const Vec3 along = random_direction(random);
+    const double step = tolerance * uniform(random, 0.3, 1.02);
+    const double move = tolerance * uniform(random, 0.3, 1.02);
+    std::vector<Vec3> model{{0, 0, 0}, beside({0, 0, 0}, along, step)};
+    const std::vector<Pose> poses{translation({0, 0, 0}),
+                                  translation(beside({0, 0, 0}, along, -move))};
+    const Vec3 at = beside(model[1], along, radius - uniform(random, 0.4, 1.5) * tolerance);
+    for (int i = 0; i < 20; ++i) {
+      const double farther = tolerance * uniform(random, 1.02, 1.2);
+      model.push_back(beside(at, random_direction(random), radius + farther + 2 * move));
+    }
+    std::vector<Vec3> environment;
+    for (int i = 0; i < 50; ++i) {
+      environment.push_back(beside(at, random_direction(random), 0.05 * tolerance));
+    }
+    differing += check(environment, model, poses, radius, tolerance).differing;
+  }
+  CHECK(differing > 100);
+}
+
 TEST_CASE("a tolerance in scenes of many kinds") {
   Random random(7);
   std::uint64_t differing = 0, colliding = 0;
@@ -145,13 +174,25 @@ TEST_CASE("a tolerance in scenes of many kinds") {
   CHECK(differing > 100);
 }
 
-TEST_CASE("a tolerance with one model point and one pose, to the last digits") {
+TEST_CASE("a tolerance to the last digits") {
   Random random(13);
   const std::vector<Vec3> model{{0, 0, 0}};
   for (const double tolerance : {0.05, 1e-3, 1e-9, 1e-15}) {
-    for (int trial = 0; trial < 6; ++trial) {
-      const std::vector<Pose> poses{random_rotation(random, {0, 0, 0})};
-      check_at_radius(random, model, poses, uniform(random, 0.06, 1), tolerance);
+    for (int trial = 0; trial < 12; ++trial) {
+      const std::vector<Pose> poses{translation({uniform(random, 0, 1e-3), 0, 0})};
+      const double radius = uniform(random, 0.06, 1);
+      const double side = trial % 2 == 0 ? -1 : 1;
+      const Vec3 at = beside(transform(poses[0], model[0]), random_direction(random),
+                             radius + side * tolerance);
+      const Quantisation quantisation{{0x1p-55, 0x1p-55, 0x1p-55}, {at.x, at.y, at.z}};
+      std::vector<Quantum> points;
+      for (int i = 0; i < 300; ++i) {
+        Quantum q;
+        for (auto& along : q) along = static_cast<std::int32_t>(below(random, 65)) - 32;
+        points.push_back(q);
+      }
+      check_tolerance(points, quantisation,
+                      {.model = model, .poses = poses, .radius = radius, .tolerance = tolerance});
     }
   }
 }
