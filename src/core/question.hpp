@@ -16,6 +16,9 @@ struct Question {
   bool first_pose = false;     ///< also the smallest pose index that touches each colliding point
   bool between_poses = false;  ///< model points move on straight segments from pose to pose
   double clearance = 0;        ///< metres: distances below it are asked for too; 0: none
+  /// Metres: a point whose distance differs from the radius by no more may be answered wrongly; 0:
+  /// none. Below the radius, and only without first poses, clearances and motion between poses.
+  double tolerance = 0;
 };
 
 }  // namespace clearway

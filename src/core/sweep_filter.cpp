@@ -6,6 +6,7 @@
 
 #include "core/hit_set.hpp"
 #include "core/spread_order.hpp"
+#include "core/tolerance.hpp"
 
 namespace clearway {
 namespace {
@@ -34,7 +35,7 @@ std::vector<std::uint32_t> first_equal_poses(std::span<const Pose> poses) {
 double rounding_of(const Question& question, const MotionTree& motion, const ModelField& field,
                    const PackedCloud& cloud) {
   const double rounding =
-      motion.rounding(largest_coordinate(cloud) + question.radius, field.margin()) + 1e-150;
+      motion.rounding(largest_coordinate(cloud) + search_radius(question), field.margin()) + 1e-150;
   // Between poses, the part of a computed hit's error that does not grow with the step.
   return question.between_poses ? rounding + 8 * kUnitRoundoff * question.radius : rounding;
 }
@@ -49,7 +50,8 @@ SweepFilter::SweepFilter(const Question& question, const MotionTree& motion, con
       ref_{.motion = motion.ref(),
            .model = model.ref(),
            .field = field.ref(),
-           .radius = question.radius,
+           .radius = search_radius(question),
+           .settled_from = question.radius,
            .clearance = question.clearance,
            .rounding = rounding_of(question, motion, field, cloud),
            .first_pose = question.first_pose,
@@ -88,8 +90,7 @@ void SweepFilter::narrow_node(const Vec3& centre, double rho, double limit, std:
 
 Verdict SweepFilter::test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                           double& squared_lower) const {
-  ++statistics.point_tests;
-  const Verdict verdict = ref_.look(e, node, squared_lower);
+  const Verdict verdict = ref_.look(e, node, statistics, squared_lower);
   if (verdict != Verdict::kOpen || node.count > 1) return verdict;
   ++statistics.exact_tests;
   return ref_.touches_at(e, node) ? Verdict::kHitAtMid : Verdict::kDismissed;

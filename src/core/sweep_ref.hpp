@@ -16,12 +16,14 @@ struct SweepStatistics {
   std::uint64_t point_tests = 0;    ///< field look-ups for points
   std::uint64_t exact_tests = 0;    ///< ball searches in the model
   std::uint64_t points_tested = 0;  ///< points that no block dismissed
+  std::uint64_t settled_tests = 0;  ///< ball searches that a tolerance spared
 
   CLEARWAY_HD void add(const SweepStatistics& other) {
     node_tests += other.node_tests;
     point_tests += other.point_tests;
     exact_tests += other.exact_tests;
     points_tested += other.points_tested;
+    settled_tests += other.settled_tests;
   }
 };
 
@@ -36,9 +38,10 @@ struct SweepRef {
   MotionTreeRef motion;
   ModelTreeRef model;
   ModelFieldRef field;
-  double radius;
-  double clearance;  ///< 0: not asked for
-  double rounding;   ///< metres, of a test of one point at one pose
+  double radius;        ///< whatever is closer is a hit; with a tolerance search_radius()
+  double settled_from;  ///< at most the radius: a point this far at a single pose need not be a hit
+  double clearance;     ///< 0: not asked for
+  double rounding;      ///< metres, of a test of one point at one pose
   bool first_pose;
   bool between_poses;
 
@@ -95,14 +98,16 @@ struct SweepRef {
   }
 
   enum class Verdict {
-    kDismissed,  ///< no pose of the node touches e
+    kDismissed,  ///< no pose of the node touches e, or need not
     kHitAtMid,   ///< its middle pose does
     kOpen,       ///< to be looked at in halves, or of a single pose: touches_at decides
   };
 
   /// Looks at a node for the point e without a search of the model. squared_lower: of the field at
   /// the middle pose.
-  CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node, double& squared_lower) const {
+  CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
+                           double& squared_lower) const {
+    ++statistics.point_tests;
     const PullBack& back = motion.pull_backs[node.mid];
     const ModelFieldRef::Bounds bounds = field.bounds(back.apply(e));
     squared_lower = bounds.squared_lower;
@@ -113,12 +118,19 @@ struct SweepRef {
         collides(e, transform(motion.poses[node.mid], model.points[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
+    // Not earlier, and only at single poses: the answer must not depend on the nodes looked at.
+    if (settled_from < radius && node.count == 1 &&
+        farther(back.least, squared_lower, settled_from + rounding)) {
+      ++statistics.settled_tests;
+      return Verdict::kDismissed;
+    }
     return Verdict::kOpen;
   }
 
-  CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node) const {
+  CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node,
+                           SweepStatistics& statistics) const {
     double squared_lower;
-    return look(e, node, squared_lower);
+    return look(e, node, statistics, squared_lower);
   }
 
   /// Whether e collides at a single pose, or on the way from it, that look() left open.
@@ -128,7 +140,7 @@ struct SweepRef {
     }
     const PullBack& back = motion.pull_backs[node.mid];
     const Pose& pose = motion.poses[node.mid];
-    const double ball = (radius + rounding) / back.least * kRoundedUp;
+    const double ball = (settled_from + rounding) / back.least * kRoundedUp;
     return model.any_within(back.apply(e), ball * ball * kRoundedUp,
                             [&](const Vec3& m) { return collides(e, transform(pose, m), radius); });
   }

@@ -32,13 +32,17 @@ __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
   }
 }
 
-/// tallies: kTallies times the four of SweepStatistics.
+/// Of SweepStatistics.
+constexpr std::uint32_t kCounts = 5;
+
+/// tallies: kTallies times kCounts.
 __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lane) {
-  unsigned long long* total = tallies + 4 * (blockIdx.x % kTallies);
+  unsigned long long* total = tallies + kCounts * (blockIdx.x % kTallies);
   tally(total, of_lane.node_tests);
   tally(total + 1, of_lane.point_tests);
   tally(total + 2, of_lane.exact_tests);
   tally(total + 3, of_lane.points_tested);
+  tally(total + 4, of_lane.settled_tests);
 }
 
 /// A warp a block of the page's cells.
@@ -240,7 +244,7 @@ class CudaSweepEngine::Impl {
         resident_(resident_blocks(device)),
         quantisation_(cloud.quantisation()),
         sweep_(sweep),
-        tallies_(4 * kTallies),
+        tallies_(kCounts * kTallies),
         device_bytes_(cuda_sweep_bytes(sweep)),
         pinned_bytes_(0) {
     slots_.reserve(layout.slots);
@@ -312,8 +316,8 @@ class CudaSweepEngine::Impl {
     check_cuda(
         cudaMemcpy(values.data(), tallies_.data(), tallies_.bytes(), cudaMemcpyDeviceToHost));
     SweepStatistics total;
-    for (std::size_t i = 0; i < values.size(); i += 4) {
-      total.add({values[i], values[i + 1], values[i + 2], values[i + 3]});
+    for (std::size_t i = 0; i < values.size(); i += kCounts) {
+      total.add({values[i], values[i + 1], values[i + 2], values[i + 3], values[i + 4]});
     }
     return total;
   }

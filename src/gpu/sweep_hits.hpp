@@ -93,8 +93,7 @@ class SweepHits {
   CLEARWAY_HD bool look_at_top(std::uint32_t lane, std::uint32_t at) {
     const MotionNode& node = job_.sweep.motion.nodes[at];
     if (node.first >= best_[lane]) return false;
-    ++statistics_[lane].point_tests;
-    const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node);
+    const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node, statistics_[lane]);
     if (verdict == SweepRef::Verdict::kDismissed) return false;
     if (verdict == SweepRef::Verdict::kOpen) return true;
     hit(lane, node.mid);
@@ -120,8 +119,7 @@ class SweepHits {
       way.at += size;
       return;
     }
-    ++statistics_[lane].point_tests;
-    const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node);
+    const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node, statistics_[lane]);
     if (verdict == SweepRef::Verdict::kOpen && node.count == 1) {
       way.waits = true;
       return;

@@ -42,6 +42,11 @@ std::string clearance_text(const ResultHeader& header) {
   return header.clearance > 0 ? number_text(header.clearance) + " m" : "not asked for";
 }
 
+std::string tolerance_text(const ResultHeader& header) {
+  if (!(header.tolerance > 0)) return "none: exact";
+  return number_text(header.tolerance) + " m, engine " + header.engine;
+}
+
 std::vector<QuestionDifference> question_differences(const ResultHeader& a, const ResultHeader& b) {
   std::vector<QuestionDifference> out;
   const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
@@ -57,6 +62,7 @@ std::vector<QuestionDifference> question_differences(const ResultHeader& a, cons
   differ("clearance", clearance_text(a), clearance_text(b));
   differ("motion", a.between_poses ? "between poses" : "at poses only",
          b.between_poses ? "between poses" : "at poses only");
+  differ("tolerance", tolerance_text(a), tolerance_text(b));
   differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
   differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
   return out;

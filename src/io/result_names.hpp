@@ -17,6 +17,9 @@ inline constexpr const char* kClearanceGroup = "clearance";
 inline constexpr const char* kDistance = "distance";
 inline constexpr const char* kPose = "pose";
 
+inline constexpr const char* kTolerance = "tolerance";  // with kEngine, only where there is one
+inline constexpr const char* kEngine = "engine";
+
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";
 

@@ -58,6 +58,12 @@ void read_axes(const hdf5::Id& file, const std::string& attribute, const std::st
   for (int k = 0; k < 3; ++k) out[k] = values[k];
 }
 
+void check_tolerance(const ResultHeader& header, const std::string& name) {
+  if (header.tolerance > 0 && header.tolerance < header.radius) return;
+  throw InputError(name + ": attribute 'tolerance' is " + std::to_string(header.tolerance) +
+                   ", expected a length above 0 and below the radius");
+}
+
 ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
   check_format(file, name);
   ResultHeader header;
@@ -74,6 +80,11 @@ ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
   read_axes(file, "scale", name, header.quantisation.scale);
   read_axes(file, "offset", name, header.quantisation.offset);
   header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
+  if (hdf5::has_attribute(file, names::kTolerance, name)) {
+    header.tolerance = read_number<double>(file, names::kTolerance, name);
+    header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
+    check_tolerance(header, name);
+  }
   return header;
 }
 

@@ -46,6 +46,10 @@ void write_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
   hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
+  if (header.tolerance > 0) {
+    write_number(file, names::kTolerance, header.tolerance);
+    hdf5::write_attribute(file, names::kEngine, header.engine);
+  }
 }
 
 /// The piece of a column; a column that the result does not have stays empty.

@@ -45,7 +45,7 @@ int main(int count, char** arguments) {
     std::cout << "skipped: no CUDA device here\n";
     return kSkipped;
   }
-  clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true},
-                       {"grid on CUDA", clearway::grid_on_cuda, false, false}});
+  clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true},
+                       {"grid on CUDA", clearway::grid_on_cuda, false, false, false}});
   return Catch::Session().run(count, arguments);
 }

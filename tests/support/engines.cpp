@@ -1,9 +1,13 @@
 #include "support/engines.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/answer.hpp"
+#include "core/tolerance.hpp"
 #include "cpu/brute_force.hpp"
 #include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
@@ -42,10 +46,10 @@ Answer grid(const PackedCloud& cloud, const Question& question, int) {
   return {run_grid(cloud, question, {}), ClearanceSet()};
 }
 
-std::vector<Engine> under_test{{"kdtree", kdtree, true, false},
-                               {"sweep", sweep, true, true},
-                               {"sweep as on CUDA", sweep_as_on_cuda, true, true},
-                               {"grid", grid, false, false}};
+std::vector<Engine> under_test{{"kdtree", kdtree, true, false, false},
+                               {"sweep", sweep, true, true, true},
+                               {"sweep as on CUDA", sweep_as_on_cuda, true, true, true},
+                               {"grid", grid, false, false, false}};
 
 constexpr int kThreads = 3;
 
@@ -135,6 +139,28 @@ Question with_clearance(Question question, double clearance, bool first_pose) {
   return question;
 }
 
+/// By index in the points given.
+std::vector<bool> by_source(const MemoryCloud& cloud, const HitSet& hits) {
+  std::vector<bool> out(cloud.point_count());
+  for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
+    if (cloud.is_used(slot)) out[cloud.source(slot)] = hits.contains(slot);
+  }
+  return out;
+}
+
+/// |d - radius| of the wrong answers at the most, 0 without any; in more digits than the engines'.
+double farthest_difference(const std::vector<bool>& answer, const std::vector<bool>& expected,
+                           const Oracle& least, double radius) {
+  long double farthest = 0;
+  for (std::size_t i = 0; i < answer.size(); ++i) {
+    if (answer[i] == expected[i]) continue;
+    const long double d = std::sqrt(static_cast<long double>(least[i].squared));
+    farthest = std::max(farthest, std::abs(d - radius));
+  }
+  const auto rounded = static_cast<double>(farthest);
+  return rounded < farthest ? std::nextafter(rounded, HUGE_VAL) : rounded;
+}
+
 std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Question question) {
   question.between_poses = true;
   const std::uint64_t swept = check_answers(cloud, expected.between_poses, question);
@@ -148,14 +174,17 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Q
 
 std::span<const Engine> engines() { return under_test; }
 
-Answer run_sweep(const PackedCloud& cloud, const Question& question, int threads,
+Answer run_sweep(const PackedCloud& cloud, const Question& asked, int threads,
                  const MakeSweep& make) {
   NoProgress progress;
+  std::optional<ThinnedQuestion> thinned;
+  if (asked.tolerance > 0) thinned.emplace(asked);
+  const Question& question = thinned ? thinned->question() : asked;
   if (question.model.empty()) {
     return {HitSet(cloud.slot_count(), question.first_pose), ClearanceSet(cloud.slot_count())};
   }
   const ModelTree model(question.model);
-  const ModelField field(model, question.radius, {.reach = question.clearance}, threads);
+  const ModelField field(model, search_radius(question), {.reach = question.clearance}, threads);
   const MotionTree motion(question.poses, model.box(), question.between_poses);
   const SweepFilter filter(question, motion, model, field, cloud);
   const std::vector<PlannedCell> cells = plan(cloud, motion, filter);
@@ -209,6 +238,35 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
     of_radius *= 2.5;
   }
   return colliding;
+}
+
+ToleratedAnswers check_tolerance(std::span<const Quantum> points, const Quantisation& quantisation,
+                                 const Question& question) {
+  const Oracle least = brute_force_clearances(positions_of(points, quantisation), question);
+  ToleratedAnswers out;
+  std::vector<bool> expected;
+  for (const Clearance& c : least) {
+    expected.push_back(c.squared < question.radius * question.radius);
+    out.colliding += expected.back();
+  }
+  for (const Engine& engine : engines()) {
+    if (!engine.tolerance) continue;
+    std::vector<bool> first;
+    int threads = 1;
+    for (const MemoryCloudOptions& packing :
+         {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{128, 300}}) {
+      const MemoryCloud cloud(points, quantisation, packing);
+      const std::vector<bool> answer =
+          by_source(cloud, engine.run(cloud, question, threads++).hits);
+      const double farthest = farthest_difference(answer, expected, least, question.radius);
+      CAPTURE(engine.name, packing.cell_points, question.radius, question.tolerance);
+      CHECK(farthest <= question.tolerance);
+      if (first.empty()) first = answer;
+      CHECK((answer == first));
+    }
+    for (std::size_t i = 0; i < first.size(); ++i) out.differing += first[i] != expected[i];
+  }
+  return out;
 }
 
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,

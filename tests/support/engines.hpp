@@ -20,6 +20,7 @@ struct Engine {
   Answer (*run)(const PackedCloud& cloud, const Question& question, int threads);
   bool between_poses;  ///< whether it answers such questions
   bool clearances;     ///< likewise
+  bool tolerance;      ///< likewise
 };
 
 std::span<const Engine> engines();
@@ -50,6 +51,17 @@ std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
 /// The same as check_engines above for one way of packing them.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Question& question, const MemoryCloudOptions& packing);
+
+struct ToleratedAnswers {
+  std::uint64_t colliding = 0;  ///< points, exactly
+  std::uint64_t differing = 0;  ///< answers of all engines that are not exact
+};
+
+/// Runs every engine that takes a tolerance on the points, packed in several ways, and checks that
+/// an answer is wrong only where the least distance, by brute force, is within the tolerance of the
+/// radius, and that an engine says the same however the points are packed.
+ToleratedAnswers check_tolerance(std::span<const Quantum> points, const Quantisation& quantisation,
+                                 const Question& question);
 
 /// The clearances that the question asks for. Returns how many there are.
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,

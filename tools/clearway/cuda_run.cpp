@@ -74,7 +74,7 @@ PageEngineKind cuda_sweep(const Store& store, const EngineOptions& options,
     });
   };
   kind.finished = [](const SearchPlan&, const PageEngines& engines, EngineReport& report) {
-    log_statistics(report_of<CudaSweepEngine, SweepStatistics>(engines, report));
+    report_statistics(report_of<CudaSweepEngine, SweepStatistics>(engines, report), report);
   };
   return kind;
 }

@@ -14,8 +14,31 @@
 namespace clearway::tool {
 namespace {
 
+/// A tolerance is the sweep's, and only for sets.
+void check_tolerance(const Question& question, const EngineOptions& options) {
+  const char* other = question.first_pose      ? "--first-pose"
+                      : question.clearance > 0 ? "--clearance"
+                      : question.between_poses ? "--between-poses"
+                                               : nullptr;
+  if (other != nullptr) {
+    throw UsageError(std::string("--tolerance and ") + other +
+                     " cannot be combined: without --tolerance, --engine sweep answers " + other +
+                     " exactly");
+  }
+  if (options.engine != "sweep") {
+    throw UsageError("--tolerance: engine " + options.engine +
+                     " is always exact; take --engine sweep");
+  }
+  if (!(question.tolerance < question.radius)) {
+    throw UsageError(
+        "--tolerance: has to be below the radius; otherwise no collision at all were a right "
+        "answer");
+  }
+}
+
 /// What the engine cannot do is refused with the name of one that can.
 void check(const Question& question, const EngineOptions& options) {
+  if (question.tolerance > 0) check_tolerance(question, options);
   if (question.clearance > 0 && question.between_poses) {
     throw UsageError("--clearance and --between-poses cannot be combined: clearances are at poses");
   }
@@ -52,10 +75,14 @@ PageEngineKind page_engine(const Store& store, const Question& question,
 
 }  // namespace
 
+std::string chosen_engine(const EngineOptions& options) {
+  return options.engine == "auto" ? "sweep" : options.engine;
+}
+
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
                   const OpenJournal& open_journal, Progress& progress, EngineReport& report) {
   EngineOptions resolved = options;
-  if (options.engine == "auto") resolved.engine = "sweep";
+  resolved.engine = chosen_engine(options);
   check(question, resolved);
   const DeviceChoice device = choose_device(resolved);
   if (options.threads == 0) resolved.threads = tbb::this_task_arena::max_concurrency();

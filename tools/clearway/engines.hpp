@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,20 @@ struct EngineOptions {
   std::uint64_t device_memory_bytes = 0;  ///< of each device; 0: what is free
 };
 
+/// What a tolerance spared.
+struct ToleranceReport {
+  std::uint64_t model_points_kept = 0, poses_kept = 0;
+  std::uint64_t settled_by_bounds = 0;  ///< exact tests of a point at a single pose not made
+  double thin_seconds = 0;              ///< wall clock
+};
+
 /// How an answer was computed.
 struct EngineReport {
   std::string engine, device = "cpu";
-  std::string device_name = "the CPU";  ///< for people
-  std::uint64_t searches = 0;           ///< pairs of pose and model point
-  double context_seconds = 0;           ///< wall clock, like all of them
+  std::string device_name = "the CPU";       ///< for people
+  std::uint64_t searches = 0;                ///< pairs of pose and model point
+  std::optional<ToleranceReport> tolerance;  ///< where the question has one
+  double context_seconds = 0;                ///< wall clock, like all of them
   double plan_seconds = 0, field_seconds = 0;
   double engine_seconds = 0;  ///< of making the engine with its slots
   StageTimes stages;
@@ -49,6 +58,9 @@ struct EngineReport {
 /// "cuda") keeps its answer in.
 using OpenJournal =
     std::function<AnswerJournal&(const std::string& engine, const std::string& device)>;
+
+/// The engine that these options choose: "sweep", "grid" or "kdtree".
+std::string chosen_engine(const EngineOptions& options);
 
 /// Answers the question with the engine and device chosen, as far as the journal does not. Throws
 /// UsageError where that engine cannot, ResourceError where the device is not there or, before

@@ -57,22 +57,27 @@ ordered_json describe(const Store& store) {
 
 ordered_json describe(const ResultReader& result) {
   const ResultHeader& h = result.header();
-  return {{"kind", "result"},
-          {"colliding_points", result.collisions()},
-          {"environment_points", h.environment_points},
-          {"radius", h.radius},
-          {"model_points", h.model_points},
-          {"poses", h.poses},
-          {"first_pose", h.first_pose},
-          {"clearance", h.clearance},
-          {"clearance_points", result.clearances()},
-          {"between_poses", h.between_poses},
-          {"scale", h.quantisation.scale},
-          {"offset", h.quantisation.offset},
-          {"crs_wkt", h.crs_wkt},
-          {"environment_hash", hex(h.environment_hash)},
-          {"model_hash", hex(h.model_hash)},
-          {"trajectory_hash", hex(h.trajectory_hash)}};
+  ordered_json description{{"kind", "result"},
+                           {"colliding_points", result.collisions()},
+                           {"environment_points", h.environment_points},
+                           {"radius", h.radius},
+                           {"model_points", h.model_points},
+                           {"poses", h.poses},
+                           {"first_pose", h.first_pose},
+                           {"clearance", h.clearance},
+                           {"clearance_points", result.clearances()},
+                           {"between_poses", h.between_poses},
+                           {"scale", h.quantisation.scale},
+                           {"offset", h.quantisation.offset},
+                           {"crs_wkt", h.crs_wkt},
+                           {"environment_hash", hex(h.environment_hash)},
+                           {"model_hash", hex(h.model_hash)},
+                           {"trajectory_hash", hex(h.trajectory_hash)}};
+  if (h.tolerance > 0) {
+    description["tolerance"] = h.tolerance;
+    description["engine"] = h.engine;
+  }
+  return description;
 }
 
 ordered_json describe(const JournalReader& journal) {

@@ -8,6 +8,7 @@
 
 #include "clearway/memory_budget.hpp"
 #include "clearway/options.hpp"
+#include "core/tolerance.hpp"
 #include "stream/paginate.hpp"
 #include "stream/run_pages.hpp"
 #include "stream/write_answer.hpp"
@@ -36,27 +37,56 @@ std::vector<SlotLayout> layouts(const PageEngineKind& kind, std::uint64_t least_
   return out;
 }
 
-/// While the trees over model and poses are built: 48 bytes a model point, and 168 a pose.
+/// While the trees over model and poses are built: 48 bytes a model point, and 168 a pose. Choosing
+/// what a tolerance keeps takes less.
 std::uint64_t tree_building_bytes(const Question& question) {
   return 48 * question.model.size() + 168 * question.poses.size();
 }
 
+/// The question as it is searched: with a tolerance, less of model and trajectory.
+class SearchedQuestion {
+ public:
+  SearchedQuestion(const Question& asked, EngineReport& report) : asked_(asked) {
+    if (!(asked.tolerance > 0)) return;
+    const Stopwatch clock;
+    thinned_.emplace(asked);
+    const std::size_t points = thinned_->question().model.size();
+    const std::size_t poses = thinned_->question().poses.size();
+    report.tolerance = {.model_points_kept = points,
+                        .poses_kept = poses,
+                        .settled_by_bounds = 0,
+                        .thin_seconds = clock.seconds()};
+    spdlog::info("tolerance {} m: {} of {} model points and {} of {} poses are searched",
+                 asked.tolerance, format_count(points), format_count(asked.model.size()),
+                 format_count(poses), format_count(asked.poses.size()));
+  }
+
+  const Question& get() const { return thinned_ ? thinned_->question() : asked_; }
+  std::uint64_t allocated_bytes() const { return thinned_ ? thinned_->allocated_bytes() : 0; }
+
+ private:
+  const Question& asked_;
+  std::optional<ThinnedQuestion> thinned_;
+};
+
 /// Finds a plan and a layout that fit the memory.
 class Budget {
  public:
-  Budget(const Store& store, const Question& question, const EngineOptions& options,
-         const PageEngineKind& kind)
+  Budget(const Store& store, const Question& asked, const SearchedQuestion& searched,
+         const EngineOptions& options, const PageEngineKind& kind)
       : store_(store),
-        question_(question),
+        question_(searched.get()),
         options_(options),
         kind_(kind),
-        trees_(question),
-        kept_bytes_(program_bytes(options.threads) + input_bytes(store, question) +
-                    answer_bytes(store, question) +
-                    AnswerJournal::most_bytes(store, question, kind.threads)) {}
+        trees_(question_),
+        building_bytes_(tree_building_bytes(asked)),
+        kept_bytes_(program_bytes(options.threads) + input_bytes(store, asked) +
+                    searched.allocated_bytes() + answer_bytes(store, asked) +
+                    AnswerJournal::most_bytes(store, asked, kind.threads)) {}
 
   void find() {
-    if (options_.field_voxel > 0) {
+    // With a tolerance the answer depends on the field, which memory must not decide.
+    if (options_.field_voxel > 0 || question_.tolerance > 0) {
       if (fits_with(kFieldBytes[0], 0, true)) return;
     } else {
       const std::uint64_t least = *std::rbegin(kFieldBytes);
@@ -81,7 +111,7 @@ class Budget {
   /// Whether there is a plan with such a field, and a layout, or the best of them only, that fit.
   bool fits_with(std::uint64_t field_bytes, std::uint64_t while_built, bool any_layout) {
     const std::uint64_t building =
-        std::max(trees_.allocated_bytes() + while_built, tree_building_bytes(question_));
+        std::max(trees_.allocated_bytes() + while_built, building_bytes_);
     if (while_built > 0 && kept_bytes_ + building > options_.memory_bytes) return false;
     plan_.reset();
     plan_.emplace(store_, question_, trees_,
@@ -113,7 +143,8 @@ class Budget {
   const EngineOptions& options_;
   const PageEngineKind& kind_;
   const QuestionTrees trees_;
-  const std::uint64_t kept_bytes_;  ///< from here to the end of the run
+  const std::uint64_t building_bytes_;  ///< of the trees
+  const std::uint64_t kept_bytes_;      ///< from here to the end of the run
   std::optional<SearchPlan> plan_;
   SlotLayout layout_;
   double field_seconds_ = 0, plan_seconds_ = 0;  ///< of all plans tried
@@ -127,7 +158,9 @@ class Budget {
 Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
                        const PageEngineKind& kind, AnswerJournal& journal, Progress& progress,
                        EngineReport& report) {
-  Budget budget(store, question, options, kind);
+  const SearchedQuestion searched(question, report);
+  throw_if_stopped(progress);
+  Budget budget(store, question, searched, options, kind);
   budget.find();
   SearchPlan& plan = budget.plan();
   report.plan_seconds = budget.plan_seconds();

@@ -34,8 +34,9 @@ struct PageEngineKind {
 };
 
 /// Plans the question within options.memory_bytes, makes the engine and runs it. Where memory is
-/// short, first the model field gets coarser, then slots fewer, then pages smaller. Throws
-/// ResourceError, before cells are read, naming the smallest budget that works.
+/// short, first the model field gets coarser (not with a tolerance: the answer depends on it), then
+/// slots fewer, then pages smaller. Throws ResourceError, before cells are read, naming the
+/// smallest budget that works.
 Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
                        const PageEngineKind& kind, AnswerJournal& journal, Progress& progress,
                        EngineReport& report);

@@ -53,6 +53,8 @@ ResultHeader header_of(const Inputs& inputs, const RunOptions& options) {
           .first_pose = options.first_pose,
           .clearance = options.clearance,
           .between_poses = options.between_poses,
+          .tolerance = options.tolerance,
+          .engine = options.tolerance > 0 ? chosen_engine(options.engine) : "",
           .quantisation = metadata.quantisation,
           .crs_wkt = metadata.crs_wkt};
 }
@@ -61,6 +63,7 @@ nlohmann::ordered_json seconds_of(const EngineReport& engine, const Seconds& sec
   return {{"total", seconds.total},
           {"inputs", seconds.inputs},
           {"context", engine.context_seconds},
+          {"thin", engine.tolerance ? engine.tolerance->thin_seconds : 0},
           {"plan", engine.plan_seconds},
           {"field", engine.field_seconds},
           {"engine", engine.engine_seconds},
@@ -72,9 +75,23 @@ nlohmann::ordered_json seconds_of(const EngineReport& engine, const Seconds& sec
           {"write", seconds.write}};
 }
 
-nlohmann::ordered_json report_of(const Inputs& inputs, const Answer& answer,
-                                 const EngineReport& engine, std::uint64_t peak_host_bytes,
-                                 const Seconds& seconds) {
+/// What the tolerance spared; null for an exact answer.
+nlohmann::ordered_json tolerance_of(const Inputs& inputs, const RunOptions& options,
+                                    const EngineReport& engine) {
+  if (!engine.tolerance) return nullptr;
+  const ToleranceReport& spared = *engine.tolerance;
+  return {{"metres", options.tolerance},
+          {"model_points", inputs.model.size()},
+          {"model_points_kept", spared.model_points_kept},
+          {"poses", inputs.poses.size()},
+          {"poses_kept", spared.poses_kept},
+          {"searches_saved", engine.searches - spared.model_points_kept * spared.poses_kept},
+          {"settled_by_bounds", spared.settled_by_bounds}};
+}
+
+nlohmann::ordered_json report_of(const Inputs& inputs, const RunOptions& options,
+                                 const Answer& answer, const EngineReport& engine,
+                                 std::uint64_t peak_host_bytes, const Seconds& seconds) {
   const Store::Touched touched = inputs.store.touched();
   return {{"environment_points", inputs.store.point_count()},
           {"model_points", inputs.model.size()},
@@ -97,6 +114,7 @@ nlohmann::ordered_json report_of(const Inputs& inputs, const Answer& answer,
           {"needed_host_bytes", engine.needed_bytes},
           {"peak_host_bytes", peak_host_bytes},
           {"peak_device_bytes", engine.peak_device_bytes},
+          {"tolerance", tolerance_of(inputs, options, engine)},
           {"seconds", seconds_of(engine, seconds)}};
 }
 
@@ -129,7 +147,8 @@ void run(const RunOptions& options) {
                           .radius = options.radius,
                           .first_pose = options.first_pose,
                           .between_poses = options.between_poses,
-                          .clearance = options.clearance};
+                          .clearance = options.clearance,
+                          .tolerance = options.tolerance};
   seconds.inputs = total.seconds();
   EngineReport engine;
   throw_if_stopped(progress);
@@ -159,7 +178,7 @@ void run(const RunOptions& options) {
   }
   if (options.json) {
     const std::uint64_t peak = memory.peak_bytes() + engine.pinned_bytes;
-    print(report_of(inputs, answer, engine, peak, seconds).dump(2) + "\n");
+    print(report_of(inputs, options, answer, engine, peak, seconds).dump(2) + "\n");
   }
 }
 
@@ -183,7 +202,8 @@ void add_run(CLI::App& program) {
       "with --between-poses also on the way from a pose to the next. Its first pose is then the "
       "one\n"
       "that the way starts from.\n"
-      "The result is the same for every engine, number of threads and memory bound.\n"
+      "The result is the same for every engine, number of threads and memory bound; with\n"
+      "--tolerance the same for every number of threads and memory bound, of one device.\n"
       "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
       "-o out.h5");
   command->callback([options] { run_run(*options); });

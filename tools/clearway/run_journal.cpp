@@ -39,9 +39,13 @@ JournalIdentity identity_of(const Store& store, const ResultHeader& header,
                            {"first_pose", yes_or_no(header.first_pose)},
                            {"clearance", fmt::format("{}", header.clearance)},
                            {"between_poses", yes_or_no(header.between_poses)},
+                           {"tolerance", fmt::format("{}", header.tolerance)},
                            {"engine", engine},
                            {"device", device},
                            {kReplaces, yes_or_no(replaces)}};
+  if (header.tolerance > 0) {  // then the answer depends on the field
+    identity.emplace_back("field_voxel", fmt::format("{}", options.field_voxel));
+  }
   if (options.float_precision) {  // then the answer depends on the cells
     identity.emplace_back("precision", "float");
     identity.emplace_back("grid_cell", fmt::format("{}", options.grid_cell));

@@ -38,6 +38,12 @@ void add_question(CLI::App& command, RunOptions& options) {
       ->check(positive_length());
   command.add_flag("--between-poses", options.between_poses,
                    "Move every model point on a straight segment from each pose to the next");
+  command
+      .add_option("--tolerance", options.tolerance,
+                  "Faster: points whose distance differs from the radius by at most this may be "
+                  "answered wrongly, for example 0.001; below the radius, engine sweep only")
+      ->type_name("METRES")
+      ->check(positive_length());
 }
 
 void add_device(CLI::App& command, EngineOptions& options) {

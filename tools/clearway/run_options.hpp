@@ -16,6 +16,7 @@ struct RunOptions {
   bool first_pose = false;
   double clearance = 0;
   bool between_poses = false;
+  double tolerance = 0;
   TrajectoryOptions trajectory_options;
   bool force = false;
   bool resume = false;

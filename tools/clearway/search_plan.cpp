@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/stopwatch.hpp"
+#include "core/tolerance.hpp"
 #include "cpu/cell_search.hpp"
 #include "stream/paginate.hpp"
 #include "stream/plan.hpp"
@@ -13,7 +14,7 @@ SearchPlan::SearchPlan(const Store& cloud, const Question& question, const Quest
                        const ModelFieldOptions& field_options, int threads, const Stopwatch& clock)
     : store(cloud),
       motion(trees.motion),
-      field(trees.model, question.radius, field_options, threads),
+      field(trees.model, search_radius(question), field_options, threads),
       field_seconds(clock.seconds()),
       filter(question, trees.motion, trees.model, field, cloud),
       cells(plan(cloud, trees.motion, filter)),

@@ -15,10 +15,14 @@ constexpr std::uint32_t kSlotsAhead = 2;
 
 }  // namespace
 
-void log_statistics(const SweepStatistics& s) {
+void report_statistics(const SweepStatistics& s, EngineReport& report) {
   spdlog::info("tests: {} of boxes, {} of points ({} points), {} exact", format_count(s.node_tests),
                format_count(s.point_tests), format_count(s.points_tested),
                format_count(s.exact_tests));
+  if (report.tolerance) {
+    report.tolerance->settled_by_bounds = s.settled_tests;
+    spdlog::info("tolerance: {} exact tests spared by bounds", format_count(s.settled_tests));
+  }
 }
 
 PageEngineKind cpu_sweep(const Store& store, const Question& question,
@@ -37,8 +41,8 @@ PageEngineKind cpu_sweep(const Store& store, const Question& question,
     engines.push_back(std::make_unique<SweepEngine>(store, plan.filter, layout));
     return engines;
   };
-  kind.finished = [](const SearchPlan&, const PageEngines& engines, EngineReport&) {
-    log_statistics(dynamic_cast<const SweepEngine&>(*engines.front()).statistics());
+  kind.finished = [](const SearchPlan&, const PageEngines& engines, EngineReport& report) {
+    report_statistics(dynamic_cast<const SweepEngine&>(*engines.front()).statistics(), report);
   };
   return kind;
 }
