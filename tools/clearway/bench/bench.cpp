@@ -50,6 +50,9 @@ Json failure_of(const ProgramRun& run) {
   return {{"exit_code", run.exit_code}, {"log", run.log}};
 }
 
+/// A case that has taken so long is not repeated.
+constexpr double kEnoughSeconds = 30;
+
 /// Beyond the radius by more than any method is expected to err, metres.
 constexpr const char* kTruthClearance = "0.3";
 
@@ -199,13 +202,16 @@ Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& f
   spdlog::info("{}", key);
   const std::filesystem::path result = options_.work / "result.h5";
   Json one{{"key", key}, {"parameters", std::move(parameters)}, {"runs", Json::array()}};
+  double seconds = 0;
   for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
+    if (seconds > kEnoughSeconds) break;
     const ProgramRun run = run_program(command(files, result, run_options), options_.limit_seconds);
     if (run.exit_code != 0) {
       if (!may_fail) throw ResourceError("clearway bench: " + key + ": " + run.log);
       one["failed"] = failure_of(run);
       return record_.add(std::move(one));
     }
+    seconds += run.wall_seconds;
     Json report = Json::parse(run.output);
     report["wall_seconds"] = run.wall_seconds;
     report["peak_resident_bytes"] = run.peak_bytes;

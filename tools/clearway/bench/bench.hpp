@@ -84,9 +84,9 @@ class Bench {
   bool has(const std::string& key) const { return record_.find(key) != nullptr; }
 
   /// `run` on these files, `repetitions` times (those of the options where it is not given), unless
-  /// the file has the case already. Every report, with wall clock and peak memory, goes to "runs".
-  /// A run that fails with an exit code goes to "failed" instead, where that is allowed; otherwise
-  /// it throws.
+  /// the file has the case already; not again after half a minute. Every report, with wall clock
+  /// and peak memory, goes to "runs". A run that fails with an exit code goes to "failed" instead,
+  /// where that is allowed; otherwise it throws.
   Json measure(const std::string& key, Json parameters, const SceneFiles& files,
                const std::vector<std::string>& run_options, const Judge& judge = {},
                std::optional<int> repetitions = {}, bool may_fail = false);

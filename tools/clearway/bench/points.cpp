@@ -6,7 +6,8 @@ namespace clearway::tool {
 namespace {
 
 constexpr int kSamples = 111;
-constexpr int kSlowEvery = 10;  ///< forward engines at full size: every tenth sample
+constexpr int kSlowEvery = 10;  ///< forward engines: every tenth sample
+constexpr int kStride = 40;     ///< order of the samples: a part of them covers the range
 constexpr std::uint64_t kSeed = 4;
 
 }  // namespace
@@ -16,7 +17,8 @@ void bench_points(Bench& bench) {
   const std::uint64_t all = scene_size("hall", bench.full()).points;
   const std::uint64_t step = bench.full() ? 500'000 : all / kSamples;
   const std::filesystem::path sample = bench.work() / "sample.las";
-  for (int i = 1; i <= kSamples; ++i) {
+  for (int k = 0; k < kSamples; ++k) {
+    const int i = 1 + k * kStride % kSamples;
     const std::uint64_t points = step * static_cast<std::uint64_t>(i);
     SceneFiles files = hall;
     files.store = bench.work() / "sample.h5";
