@@ -67,28 +67,33 @@ class Pipeline {
         times_(pages.size()) {}
 
   void run() {
-    { const HandOver begin(this); }
-    constexpr auto serial = tbb::filter_mode::serial_in_order;
-    constexpr auto parallel = tbb::filter_mode::parallel;
-    tbb::parallel_pipeline(
-        engine_.slots(),
-        tbb::make_filter<void, PageInFlight>(serial, [this](tbb::flow_control& flow) {
-          return next_page(flow);
-        }) & tbb::make_filter<PageInFlight, PageInFlight>(parallel, [this](PageInFlight page) {
-          stage(page);
-          return page;
-        }) & tbb::make_filter<PageInFlight, void>(parallel, [this](PageInFlight page) {
-          search(page);
-        }));
-    const HandOver end(this);
+    run_stages();
     if (next_ < pages_.size()) throw Interrupted("interrupted");
   }
 
   StageTimes times() const { return stage_times(times_); }
 
  private:
+  void run_stages() {
+    const ParallelScope scope;
+    const SerialStage input;
+    const auto next =
+        piece_of(scope, input, [&](tbb::flow_control& flow) { return next_page(flow); });
+    const auto staged = piece_of(scope, [&](PageInFlight page) {
+      stage(page);
+      return page;
+    });
+    const auto searched = piece_of(scope, [&](PageInFlight page) { search(page); });
+    using Page = Handed<PageInFlight>;
+    constexpr auto parallel = tbb::filter_mode::parallel;
+    scope.begin();
+    tbb::parallel_pipeline(engine_.slots(),
+                           tbb::make_filter<void, Page>(tbb::filter_mode::serial_in_order, next) &
+                               tbb::make_filter<Page, Page>(parallel, staged) &
+                               tbb::make_filter<Page, void>(parallel, searched));
+  }
+
   PageInFlight next_page(tbb::flow_control& flow) {
-    const HandOver scope(this);
     if (next_ == pages_.size() || progress_.stop_requested()) {
       flow.stop();
       return {};
@@ -101,7 +106,6 @@ class Pipeline {
   }
 
   void stage(PageInFlight page) {
-    const HandOver scope(this);
     Interval& time = times_[page.page].read;
     time.begin = Clock::now();
     stage_page(cloud_, cells_of(page), engine_.page(page.slot));
@@ -109,7 +113,6 @@ class Pipeline {
   }
 
   void search(PageInFlight page) {
-    const HandOver scope(this);
     PageTimes& times = times_[page.page];
     engine_.start(page.slot, pages_[page.page].shape);
     const PageAnswer found = engine_.finish(page.slot);
