@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #if defined(__SANITIZE_THREAD__)
 #define CLEARWAY_THREAD_SANITIZER 1
 #elif defined(__has_feature)
@@ -7,6 +9,9 @@
 #define CLEARWAY_THREAD_SANITIZER 1
 #endif
 #endif
+
+// What oneTBB guarantees of the work that it runs, told to the thread sanitizer, which does not see
+// into oneTBB. Nothing in other builds. docs/testing.md says how it was tried.
 
 #ifdef CLEARWAY_THREAD_SANITIZER
 extern "C" {
@@ -17,26 +22,114 @@ void __tsan_release(void* address);
 
 namespace clearway {
 
-/// Around what oneTBB runs, a stage of a pipeline or the body of a loop: tells the thread
-/// sanitizer, which does not see into oneTBB, that it begins after those that have ended. Nothing
-/// in other builds. work: the same address in all of them and, before and after them, in the
-/// caller.
-class HandOver {
- public:
+/// What was released at an address before happens before what acquires it.
 #ifdef CLEARWAY_THREAD_SANITIZER
-  explicit HandOver(const void* work) : work_(const_cast<void*>(work)) { __tsan_acquire(work_); }
-  ~HandOver() { __tsan_release(work_); }
-
- private:
-  void* work_;
+inline void acquire(const void* address) { __tsan_acquire(const_cast<void*>(address)); }
+inline void release(const void* address) { __tsan_release(const_cast<void*>(address)); }
 #else
-  explicit HandOver(const void*) {}
-  ~HandOver() {}
+inline void acquire(const void*) {}
+inline void release(const void*) {}
 #endif
 
+/// Lives in the caller around one parallel call of oneTBB: every piece of work begins after the
+/// caller's begin(), and has ended, by an exception too, before the caller leaves the scope.
+class ParallelScope {
  public:
-  HandOver(const HandOver&) = delete;
-  HandOver& operator=(const HandOver&) = delete;
+  ParallelScope() = default;
+  ~ParallelScope() { acquire(&ended_); }
+  /// Right before the call, when its arguments are there.
+  void begin() const { release(&begun_); }
+  ParallelScope(const ParallelScope&) = delete;
+  ParallelScope& operator=(const ParallelScope&) = delete;
+
+ private:
+  template <typename Body>
+  friend class PieceOfWork;
+  char begun_ = 0, ended_ = 0;
 };
+
+/// A stage of a pipeline whose calls follow each other; outlives them.
+struct SerialStage {
+  char turn = 0;
+};
+
+#ifdef CLEARWAY_THREAD_SANITIZER
+template <typename Body>
+class PieceOfWork {
+ public:
+  PieceOfWork(const ParallelScope& scope, const SerialStage* stage, Body body)
+      : scope_(&scope), stage_(stage), body_(std::move(body)) {}
+
+  /// Not looked at itself: it has to be read before it can be known to be written.
+  template <typename... Arguments>
+  __attribute__((no_sanitize("thread"))) auto operator()(Arguments&&... arguments) const {
+    const Turn turn(scope_, stage_);
+    return body_(std::forward<Arguments>(arguments)...);
+  }
+
+ private:
+  struct Turn {
+    Turn(const ParallelScope* of, const SerialStage* in) : scope(of), stage(in) {
+      acquire(&scope->begun_);
+      if (stage != nullptr) acquire(&stage->turn);
+    }
+    ~Turn() {
+      if (stage != nullptr) release(&stage->turn);
+      release(&scope->ended_);
+    }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    const ParallelScope* scope;
+    const SerialStage* stage;
+  };
+
+  const ParallelScope* scope_;
+  const SerialStage* stage_;
+  Body body_;
+};
+
+/// The body of a loop, or of a stage of a pipeline, as part of the scope.
+template <typename Body>
+PieceOfWork<Body> piece_of(const ParallelScope& scope, Body body) {
+  return {scope, nullptr, std::move(body)};
+}
+/// The same of a stage whose calls follow each other.
+template <typename Body>
+PieceOfWork<Body> piece_of(const ParallelScope& scope, const SerialStage& stage, Body body) {
+  return {scope, &stage, std::move(body)};
+}
+#else
+template <typename Body>
+Body piece_of(const ParallelScope&, Body body) {
+  return body;
+}
+template <typename Body>
+Body piece_of(const ParallelScope&, const SerialStage&, Body body) {
+  return body;
+}
+#endif
+
+/// What a stage of a pipeline gives to the next, which begins after it was given.
+#ifdef CLEARWAY_THREAD_SANITIZER
+template <typename Value>
+class Handed {
+ public:
+  Handed(Value value) : value_(std::move(value)) { release(this); }
+  Handed(Handed&& other) noexcept : value_((acquire(&other), std::move(other.value_))) {
+    release(this);
+  }
+  ~Handed() { acquire(this); }
+  operator const Value&() const {
+    acquire(this);
+    return value_;
+  }
+
+ private:
+  Value value_;
+};
+#else
+template <typename Value>
+using Handed = Value;
+#endif
 
 }  // namespace clearway

@@ -126,7 +126,10 @@ void File::rewind() const {
 
 void File::reserve(std::uint64_t bytes) const {
   if (bytes == 0) return;
-  const int error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+  int error;
+  do {
+    error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+  } while (error == EINTR);
   if (error != 0) {
     errno = error;
     fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());

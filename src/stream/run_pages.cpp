@@ -1,7 +1,7 @@
 #include "stream/run_pages.hpp"
 
 #include <tbb/global_control.h>
-#include <tbb/parallel_for_each.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -93,27 +93,30 @@ class Lane {
   Lane& operator=(const Lane&) = delete;
 
   void run() {
-    constexpr auto parallel = tbb::filter_mode::parallel;
+    const ParallelScope scope;
+    const SerialStage taking, finishing;
+    const auto taken =
+        piece_of(scope, taking, [this](tbb::flow_control& flow) { return next_page(flow); });
+    const auto started = piece_of(scope, [this](PageInFlight page) {
+      start(page);
+      return page;
+    });
+    const auto finished =
+        piece_of(scope, finishing, [this](PageInFlight page) { return finish(page); });
+    const auto collected = piece_of(scope, [this](const SearchedPage& page) { collect(page); });
+    using Page = Handed<PageInFlight>;
+    using Searched = Handed<SearchedPage>;
+    using Mode = tbb::filter_mode;
+    scope.begin();
     tbb::parallel_pipeline(
-        engine_.slots(),
-        tbb::make_filter<void, PageInFlight>(
-            tbb::filter_mode::serial_in_order,
-            [this](tbb::flow_control& flow) { return next_page(flow); }) &
-            tbb::make_filter<PageInFlight, PageInFlight>(parallel,
-                                                         [this](PageInFlight page) {
-                                                           start(page);
-                                                           return page;
-                                                         }) &
-            tbb::make_filter<PageInFlight, SearchedPage>(
-                tbb::filter_mode::serial_out_of_order,
-                [this](PageInFlight page) { return finish(page); }) &
-            tbb::make_filter<SearchedPage, void>(
-                parallel, [this](const SearchedPage& page) { collect(page); }));
+        engine_.slots(), tbb::make_filter<void, Page>(Mode::serial_in_order, taken) &
+                             tbb::make_filter<Page, Page>(Mode::parallel, started) &
+                             tbb::make_filter<Page, Searched>(Mode::serial_out_of_order, finished) &
+                             tbb::make_filter<Searched, void>(Mode::parallel, collected));
   }
 
  private:
   PageInFlight next_page(tbb::flow_control& flow) {
-    const HandOver scope(&pages_);
     if (!pages_.progress.stop_requested()) {
       const std::size_t page = pages_.next++;
       if (page < pages_.pages.size()) return {page, free_slots_.take()};
@@ -123,7 +126,6 @@ class Lane {
   }
 
   void start(PageInFlight page) {
-    const HandOver scope(&pages_);
     Interval& time = pages_.times[page.page].read;
     time.begin = Clock::now();
     stage_page(pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot));
@@ -133,13 +135,11 @@ class Lane {
   }
 
   SearchedPage finish(PageInFlight page) {
-    const HandOver scope(&pages_);
     started_[page.slot] = false;
     return {page, engine_.finish(page.slot)};
   }
 
   void collect(const SearchedPage& searched) {
-    const HandOver scope(&pages_);
     const auto [page, slot] = searched.page;
     const PageAnswer& found = searched.found;
     const auto cells = pages_.cells_of(page);
@@ -163,9 +163,12 @@ class Lane {
 void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {
   std::deque<Lane> lanes;
   for (PageEngine* engine : engines) lanes.emplace_back(pages, *engine);
-  { const HandOver begin(&pages); }
-  tbb::parallel_for_each(lanes, [](Lane& lane) { lane.run(); });
-  const HandOver end(&pages);
+  {
+    const ParallelScope scope;
+    const auto run = piece_of(scope, [&](std::size_t lane) { lanes[lane].run(); });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, lanes.size(), run);
+  }
   if (pages.next < pages.pages.size()) throw Interrupted("interrupted");
 }
 

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "core/packed_chunk.hpp"
+#include "io/journal.hpp"
 #include "io/las_bytes.hpp"
 #include "support/clouds.hpp"
 
@@ -118,6 +119,40 @@ void write_result_seeds(Seeds seeds) {
   }
 }
 
+/// Payloads of every kind of record, as journal.cpp's first bytes 0 to 3 need them.
+std::vector<std::string> payloads_of(char kind) {
+  const bool first_pose = kind % 2 == 1, clearance = kind >= 2;
+  const std::string bits("\5\0\0\0\0\0\0\0", 8);
+  const std::string poses = first_pose ? "\7\11" : "";
+  const std::string distance("\0\0\0\0\0\0\xb0\x3f\4", 9);
+  std::string cell = std::string("\1\1\1\0", 4) + bits + poses;
+  if (clearance) cell += std::string("\1\0", 2) + bits + distance + distance;
+  const std::string marks = std::string("\2\2\0", 3) + bits + (first_pose ? "\7" : "") +
+                            std::string(1, '\1') + bits + (first_pose ? "\x84\1" : "");
+  return {cell, marks, std::string("\3\2\x90\1", 4)};
+}
+
+void write_journal_seeds(Seeds seeds) {
+  const ScratchFolder folder;
+  for (char kind = 0; kind < 4; ++kind) {
+    std::string payloads(1, static_cast<char>(kind + 4));
+    std::filesystem::remove(folder / "a.journal");
+    {
+      JournalWriter writer = JournalWriter::create(folder / "a.journal", {{"radius", "0.1"}}, 0);
+      for (const std::string& payload : payloads_of(kind)) {
+        JournalRecord record;
+        for (const char byte : payload) record.put(byte);
+        writer.append(record);
+        payloads += std::string{static_cast<char>(payload.size()), '\0'} + payload;
+      }
+    }
+    const std::string file = bytes_of(folder / "a.journal");
+    seeds.add(payloads);
+    seeds.add(kind + file);
+    seeds.add(kind + file.substr(0, file.size() - 2));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -132,4 +167,5 @@ int main(int argc, char** argv) {
   write_chunk_seeds({folder, "packed_chunk"});
   write_store_seeds({folder, "store"}, {folder, "store_values"});
   write_result_seeds({folder, "result"});
+  write_journal_seeds({folder, "journal"});
 }

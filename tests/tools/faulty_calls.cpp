@@ -30,6 +30,9 @@ const char* setting(const char* name) {
 
 bool is_kind(const char* kind) { return std::strcmp(setting("FAULT_KIND"), kind) == 0; }
 
+/// Of calls that cannot do less than asked.
+bool may_fail() { return is_kind("fail") || is_kind("interrupt"); }
+
 bool is_ours(const std::string& path) {
   const char* folder = setting("FAULT_FOLDER");
   return *folder != '\0' && path.compare(0, std::strlen(folder), folder) == 0;
@@ -119,10 +122,10 @@ ssize_t pwrite(int descriptor, const void* from, std::size_t count, off_t at) {
 
 int fsync(int descriptor) {
   static auto* const original = next<int(int)>("fsync");
-  if (!is_kind("fail") || !is_ours(path_of(descriptor) + "/") || !goes_wrong()) {
+  if (!may_fail() || !is_ours(path_of(descriptor) + "/") || !goes_wrong()) {
     return original(descriptor);
   }
-  errno = EIO;
+  errno = is_kind("interrupt") ? EINTR : EIO;
   return -1;
 }
 
@@ -139,10 +142,10 @@ int ftruncate(int descriptor, off_t size) { return ftruncate64(descriptor, size)
 
 int posix_fallocate64(int descriptor, off64_t at, off64_t size) {
   static auto* const original = next<int(int, off64_t, off64_t)>("posix_fallocate64");
-  if (!is_kind("fail") || !is_ours(path_of(descriptor)) || !goes_wrong()) {
+  if (!may_fail() || !is_ours(path_of(descriptor)) || !goes_wrong()) {
     return original(descriptor, at, size);
   }
-  return ENOSPC;
+  return is_kind("interrupt") ? EINTR : ENOSPC;
 }
 
 int posix_fallocate(int descriptor, off_t at, off_t size) {

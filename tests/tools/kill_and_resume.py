@@ -1,7 +1,12 @@
 """Kills `clearway run` and `clearway convert` at random moments and resumes them until they are
-done: the file must be, byte for byte, that of a run that nobody disturbed.
+done: the file must be, byte for byte, that of a run that nobody disturbed. Now and then another
+process starts on the same output: one of the two is refused.
 
 kill_and_resume.py PROGRAM [--kills N] [--seed S] [--only PART-OF-A-CASE]
+                   [--device cuda] [--points N] [--poses N]
+
+--kills: SIGKILLs of every case; SIGTERMs come on top. On a GPU, where runs are short, --points and
+--poses make them long enough to be killed while they search.
 """
 
 import argparse
@@ -24,10 +29,10 @@ def expect(condition, what):
 
 
 class Scene:
-    def __init__(self, program, work):
-        self.program, self.work = program, work
-        made = run([program, "scene", "hall", "--points", "1000000", "--model-points", "10000",
-                    "--poses", "2000", "-o", str(work / "hall")])
+    def __init__(self, program, work, device, points, poses):
+        self.program, self.work, self.device = program, work, device
+        made = run([program, "scene", "hall", "--points", str(points), "--model-points", "10000",
+                    "--poses", str(poses), "-o", str(work / "hall")])
         expect(made.returncode == 0, made.stdout)
         converted = run([program, "convert", str(work / "hall/environment.las"), "--cell-points",
                          "1000", "-o", str(work / "site.h5")])
@@ -36,50 +41,76 @@ class Scene:
     def run_command(self, options, output):
         return [self.program, "run", "--env", str(self.work / "site.h5"), "--model",
                 str(self.work / "hall/model.ply"), "--trajectory",
-                str(self.work / "hall/trajectory.txt"), "--radius", "0.1", "--device", "cpu",
-                "-o", str(output)] + options
+                str(self.work / "hall/trajectory.txt"), "--radius", "0.1", "--device",
+                self.device, "-o", str(output)] + options
 
     def convert_command(self, options, output):
         return [self.program, "convert", str(self.work / "hall/environment.las"), "--cell-points",
                 "1000", "-o", str(output)] + options
 
 
-def killed(command, delay, kill):
-    """Whether it was killed; otherwise it has exited with 0, or with 5 where the signal asks."""
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    time.sleep(delay)
+def start(command):
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+class Tally:
+    def __init__(self):
+        self.kills = self.terms = self.inherited = self.refused = self.finished = 0
+
+
+def stop(process, kill, tally):
+    """Whether the signal ended it; otherwise it has exited with 0, or was refused."""
     process.send_signal(kill)
     sent = time.monotonic()
     text, _ = process.communicate()
     expect(time.monotonic() - sent < 5, "took more than 5 seconds to stop")
+    tally.inherited += "resumes with" in text and "resumes with 0 " not in text
     if process.returncode == -signal.SIGKILL:
-        return True, text
+        tally.kills += 1
+        return True
     if process.returncode == 5 and kill == signal.SIGTERM:
         expect("--resume" in text or "again" in text, text)
-        return True, text
+        tally.terms += 1
+        return True
     if process.returncode == -signal.SIGTERM:  # before the program could listen
-        return True, text
-    expect(process.returncode == 0, f"exit code {process.returncode}: {text}")
-    return False, text
+        return True
+    return not succeeded(process, text, tally)
+
+
+def succeeded(process, text, tally):
+    """Whether the output is its; otherwise it was refused because another has it, or had."""
+    if process.returncode == 0:
+        return True
+    another = process.returncode == 4 and "another process is writing it" in text
+    expect(another or (process.returncode == 2 and "exists already" in text),
+           f"exit code {process.returncode}: {text}")
+    tally.refused += another
+    return False
+
+
+def attempt(command, usual, draw, tally):
+    """One process that is killed, or two of which one is."""
+    process = start(command)
+    rival = start(command) if draw.random() < 0.25 else None
+    time.sleep(draw.random() * 1.3 * usual)
+    kill = draw.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM])
+    done = not stop(process, kill, tally)
+    if rival is not None:
+        text, _ = rival.communicate()
+        done = succeeded(rival, text, tally) or done
+    return done
 
 
 def torment(name, command, reference, output, kills, draw):
-    """Kills and resumes until `kills` kills were made, and the output is done."""
+    """Kills and resumes until `kills` SIGKILLs were made, and the output is done."""
     begin = time.monotonic()
     done = run(command([], reference))
     usual = time.monotonic() - begin
     expect(done.returncode == 0, done.stdout)
-    made = finished = inherited = 0
-    while made < kills:
+    tally = Tally()
+    while tally.kills < kills:
         output.unlink(missing_ok=True)
-        while True:
-            kill = draw.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM])
-            delay = draw.random() * 1.3 * usual
-            was_killed, text = killed(command(["--resume"], output), delay, kill)
-            made += was_killed
-            inherited += "resumes with" in text and "resumes with 0 " not in text
-            if not was_killed:
-                break
+        while not attempt(command(["--resume"], output), usual, draw, tally):
             if output.exists():  # killed between its name and its exit: complete
                 break
         last = run(command(["--resume"], output))  # removes the journal, where one is left
@@ -87,27 +118,34 @@ def torment(name, command, reference, output, kills, draw):
         expect(output.read_bytes() == reference.read_bytes(), f"{name}: the result differs")
         left = [p.name for p in output.parent.iterdir()]
         expect(left == [output.name], f"{name}: left behind: {left}")
-        finished += 1
-    print(f"{name}: {made} kills, {inherited} of the runs went on from finished work, "
-          f"{finished} results, all equal")
-    return inherited
+        tally.finished += 1
+    print(f"{name}: {tally.kills} SIGKILLs, {tally.terms} SIGTERMs, {tally.inherited} of the runs "
+          f"went on from finished work, {tally.refused} refused beside another, "
+          f"{tally.finished} results, all equal", flush=True)
+    return tally.inherited
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
-    parser.add_argument("--kills", type=int, default=30)
+    parser.add_argument("--kills", type=int, default=12)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="")
+    parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu")
+    parser.add_argument("--points", type=int, default=1000000)
+    parser.add_argument("--poses", type=int, default=2000)
     arguments = parser.parse_args()
     draw = random.Random(arguments.seed)
     cases = {"sweep": ["--engine", "sweep", "--clearance", "0.3", "--first-pose"],
              "grid": ["--engine", "grid", "--first-pose"],
              "kdtree": ["--engine", "kdtree"],
              "kdtree first pose": ["--engine", "kdtree", "--first-pose", "--between-poses"]}
+    if arguments.device == "cuda":
+        cases = {name: options for name, options in cases.items() if "kdtree" not in name}
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        scene = Scene(arguments.program, work)
+        scene = Scene(arguments.program, work, arguments.device, arguments.points,
+                      arguments.poses)
         output = work / "out" / "out.h5"
         output.parent.mkdir()
         for name, options in cases.items():

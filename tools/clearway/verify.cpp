@@ -18,30 +18,39 @@
 namespace clearway::tool {
 namespace {
 
-std::vector<std::string> verify_journal(const std::filesystem::path& file) {
+struct Findings {
+  std::vector<std::string> faults;
+  std::string remark{};  ///< of what is no fault
+};
+
+/// A torn tail is what a run that was killed leaves: the next one cuts it off.
+Findings verify_journal(const std::filesystem::path& file) {
   const JournalReader journal(file);
   journalled_work(journal);
   if (journal.torn().empty()) return {};
-  return {file.string() + ": " + journal.torn() + "; a run with --resume computes it again"};
+  return {{},
+          file.string() + ": " + journal.torn() +
+              "; a run with --resume cuts that off and computes it again\n"};
 }
 
-std::vector<std::string> faults_of(const std::filesystem::path& file) {
+Findings findings_of(const std::filesystem::path& file) {
   File::open_for_reading(file);  // a missing file is no damaged one
   ConsoleProgress progress;
   try {
     if (is_journal(file)) return verify_journal(file);
-    if (hdf5::holds(file, "collisions")) return verify_result(ResultReader(file), progress);
-    return verify_store(Store(file), progress);
+    if (hdf5::holds(file, "collisions")) return {verify_result(ResultReader(file), progress)};
+    return {verify_store(Store(file), progress)};
   } catch (const InputError& fault) {
-    return {fault.what()};
+    return {{fault.what()}};
   }
 }
 
 bool run_verify(const std::filesystem::path& file) {
-  const std::vector<std::string> faults = faults_of(file);
-  for (const std::string& fault : faults) print(fault + "\n");
-  print(faults.empty() ? file.string() + ": sound\n" : file.string() + ": damaged\n");
-  return faults.empty();
+  const Findings found = findings_of(file);
+  for (const std::string& fault : found.faults) print(fault + "\n");
+  print(found.remark);
+  print(found.faults.empty() ? file.string() + ": sound\n" : file.string() + ": damaged\n");
+  return found.faults.empty();
 }
 
 }  // namespace
@@ -52,9 +61,9 @@ void add_verify(CLI::App& program, int& exit_code) {
       "verify", "Re-read and check everything in a store, a result or a journal");
   command->add_option("FILE", *file, "Store, result or journal")->type_name("FILE")->required();
   command->footer(
-      "Names every damaged cell (at most 20), of a journal the first record that is not whole. "
-      "Exit\n"
-      "code 0: sound; 1: a fault, or not a complete store or result; 4: the file cannot be "
+      "Names every damaged cell (at most 20), of a journal the first damaged record. A journal\n"
+      "whose tail is torn, as a killed run leaves it, is sound; the tail is named.\n"
+      "Exit code 0: sound; 1: a fault, or not a complete store or result; 4: the file cannot be\n"
       "opened.\n"
       "Example: clearway verify site.h5");
   command->callback([file, &exit_code] { exit_code = run_verify(*file) ? 0 : 1; });

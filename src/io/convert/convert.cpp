@@ -137,33 +137,31 @@ void write_cells(const Distribution& distribution, const SplitTree& tree, const 
                  Progress& progress) {
   using Flying = std::shared_ptr<UnitInFlight>;
   std::size_t next = 0;
-  const auto number_of_next = [&](tbb::flow_control& flow) {
-    const HandOver scope(&next);
+  const ParallelScope scope;
+  const SerialStage input, output;
+  const auto number_of_next = piece_of(scope, input, [&](tbb::flow_control& flow) {
     throw_if_stopped(progress);
     if (next == tree.units().size()) flow.stop();
     return next++;
-  };
-  const auto order_and_pack = [&](std::size_t unit) {
-    const HandOver scope(&next);
+  });
+  const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
     auto flying = std::make_shared<UnitInFlight>();
     flying->rest.emplace(distribution, unit, tree, lattice, metadata.quantisation,
                          metadata.cell_points);
     flying->packed = flying->rest->pack_next();
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;
-  };
-  const auto write = [&](const Flying& unit) {
-    const HandOver scope(&next);
-    write_unit(*unit, writer, progress);
-  };
+  });
+  const auto write =
+      piece_of(scope, output, [&](const Flying& unit) { write_unit(*unit, writer, progress); });
   progress.begin("partition", metadata.point_count, "points");
-  { const HandOver begin(&next); }
+  scope.begin();
   tbb::parallel_pipeline(
       units_in_flight,
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, number_of_next) &
-          tbb::make_filter<std::size_t, Flying>(tbb::filter_mode::parallel, order_and_pack) &
-          tbb::make_filter<Flying, void>(tbb::filter_mode::serial_in_order, write));
-  const HandOver end(&next);
+          tbb::make_filter<std::size_t, Handed<Flying>>(tbb::filter_mode::parallel,
+                                                        order_and_pack) &
+          tbb::make_filter<Handed<Flying>, void>(tbb::filter_mode::serial_in_order, write));
   progress.end();
 }
 

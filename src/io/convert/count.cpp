@@ -125,26 +125,24 @@ void for_each_batch(EnvironmentSource& environment, int threads, const Progress&
                     const std::function<void(const QuantaBatch&)>& in_order,
                     const std::function<void(const QuantaBatch&)>& work) {
   using Batch = std::shared_ptr<QuantaBatch>;
-  { const HandOver begin(&work); }
+  const ParallelScope scope;
+  const SerialStage input;
+  const auto read = piece_of(scope, input, [&](tbb::flow_control& flow) {
+    auto batch = std::make_shared<QuantaBatch>();
+    throw_if_stopped(progress);
+    if (environment.read(*batch)) {
+      in_order(*batch);
+    } else {
+      flow.stop();
+    }
+    return batch;
+  });
+  const auto worked = piece_of(scope, [&](const Batch& batch) { work(*batch); });
+  scope.begin();
   tbb::parallel_pipeline(
       2 * static_cast<std::size_t>(threads),
-      tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
-                                    [&](tbb::flow_control& flow) {
-                                      const HandOver scope(&work);
-                                      auto batch = std::make_shared<QuantaBatch>();
-                                      throw_if_stopped(progress);
-                                      if (environment.read(*batch)) {
-                                        in_order(*batch);
-                                      } else {
-                                        flow.stop();
-                                      }
-                                      return batch;
-                                    }) &
-          tbb::make_filter<Batch, void>(tbb::filter_mode::parallel, [&](const Batch& batch) {
-            const HandOver scope(&work);
-            work(*batch);
-          }));
-  const HandOver end(&work);
+      tbb::make_filter<void, Handed<Batch>>(tbb::filter_mode::serial_in_order, read) &
+          tbb::make_filter<Handed<Batch>, void>(tbb::filter_mode::parallel, worked));
 }
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,

@@ -104,6 +104,34 @@ class RegionWriter {
   std::uint64_t buffer_points_;
 };
 
+/// Reads batches, groups several at a time, and writes them in their order.
+void run_stages(EnvironmentSource& environment, const Grouper& group, RegionWriter& writer,
+                int threads, Progress& progress) {
+  using Batch = std::shared_ptr<QuantaBatch>;
+  using Grouped = std::shared_ptr<GroupedBatch>;
+  const ParallelScope scope;
+  const SerialStage input, output;
+  const auto read = piece_of(scope, input, [&](tbb::flow_control& flow) {
+    throw_if_stopped(progress);
+    auto batch = std::make_shared<QuantaBatch>();
+    if (!environment.read(*batch)) flow.stop();
+    return batch;
+  });
+  const auto grouped = piece_of(
+      scope, [&](const Batch& batch) { return std::make_shared<GroupedBatch>(group(*batch)); });
+  const auto write = piece_of(scope, output, [&](const Grouped& batch) {
+    writer.append(*batch);
+    progress.advance(batch->points.size());
+  });
+  constexpr auto serial = tbb::filter_mode::serial_in_order;
+  constexpr auto parallel = tbb::filter_mode::parallel;
+  scope.begin();
+  tbb::parallel_pipeline(2 * static_cast<std::size_t>(threads),
+                         tbb::make_filter<void, Handed<Batch>>(serial, read) &
+                             tbb::make_filter<Handed<Batch>, Handed<Grouped>>(parallel, grouped) &
+                             tbb::make_filter<Handed<Grouped>, void>(serial, write));
+}
+
 }  // namespace
 
 Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
@@ -122,31 +150,7 @@ Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
 
   progress.begin("distribute", points, "points");
   environment.rewind();
-  { const HandOver begin(&writer); }
-  using Batch = std::shared_ptr<QuantaBatch>;
-  using Grouped = std::shared_ptr<GroupedBatch>;
-  tbb::parallel_pipeline(
-      2 * static_cast<std::size_t>(threads),
-      tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order,
-                                    [&](tbb::flow_control& flow) {
-                                      const HandOver scope(&writer);
-                                      throw_if_stopped(progress);
-                                      auto batch = std::make_shared<QuantaBatch>();
-                                      if (!environment.read(*batch)) flow.stop();
-                                      return batch;
-                                    }) &
-          tbb::make_filter<Batch, Grouped>(tbb::filter_mode::parallel,
-                                           [&](const Batch& batch) {
-                                             const HandOver scope(&writer);
-                                             return std::make_shared<GroupedBatch>(group(*batch));
-                                           }) &
-          tbb::make_filter<Grouped, void>(tbb::filter_mode::serial_in_order,
-                                          [&](const Grouped& batch) {
-                                            const HandOver scope(&writer);
-                                            writer.append(*batch);
-                                            progress.advance(batch->points.size());
-                                          }));
-  const HandOver end(&writer);
+  run_stages(environment, group, writer, threads, progress);
   writer.finish();
   progress.end();
   return out;

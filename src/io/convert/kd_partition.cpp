@@ -127,20 +127,13 @@ class BucketOrder {
     const int axis = longest_side(bounds, scale_);
     const SplitKey key(axis, bounds.lo[axis]);
     partition_stably(from, other, n, left, key, select(from, n, left, key, extent(bounds, axis)));
-    const auto order_left = [=, this] { order(other, from, result, left); };
-    const auto order_right = [=, this] {
-      order(other + left, from + left, result + left, n - left);
-    };
+    const ParallelScope scope;
+    const auto order_left = piece_of(scope, [=, this] { order(other, from, result, left); });
+    const auto order_right =
+        piece_of(scope, [=, this] { order(other + left, from + left, result + left, n - left); });
+    scope.begin();
     if (n >= kParallelFrom) {
-      { const HandOver begin(&n); }
-      const auto handed_over = [&](const auto& side) {
-        return [&] {
-          const HandOver scope(&n);
-          side();
-        };
-      };
-      tbb::parallel_invoke(handed_over(order_left), handed_over(order_right));
-      const HandOver end(&n);
+      tbb::parallel_invoke(order_left, order_right);
     } else {
       order_left();
       order_right();

@@ -144,12 +144,14 @@ std::vector<PackedCell> OrderedUnit::pack_next() {
   const std::size_t most = std::max<std::size_t>(1, kBucketPoints / state.cell_points);
   const std::size_t first = state.next;
   std::vector<PackedCell> packed(std::min(most, cells_left()));
-  { const HandOver begin(&packed); }
-  tbb::parallel_for(std::size_t{0}, packed.size(), [&](std::size_t i) {
-    const HandOver scope(&packed);
-    packed[i] = pack_cell(state.unit, state.cells[first + i], state.cell_points);
-  });
-  const HandOver end(&packed);
+  {
+    const ParallelScope scope;
+    const auto pack = piece_of(scope, [&](std::size_t i) {
+      packed[i] = pack_cell(state.unit, state.cells[first + i], state.cell_points);
+    });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, packed.size(), pack);
+  }
   state.next += packed.size();
   return packed;
 }
