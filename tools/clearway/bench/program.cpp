@@ -4,8 +4,8 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
-#include <sys/pidfd.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,7 +37,8 @@ std::string joined(const std::vector<std::string>& arguments) {
 
 /// Whether the process ends within that time; a signal to this one ends the wait too.
 bool ends_within(pid_t process, double seconds) {
-  const File handle = File::adopt(::pidfd_open(process, 0), "process");
+  const File handle =
+      File::adopt(static_cast<int>(::syscall(SYS_pidfd_open, process, 0)), "process");
   pollfd ended{.fd = handle.descriptor(), .events = POLLIN, .revents = 0};
   return ::poll(&ended, 1, static_cast<int>(1e3 * seconds)) != 0;
 }
