@@ -76,9 +76,9 @@ class Accuracy {
   void measure(const std::string& method, const EngineChoice& engine, const SceneFiles& files,
                const Json& value) {
     const std::string key = method + "/" + engine.name + "/" + value.dump();
-    bench_.measure(key, {{"method", method}, {"engine", engine.name}, {"value", value}}, files,
-                   engine.options,
-                   [&](const std::filesystem::path& result) { return judged(result, truth_); });
+    bench_.measure(
+        key, {{"method", method}, {"engine", engine.name}, {"value", value}}, files, engine.options,
+        [&](const std::filesystem::path& result) { return judged(result, truth_); }, {}, true);
   }
 
   Bench& bench_;

@@ -19,7 +19,7 @@ struct BenchOptions {
   int repetitions = 3;
   std::vector<std::string> scenes{"mine", "hall", "plant", "tunnel"};
   std::string memory = "4G", device_memory = "2G";
-  double limit_seconds = 120;  ///< of one run; one that takes longer is stopped, and has failed
+  double limit_seconds = 60;  ///< of one run; one that takes longer is stopped, and has failed
   bool resume = false, force = false;
 };
 
