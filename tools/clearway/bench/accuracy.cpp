@@ -78,7 +78,8 @@ class Accuracy {
     const std::string key = method + "/" + engine.name + "/" + value.dump();
     bench_.measure(
         key, {{"method", method}, {"engine", engine.name}, {"value", value}}, files, engine.options,
-        [&](const std::filesystem::path& result) { return judged(result, truth_); }, {}, true);
+        [&](const std::filesystem::path& result) { return judged(result, truth_); }, {},
+        !engine.exact);
   }
 
   Bench& bench_;
