@@ -58,7 +58,7 @@ constexpr const char* kTruthClearance = "0.3";
 
 }  // namespace
 
-SceneSize scene_size(const std::string& scene, bool full) {
+SceneSize scene_size(const std::string& scene, const std::string& size) {
   static const std::map<std::string, SceneSize> kFull{{"mine", {806'183'400, 100'000, 17'795}},
                                                       {"hall", {55'872'714, 214'489, 17'234}},
                                                       {"plant", {350'109'065, 434'700, 398'999}},
@@ -67,7 +67,8 @@ SceneSize scene_size(const std::string& scene, bool full) {
                                                        {"hall", {1'110'000, 20'000, 1'700}},
                                                        {"plant", {2'000'000, 40'000, 8'000}},
                                                        {"tunnel", {500'000, 5'000, 1'900}}};
-  return (full ? kFull : kSmall).at(scene);
+  if (size == "smoke") return {20'000, 500, 100};
+  return (size == "full" ? kFull : kSmall).at(scene);
 }
 
 Bench::Bench(const std::string& experiment, const BenchOptions& options)
@@ -85,7 +86,7 @@ SceneFiles Bench::scene(const std::string& name) {
                    .model = folder / "model.ply",
                    .trajectory = folder / "trajectory.txt"};
   if (!std::filesystem::exists(files.trajectory)) {
-    const SceneSize size = scene_size(name, full());
+    const SceneSize size = scene_size(name, options_.size);
     spdlog::info("{}: making the scene", folder.string());
     output_of_program({"scene", name, "-o", folder.string(), "--points",
                        std::to_string(size.points), "--model-points",

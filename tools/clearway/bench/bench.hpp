@@ -14,7 +14,7 @@ namespace clearway::tool {
 
 struct BenchOptions {
   std::filesystem::path output, work;
-  std::string size = "small";   ///< "small" or "full"
+  std::string size = "small";   ///< "smoke", "small" or "full"
   std::string device = "auto";  ///< "auto", "cpu" or "cuda"
   int repetitions = 3;
   std::vector<std::string> scenes{"mine", "hall", "plant", "tunnel"};
@@ -28,7 +28,8 @@ struct SceneSize {
   std::uint64_t points, model_points, poses;
 };
 
-SceneSize scene_size(const std::string& scene, bool full);
+/// size: that of the options.
+SceneSize scene_size(const std::string& scene, const std::string& size);
 
 /// A question to be asked: a store, a model and a trajectory.
 struct SceneFiles {

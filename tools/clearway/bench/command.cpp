@@ -49,8 +49,9 @@ void add_options(CLI::App& command, BenchOptions& options) {
       ->required();
   command
       .add_option("--size", options.size,
-                  "small: minutes on 2 cores; full: the paper's sizes, for a machine with a GPU")
-      ->check(CLI::IsMember({"small", "full"}))
+                  "small: minutes on 2 cores; full: the paper's sizes, for a machine with a GPU; "
+                  "smoke: seconds, to try the command out")
+      ->check(CLI::IsMember({"smoke", "small", "full"}))
       ->capture_default_str();
   command
       .add_option("--device", options.device,

@@ -14,7 +14,7 @@ constexpr std::uint64_t kSeed = 4;
 
 void bench_points(Bench& bench) {
   const SceneFiles hall = bench.scene("hall");
-  const std::uint64_t all = scene_size("hall", bench.full()).points;
+  const std::uint64_t all = scene_size("hall", bench.options().size).points;
   const std::uint64_t step = bench.full() ? 500'000 : all / kSamples;
   const std::filesystem::path sample = bench.work() / "sample.las";
   for (int k = 0; k < kSamples; ++k) {

@@ -65,7 +65,7 @@ class Scaling {
 
   Bench& bench_;
   SceneFiles hall_;
-  SceneSize size_ = scene_size("hall", bench_.full());
+  SceneSize size_ = scene_size("hall", bench_.options().size);
 };
 
 }  // namespace
