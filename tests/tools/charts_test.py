@@ -188,29 +188,29 @@ def write_records(folder):
 
 def texts_of(figure):
     """Every text that is seen, with its box."""
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.text import Text
 
     renderer = figure.canvas.get_renderer()
-    shown = [text for text in figure.findobj(Text)
-             if text.get_visible() and text.get_text().strip() and is_shown(text)]
-    return [(text.get_text(), text.get_window_extent(renderer)) for text in shown]
+    of_axes = {text for axes in figure.findobj(Axes) for axis in axes.findobj(Axis)
+               for text in axis.findobj(Text)}
+    shown = [text for text in figure.findobj(Text) if text not in of_axes]
+    for axes in figure.findobj(Axes):
+        if axes.axison:
+            shown += [text for axis in (axes.xaxis, axes.yaxis) for text in texts_of_axis(axis)]
+    return [(text.get_text(), text.get_window_extent(renderer)) for text in shown
+            if text.get_visible() and text.get_text().strip()]
 
 
-def is_shown(text):
-    """Tick labels outside the limits are not drawn, nor those of axes that are off."""
-    axes = text.axes
-    if axes is None:
-        return True
-    if not axes.axison and any(text in axis.findobj(match=type(text)) for axis in
-                               (axes.xaxis, axes.yaxis)):
-        return False
-    for axis in (axes.xaxis, axes.yaxis):
-        low, high = sorted(axis.get_view_interval())
-        slack = 1e-9 * max(abs(low), abs(high))
-        for tick in axis.get_major_ticks() + axis.get_minor_ticks():
-            if text in (tick.label1, tick.label2):
-                return low - slack <= tick.get_loc() <= high + slack
-    return True
+def texts_of_axis(axis):
+    """Its label, and the labels of ticks within its limits: others are kept, but not drawn."""
+    low, high = sorted(axis.get_view_interval())
+    slack = 1e-9 * max(abs(low), abs(high))
+    ticks = [tick for tick in axis.get_major_ticks() + axis.get_minor_ticks()
+             if low - slack <= tick.get_loc() <= high + slack]
+    return [axis.label, axis.get_offset_text(), *(tick.label1 for tick in ticks),
+            *(tick.label2 for tick in ticks)]
 
 
 def faults_of(figure):

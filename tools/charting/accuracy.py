@@ -5,14 +5,15 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from charting.labels import place_labels
 from charting.plot import (count_axis, fail, handle_of, legend_in, panels, power, room_for_failures,
-                           seconds_axis, spread)
+                           seconds_axis, short, spread)
 from charting.sheet import Sheet
 from charting.style import styles_of
 
-UNITS = {"tolerance": " m", "model thinned": " m", "environment quantised": " m"}
-METHODS = {"tolerance": "tolerance (m)", "model thinned": "model thinned to a voxel (m)",
-           "every nth pose": "every n-th pose",
-           "environment quantised": "environment quantised to (m)"}
+# What a method's value is called beside a marker and in the legend.
+METHODS = {"tolerance": ("t", "tolerance t (m)"),
+           "model thinned": ("v", "model thinned to a voxel v (m)"),
+           "every nth pose": ("n", "every n-th pose"),
+           "environment quantised": ("q", "environment quantised to q (m)")}
 
 
 def wrong(case):
@@ -20,14 +21,10 @@ def wrong(case):
 
 
 def label_of(case):
-    if case["method"] in ("exact", "float"):
-        return case["engine"]
-    value = case["value"]
-    name = f"{float(value):g}" if case["method"] in METHODS else str(value)
-    if case["method"] == "every nth pose":
-        return f"n = {name}"
-    if "far origin" in case["method"]:
-        return name
+    if case["method"] in METHODS:
+        name = f"{METHODS[case['method']][0]} {power(float(case['value']))}"
+    else:
+        name = case["value"] or case["engine"]
     return name + (" ↑" if case.findings.get("beyond") else "")
 
 
@@ -52,7 +49,7 @@ def draw(record):
     for panel in (number, distance):
         if run:
             seconds = [np.median(case.seconds("search")) for case in run]
-            panel.set_xlim(min(seconds) / 2, max(seconds) * 3)
+            panel.set_xlim(min(seconds) / 3, max(seconds) * 3)
         seconds_axis(panel.xaxis)
         panel.set_xlabel("search (s)")
         room_for_failures(panel)
@@ -64,7 +61,7 @@ def draw(record):
         place_labels(panel, panel.__dict__["clearway_labels"])
     names = list(styles)
     legend_in(place, [handle_of(styles[name]._replace(line="none")) for name in names],
-              [METHODS.get(name, name) for name in names], 3)
+              [METHODS.get(name, ("", name))[1] for name in names], 3)
     sheet.say("Wrong: false hits and misses against exact distances. Engine and parameter are "
               "written beside the markers. Grey steps: the front, no other is both faster and more "
               "accurate. ↑: some false hits are farther away than distances are known. Time "
@@ -97,7 +94,7 @@ def draw_share(axes, run):
                                                       if low < 10.0**i * points / 1e6 < high
                                                       and 10.0**i * points / 1e6 >= 1]))
     right.yaxis.set_minor_locator(NullLocator())
-    right.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    right.yaxis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
     right.set_ylabel("of a million environment points")
     right.spines["right"].set_visible(True)
 

@@ -1,5 +1,6 @@
 """Fig. 3: time of every engine and device on the four scenes."""
 
+import numpy as np
 from matplotlib.patches import Patch
 
 from charting import paper
@@ -18,9 +19,14 @@ def draw(record):
     axes, place = panels(sheet, -(-len(scenes) // 2), 2, legend_lines=1, sharey=True)
     for panel in axes.flat[len(scenes):]:
         panel.set_axis_off()
+    seconds = [np.median(case.seconds(name)) for case in record.cases if case.runs
+               for name in ("search", "total")]
     for letter, panel, scene in zip("abcd", axes.flat, scenes):
         draw_scene(sheet, panel, record.where(scene=scene), engines)
         panel.set_title(f"{letter}  {scene} (like {TABLE[scene][0]})")
+        if seconds:
+            panel.set_xlim(min(seconds) / 2, max(seconds) * 2)
+            seconds_axis(panel.xaxis)
     for panel in axes[-1]:
         panel.set_xlabel("time (s)")
     for panel in axes[:, 1]:
@@ -28,12 +34,11 @@ def draw(record):
     legend_in(place, [Patch(facecolor="#888888", edgecolor="black", linewidth=0.5),
                       Patch(facecolor="white", hatch="////", edgecolor="black", linewidth=0.5)],
               ["search (full bar)", "total (hatched bar)"], 2)
-    sheet.say("Time axes are logarithmic.")
+    sheet.say("The time axes are logarithmic, and the same in all panels.")
     return sheet
 
 
 def draw_scene(sheet, axes, cases, engines):
-    values = []
     for case in cases:
         style = engine_style(case["engine"])
         y = engines.index(case["engine"])
@@ -41,7 +46,6 @@ def draw_scene(sheet, axes, cases, engines):
             if not case.runs:
                 continue
             median, below, above = spread(case.seconds(name))
-            values.append(median)
             axes.barh(y + offset, median, HEIGHT, edgecolor="black", linewidth=0.5,
                       color=style.colour if name == "search" else "white",
                       hatch="" if name == "search" else style.hatch)
@@ -56,6 +60,3 @@ def draw_scene(sheet, axes, cases, engines):
     axes.set_yticks(range(len(engines)), engines)
     axes.set_ylim(len(engines) - 0.4, -0.6)
     axes.grid(False, axis="y")
-    if values:
-        axes.set_xlim(min(values) / 2, max(values) * 2)
-        seconds_axis(axes.xaxis)

@@ -1,5 +1,6 @@
 """Labels of markers that overlap neither each other nor a marker."""
 
+from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Bbox
 
 DIRECTIONS = ((1, 0), (0, 1), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
@@ -18,7 +19,8 @@ def place_labels(axes, labels):
              for x, y in marks]
     inside = axes.get_window_extent(renderer)
     for (x, y, text), mark in zip(labels, marks):
-        note = axes.annotate(text, (x, y), (0, 0), textcoords="offset points", zorder=6)
+        note = axes.annotate(text, (x, y), (0, 0), textcoords="offset points", zorder=6,
+                             path_effects=[withStroke(linewidth=2, foreground="white")])
         box = free_place(note, mark, taken, inside, renderer)
         taken.append(box)
 
@@ -31,7 +33,7 @@ def free_place(note, mark, taken, inside, renderer):
             put(note, right, up, distance)
             box = note.get_window_extent(renderer)
             cost = sum(overlap(box, other) for other in taken)
-            cost += box.width * box.height - overlap(box, inside)
+            cost += 5 * (box.width * box.height - overlap(box, inside))
             if best is None or cost < best[0] - 1e-6:
                 best = (cost, right, up, distance)
             if best[0] < 1e-6:

@@ -53,11 +53,11 @@ def room_for_failures(axes):
 
 
 def with_unit(value, unit):
-    """0.0001 m as 0.1 mm: short labels of lengths."""
-    for factor, name in ((1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")):
-        if value >= factor * 0.9999:
-            return f"{value / factor:g} {name}{unit}"
-    return f"{value:g} {unit}"
+    """Two digits: 0.00095 s as 950 µs."""
+    for factor, name in ((1, ""), (1e-3, "m"), (1e-6, "µ")):
+        if abs(value) >= factor:
+            return f"{float(f'{value / factor:.2g}'):g} {name}{unit}".replace("-", "−")
+    return f"{value:.2g} {unit}"
 
 
 def short(value):
@@ -91,6 +91,7 @@ def axis_with_zero(axis, values, every=1):
     setter = axis.axes.set_yscale if axis.axis_name == "y" else axis.axes.set_xscale
     if 0 in values:
         setter("symlog", linthresh=positive[0], linscale=0.8)
+        axis.set_view_interval(-0.3 * positive[0], positive[-1] * 2, ignore=True)
     else:
         setter("log")
     ticks = ([0] if 0 in values else []) + positive[::every]

@@ -3,7 +3,8 @@
 import numpy as np
 
 from charting import paper
-from charting.plot import line, panels, room_for_failures, seconds_axis, short
+from charting.plot import (handle_of, legend_in, line, panels, room_for_failures, seconds_axis,
+                           short, with_unit)
 from charting.sheet import Sheet
 from charting.style import engine_style
 
@@ -12,8 +13,8 @@ def draw(record):
     engines = record.names("engine")
     rows = -(-(len(engines) + 1) // 2)
     sheet = Sheet(record, "Fig. 4: time by the number of environment points (samples of the hall)",
-                  rows * 1.85, paper.POINTS)
-    axes, _ = panels(sheet, rows, 2)
+                  rows * 1.85 + 0.3, paper.POINTS)
+    axes, place = panels(sheet, rows, 2, legend_lines=-(-len(engines) // 4))
     for panel in axes.flat[len(engines) + 1:]:
         panel.set_axis_off()
     together = axes.flat[0]
@@ -26,7 +27,7 @@ def draw(record):
         line(sheet, panel, cases, lambda case: case["points"] / 1e6,
              lambda case: case.seconds("search"), style, name, **small)
         every = max(case["every"] for case in cases)
-        panel.set_title(f"{letter}  {name}" + (", every tenth sample" if every == 10 else ""))
+        panel.set_title(f"{letter}  {name}" + (" (every tenth)" if every == 10 else ""))
         draw_fit(panel, cases)
         panel.set_xlim(0, None)
         panel.set_ylim(0, None)
@@ -38,7 +39,9 @@ def draw(record):
     together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="search (s)")
     room_for_failures(together)
     sheet.say("Lines: least squares through the medians, with the share of the variance that they "
-              "explain (R²). The colours and markers of a are those of the other panels.")
+              "explain (R²). Every tenth: the slow engines ran every tenth of the samples.")
+    legend_in(place, [handle_of(engine_style(name)._replace(line="none")) for name in engines],
+              engines, 4)
     return sheet
 
 
@@ -53,6 +56,6 @@ def draw_fit(axes, cases):
     share = 1 - ((y - start - slope * x) ** 2).sum() / ((y - y.mean()) ** 2).sum()
     ends = np.array([0, x.max()])
     axes.plot(ends, start + slope * ends, color="black", linewidth=1, zorder=4)
-    axes.text(0.03, 0.96, f"{start:.2g} s {'+' if slope >= 0 else '−'} {abs(slope):.2g} s/million"
-              f"\nR² = {share:.3f}", transform=axes.transAxes, va="top",
+    axes.text(0.97, 0.05, f"{with_unit(start, 's')} + {with_unit(slope, 's')}/million"
+              f"\nR² = {share:.3f}", transform=axes.transAxes, va="bottom", ha="right",
               bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1}, zorder=6)

@@ -19,6 +19,12 @@ def draw(record):
     sheet = Sheet(record, "Where methods fail", 8.0)
     axes, place = panels(sheet, 4, 3, legend_lines=2)
     panel = iter(axes.flat)
+    sheet.say("Hall; the tunnel in d to f. Wrong points of a and b: against exact distances. "
+              "c: points that close to the radius, to double's spacing there. "
+              "d to f: eight stray points stretch the tunnel's bounding box; full markers: grid, "
+              "hollow: sweep (e, f: conversion, and in f hollow the most that a run held). "
+              "h and i: the budget relative to the least that the program names, which "
+              "it refuses to go below.")
     draw_origin(sheet, next(panel), next(panel), record)
     draw_boundary(sheet, next(panel), record)
     draw_sparseness(sheet, [next(panel) for _ in range(3)], record)
@@ -36,12 +42,6 @@ def draw(record):
     layouts = [name for name in LAYOUTS if record.where(layout=name)]
     legend_in(place, engine_handles(engines) + [handle_of(LAYOUTS[name]) for name in layouts],
               engines + layouts, 4)
-    sheet.say("Hall; the tunnel in d to f. Wrong points of a and b: against exact distances. "
-              "c: points that close to the radius, to double's spacing there. "
-              "d to f: eight stray points stretch the tunnel's bounding box; full markers: grid, "
-              "hollow: sweep (e, f: conversion, and in f hollow the most that a run held). "
-              "h and i: the budget relative to the least that the program names, without a marker "
-              "where it refuses.")
     say_differences(sheet, record)
     return sheet
 
@@ -115,6 +115,9 @@ def draw_sparseness(sheet, axes, record):
             if hollow:
                 line(sheet, memory, of_engine, value,
                      lambda case: case.values("peak_resident_bytes") / GIB, style, name, **hollow)
+        for case in converted:
+            if case.failure:
+                fail(sheet, time, case["value"], case.failure, style)
         for panel, finding, unit in ((conversion, "convert_seconds", 1),
                                      (memory, "convert_peak_bytes", GIB)):
             line(sheet, panel, converted, value,
@@ -147,7 +150,8 @@ def draw_memory(sheet, axes, record, option, title):
              for engine in dict.fromkeys(case["engine"] for case in cases)}
     engine_lines(sheet, axes, cases, lambda case: case["value"] / least[case["engine"]], search)
     axes.set_xscale("log", base=2)
-    axes.xaxis.set_major_formatter(lambda x, _: short(x))
+    axes.set_xticks([1, 2, 4, 8], ["1", "2", "4", "8"])
+    axes.set_xticks([], minor=True)
     seconds_axis(axes.yaxis)
     sheet.say("Least " + option + " that works: " + ", ".join(
         f"{engine} {bytes_text(least[engine])}" for engine in least) + ".")

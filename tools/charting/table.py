@@ -80,7 +80,7 @@ def draw(record):
 def draw_scene(axes, rows, scene, count):
     axes.set_xlim(0, 1)
     axes.set_ylim(count + 1.6, -0.2)
-    columns = ((0.0, "left"), (0.55, "right"), (0.57, "left"), (1.0, "right"))
+    columns = ((0.0, "left"), (0.5, "right"), (0.52, "left"), (1.0, "right"))
     head = (scene, "Clearway", "", TABLE[scene][0])
     for row, cells in enumerate([head, *rows]):
         for (x, side), text in zip(columns, cells):
