@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the JSON files of `clearway bench`, each as SVG and PNG named as its experiment.
 
-Needs matplotlib and numpy (Debian: python3-matplotlib). Other JSON files in the folder are left out.
+Needs matplotlib and numpy (Debian: python3-matplotlib). Other JSON files are left out.
 Example: tools/charts.py figures -o charts
 """
 
@@ -20,7 +20,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="with JSON files of clearway bench")
-    parser.add_argument("-o", "--output", type=Path, help="folder of the charts (default: the same)")
+    parser.add_argument("-o", "--output", type=Path, 
+                        help="folder of the charts (default: the same)")
     options = parser.parse_args()
     output = options.output or options.folder
     records = [read_record(path) for path in sorted(options.folder.glob("*.json"))]

@@ -1,5 +1,5 @@
-"""tools/charts.py draws files as `clearway bench` writes them: every experiment becomes an SVG and a
-PNG, no text is outside the page or over another, and what failed is shown with its reason."""
+"""tools/charts.py draws files as `clearway bench` writes them: every experiment becomes an SVG and
+a PNG, no text is outside the page or over another, and what failed is shown with its reason."""
 
 import itertools
 import json
@@ -14,8 +14,8 @@ sys.path.insert(0, str(TOOLS))
 
 ENGINES = {"kdtree cpu": 20.0, "sweep cpu": 0.9, "grid cuda": 0.4, "sweep cuda": 0.05}
 FLOAT = "grid float cuda"
-REFUSED = {"exit_code": 4, "log": "[2026-01-01 10:00:00.000] [error] clearway run: /w/x/hall.h5: this "
-           "run needs 123.4 MiB (--memory 129394278)"}
+REFUSED = {"exit_code": 4,
+           "log": "[2026-01-01 10:00:00.000] [error] clearway run: /w/x/hall.h5: this run needs 123.4 MiB (--memory 129394278)"}
 chance = random.Random(1)
 
 
@@ -26,8 +26,8 @@ def report(engine, seconds, points=1_110_000, cells=400):
              "engine": 0.02, "search": search, "read": search * 0.3, "upload": search * 0.2,
              "compute": search * 0.8, "collect": search * 0.05, "write": 0.03}
     return {"engine": name, "device": device, "searches": 10**9, "environment_points": points,
-            "model_points": 20_000, "poses": 1_700, "colliding_points": 104_711, "field_voxel": 0.05,
-            "grid_cell": 0.14 if name == "grid" else 0, "cells_total": cells,
+            "model_points": 20_000, "poses": 1_700, "colliding_points": 104_711,
+            "field_voxel": 0.05, "grid_cell": 0.14 if name == "grid" else 0, "cells_total": cells,
             "cells_read": cells // 2, "peak_host_bytes": 10**8, "peak_device_bytes": 10**8,
             "seconds": {"total": sum(steps.values()), **steps}, "wall_seconds": search + 0.5,
             "peak_resident_bytes": 4 * 10**8}
@@ -45,7 +45,8 @@ def case(parameters, seconds, findings=None, failed=None, runs=3, **more):
 
 
 def compared(differing=0):
-    return {"common": 104_711, "only_here": differing, "only_in_reference": 0, "equal": not differing}
+    return {"common": 104_711, "only_here": differing, "only_in_reference": 0,
+            "equal": not differing}
 
 
 def judged(wrong, distance, beyond=0):
@@ -134,7 +135,8 @@ def stability():
                    {"convert_seconds": 1 + i, "convert_peak_bytes": 10**8 * (i + 1) * factor**0.2,
                     "store_bytes": 10**7}}
             for engine in engines[1:] if not failed else ():
-                yield case({**whole, "engine": engine}, ENGINES[engine] * factor ** (0.3 * i), runs=1)
+                yield case({**whole, "engine": engine}, ENGINES[engine] * factor ** (0.3 * i),
+                           runs=1)
     for radius in (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0):
         for engine in engines:
             yield case({"vary": "radius", "value": radius, "engine": engine},

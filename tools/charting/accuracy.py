@@ -29,7 +29,7 @@ def label_of(case):
 
 
 def draw(record):
-    sheet = Sheet(record, "Speed against accuracy (hall)", 8.3)
+    sheet = Sheet(record, "Speed against accuracy (hall)", 8.3, times=("answer",))
     axes, place = panels(sheet, 2, 1, legend_lines=3)
     styles = styles_of(record.names("method"))
     number, distance = axes[:, 0]
@@ -48,10 +48,10 @@ def draw(record):
     distance.set_title("b  how far they are from the boundary, at most")
     for panel in (number, distance):
         if run:
-            seconds = [np.median(case.seconds("search")) for case in run]
+            seconds = [np.median(case.answer_seconds()) for case in run]
             panel.set_xlim(min(seconds) / 3, max(seconds) * 3)
         seconds_axis(panel.xaxis)
-        panel.set_xlabel("search (s)")
+        panel.set_xlabel("answer (s)")
         room_for_failures(panel)
     for panel, y_of in ((number, wrong),
                         (distance, lambda case: case.findings["largest_distance"])):
@@ -77,7 +77,7 @@ def draw_panel(sheet, axes, record, styles, y_of):
             fail(sheet, axes, 1, f"{case.key}: {case.failure}", style)
         if not case.runs or not case.findings:
             continue
-        x, below, above = spread(case.seconds("search"))
+        x, below, above = spread(case.answer_seconds())
         y = y_of(case)
         axes.errorbar(x, y, xerr=[[below], [above]], color=style.colour, marker=style.marker,
                       markeredgecolor="black", markeredgewidth=0.4, elinewidth=0.8, zorder=3)
@@ -114,7 +114,7 @@ def distance_axis(axes, none, most):
 
 def draw_front(axes, run, y_of, floor):
     """Steps through those that no other beats in both."""
-    points = sorted((np.median(case.seconds("search")), y_of(case) if wrong(case) else floor)
+    points = sorted((np.median(case.answer_seconds()), y_of(case) if wrong(case) else floor)
                     for case in run)
     front = []
     for x, y in points:

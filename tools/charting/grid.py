@@ -34,7 +34,8 @@ def draw(record):
     draw_bars(sheet, cell, record.where(vary="grid cell"), cell_label, cell_size, cells=False)
     cell.set(title="a  by grid cell, adaptive layout", xlabel="edge of a grid cell (m)")
     draw_bars(sheet, adaptive, record.where(vary="adaptive layout"), points_label, number)
-    adaptive.set(title="b  by points of a cell, adaptive layout", xlabel="points of a cell, at most")
+    adaptive.set(title="b  by points of a cell, adaptive layout",
+                 xlabel="points of a cell, at most")
     draw_bars(sheet, regular, record.where(vary="regular layout"), lambda case: case["value"],
               number)
     regular.set(title="c  by edge of a cell, regular layout as the paper's",

@@ -43,7 +43,7 @@ def free_place(note, mark, taken, inside, renderer):
     _, right, up, distance = best
     put(note, right, up, distance)
     box = note.get_window_extent(renderer)
-    if distance > DISTANCES[1]:
+    if distance > DISTANCES[0]:
         corner = (min(max(mark[0], box.x0), box.x1), min(max(mark[1], box.y0), box.y1))
         end = note.axes.transData.inverted().transform(corner)
         note.axes.plot([note.xy[0], end[0]], [note.xy[1], end[1]], color="#888888", linewidth=0.5,

@@ -13,7 +13,7 @@ def draw(record):
     engines = record.names("engine")
     rows = -(-(len(engines) + 1) // 2)
     sheet = Sheet(record, "Fig. 4: time by the number of environment points (samples of the hall)",
-                  rows * 1.85 + 0.3, paper.POINTS)
+                  rows * 1.85 + 0.3, paper.POINTS, ("answer",))
     axes, place = panels(sheet, rows, 2, legend_lines=-(-len(engines) // 4))
     for panel in axes.flat[len(engines) + 1:]:
         panel.set_axis_off()
@@ -23,20 +23,20 @@ def draw(record):
         style = engine_style(name)._replace(line="none")
         small = {"markersize": 3}
         line(sheet, together, cases, lambda case: case["points"],
-             lambda case: case.seconds("search"), style, name, **small)
+             lambda case: case.answer_seconds(), style, name, **small)
         line(sheet, panel, cases, lambda case: case["points"] / 1e6,
-             lambda case: case.seconds("search"), style, name, **small)
+             lambda case: case.answer_seconds(), style, name, **small)
         every = max(case["every"] for case in cases)
         panel.set_title(f"{letter}  {name}" + (" (every tenth)" if every == 10 else ""))
         draw_fit(panel, cases)
         panel.set_xlim(0, None)
         panel.set_ylim(0, None)
         room_for_failures(panel)
-        panel.set(xlabel="environment points (million)", ylabel="search (s)")
+        panel.set(xlabel="environment points (million)", ylabel="answer (s)")
     together.set_xscale("log")
     seconds_axis(together.yaxis)
     together.xaxis.set_major_formatter(lambda value, _: short(value))
-    together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="search (s)")
+    together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="answer (s)")
     room_for_failures(together)
     sheet.say("Lines: least squares through the medians, with the share of the variance that they "
               "explain (R²). Every tenth: the slow engines ran every tenth of the samples.")
@@ -51,7 +51,7 @@ def draw_fit(axes, cases):
     if len(cases) < 3:
         return
     x = np.array([case["points"] / 1e6 for case in cases])
-    y = np.array([np.median(case.seconds("search")) for case in cases])
+    y = np.array([np.median(case.answer_seconds()) for case in cases])
     slope, start = np.polyfit(x, y, 1)
     share = 1 - ((y - start - slope * x) ** 2).sum() / ((y - y.mean()) ** 2).sum()
     ends = np.array([0, x.max()])

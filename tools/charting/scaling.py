@@ -10,16 +10,17 @@ PANELS = (("poses", "poses T"), ("model points", "model points M"), ("radius", "
 
 
 def draw(record):
-    sheet = Sheet(record, "Time by poses, model points, radius and cell size (hall)", 5.2)
+    sheet = Sheet(record, "Time by poses, model points, radius and cell size (hall)", 5.2,
+                  times=("answer",))
     engines = record.names("engine")
     axes, place = panels(sheet, 2, 2, legend_lines=1)
     for letter, panel, (vary, label) in zip("abcd", axes.flat, PANELS):
         cases = record.where(vary=vary)
         for name in engines:
             line(sheet, panel, [case for case in cases if case["engine"] == name],
-                 lambda case: case["value"], lambda case: case.seconds("search"),
+                 lambda case: case["value"], lambda case: case.answer_seconds(),
                  engine_style(name), name)
-        panel.set(title=f"{letter}  by {vary}", xlabel=label, ylabel="search (s)")
+        panel.set(title=f"{letter}  by {vary}", xlabel=label, ylabel="answer (s)")
         panel.set_xscale("log")
         panel.xaxis.set_major_formatter(lambda value, _: short(value))
         seconds_axis(panel.yaxis)

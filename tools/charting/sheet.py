@@ -12,6 +12,8 @@ LINE = FONT_POINTS * 1.25 / 72
 DPI = 150
 TIMES = {
     "search": "search: wall clock from the first page of the environment to the last",
+    "answer": "answer: wall clock of preparing the question (thinning, plan, field, engine) and of "
+              "searching, without reading model and poses, starting CUDA and writing the result",
     "total": "total: wall clock of the whole run, from its inputs to the result file",
 }
 

@@ -7,16 +7,16 @@ import numpy as np
 from charting.plot import (axis_with_zero, count_axis, engine_handles, fail, handle_of, legend_in,
                            line, panels, power, room_for_failures, seconds_axis, short)
 from charting.sheet import Sheet
-from charting.style import BLACK, BLUE, GREEN, VERMILION, Style, engine_style
+from charting.style import BLACK, BLUE, SKY, Style, engine_style
 
 LAYOUTS = {"adaptive": Style(BLACK, "o", "-", ""),
-           "regular, 50 cells along": Style(VERMILION, "s", "--", ""),
-           "regular, 2 m": Style(GREEN, "^", "-.", "")}
+           "regular, 50 cells along": Style(SKY, "p", "--", ""),
+           "regular, 2 m": Style("#888888", "*", "-.", "")}
 GIB = 2**30
 
 
 def draw(record):
-    sheet = Sheet(record, "Where methods fail", 8.0)
+    sheet = Sheet(record, "Where methods fail", 8.0, times=("answer",))
     axes, place = panels(sheet, 4, 3, legend_lines=2)
     panel = iter(axes.flat)
     sheet.say("Hall; the tunnel in d to f. Wrong points of a and b: against exact distances. "
@@ -52,8 +52,8 @@ def engine_lines(sheet, axes, cases, x_of, y_of):
              engine_style(name), name)
 
 
-def search(case):
-    return case.seconds("search")
+def answer(case):
+    return case.answer_seconds()
 
 
 def value(case):
@@ -111,7 +111,7 @@ def draw_sparseness(sheet, axes, record):
         for engine in dict.fromkeys(case["engine"] for case in runs):
             hollow = {"markerfacecolor": "white"} if engine.startswith("sweep") else {}
             of_engine = [case for case in runs if case["engine"] == engine]
-            line(sheet, time, of_engine, value, search, style, name, **hollow)
+            line(sheet, time, of_engine, value, answer, style, name, **hollow)
             if hollow:
                 line(sheet, memory, of_engine, value,
                      lambda case: case.values("peak_resident_bytes") / GIB, style, name, **hollow)
@@ -123,7 +123,7 @@ def draw_sparseness(sheet, axes, record):
             line(sheet, panel, converted, value,
                  lambda case: np.array([case.findings[finding] / unit])
                  if finding in case.findings else np.array([]), style, name)
-    time.set(title="d  sparse: search", ylabel="search (s)")
+    time.set(title="d  sparse: answer", ylabel="answer (s)")
     conversion.set(title="e  sparse: conversion", ylabel="conversion (s)")
     memory.set(title="f  sparse: memory", ylabel="peak memory (GiB)")
     for panel in axes:
@@ -133,14 +133,14 @@ def draw_sparseness(sheet, axes, record):
 
 
 def draw_radius(sheet, axes, record):
-    engine_lines(sheet, axes, record.where(vary="radius"), value, search)
-    axes.set(title="g  radius", xlabel="radius (m)", ylabel="search (s)", xscale="log")
+    engine_lines(sheet, axes, record.where(vary="radius"), value, answer)
+    axes.set(title="g  radius", xlabel="radius (m)", ylabel="answer (s)", xscale="log")
     axes.xaxis.set_major_formatter(lambda x, _: short(x))
     seconds_axis(axes.yaxis)
 
 
 def draw_memory(sheet, axes, record, option, title):
-    axes.set(title=title, xlabel="budget / least that works", ylabel="search (s)")
+    axes.set(title=title, xlabel="budget / least that works", ylabel="answer (s)")
     cases = record.where(vary=option)
     if not cases:
         axes.text(0.5, 0.5, "no GPU measured", ha="center", transform=axes.transAxes)
@@ -148,7 +148,7 @@ def draw_memory(sheet, axes, record, option, title):
         return
     least = {engine: least_of(record, option, engine)
              for engine in dict.fromkeys(case["engine"] for case in cases)}
-    engine_lines(sheet, axes, cases, lambda case: case["value"] / least[case["engine"]], search)
+    engine_lines(sheet, axes, cases, lambda case: case["value"] / least[case["engine"]], answer)
     axes.set_xscale("log", base=2)
     axes.set_xticks([1, 2, 4, 8], ["1", "2", "4", "8"])
     axes.set_xticks([], minor=True)
@@ -172,9 +172,9 @@ def least_of(record, option, engine):
 
 def draw_poses(sheet, axes, record, vary, title, label):
     cases = record.where(vary=vary)
-    engine_lines(sheet, axes, cases, value, search)
+    engine_lines(sheet, axes, cases, value, answer)
     axis_with_zero(axes.xaxis, [case["value"] for case in cases], 2)
-    axes.set(title=title, xlabel=label, ylabel="search (s)")
+    axes.set(title=title, xlabel=label, ylabel="answer (s)")
     if any(case.runs for case in cases):
         seconds_axis(axes.yaxis)
     else:
