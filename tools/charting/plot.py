@@ -28,16 +28,19 @@ def line(sheet, axes, cases, x_of, y_of, style, label, **how):
 
 
 def fail(sheet, axes, x, reason, style=None):
-    """A cross at the top at x, with the number of its reason; those at one x below each other."""
+    """A cross at the top at x, over the marker of its style, with the number of its reason; those
+    at one x below each other."""
     crosses = axes.__dict__.setdefault("clearway_crosses", {})
     row = crosses[x] = crosses.get(x, -1) + 1
     place = axes.get_xaxis_transform()
     y = 0.97 - 0.085 * row
-    colour = style.colour if style else VERMILION
-    axes.plot([x], [y], marker="x", markersize=6, markeredgewidth=1.8, color=colour,
-              transform=place, clip_on=False, zorder=5)
-    axes.annotate(str(sheet.number_of_failure(reason)), (x, y), xycoords=place, xytext=(4.5, 0),
-                  textcoords="offset points", va="center", fontsize=8)
+    if style:
+        axes.plot([x], [y], marker=style.marker, markersize=7, markerfacecolor="white",
+                  markeredgecolor=style.colour, transform=place, clip_on=False, zorder=5)
+    axes.plot([x], [y], marker="x", markersize=5.5, markeredgewidth=1.5,
+              color="black" if style else VERMILION, transform=place, clip_on=False, zorder=6)
+    axes.annotate(str(sheet.number_of_failure(reason)), (x, y), xycoords=place, xytext=(5, 0),
+                  textcoords="offset points", va="center")
 
 
 def room_for_failures(axes):

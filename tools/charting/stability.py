@@ -11,7 +11,7 @@ from charting.style import BLACK, BLUE, SKY, Style, engine_style
 
 LAYOUTS = {"adaptive": Style(BLACK, "o", "-", ""),
            "regular, 50 cells along": Style(SKY, "p", "--", ""),
-           "regular, 2 m": Style("#888888", "*", "-.", "")}
+           "regular, 2 m": Style("#888888", ">", "-.", "")}
 GIB = 2**30
 
 
