@@ -1,0 +1,161 @@
+"""Lines with spread, failures and labels."""
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
+
+from charting.style import VERMILION, engine_style
+
+
+def spread(values):
+    """Median, and how far the least and the greatest are from it."""
+    median = np.median(values)
+    return median, median - np.min(values), np.max(values) - median
+
+
+def line(sheet, axes, cases, x_of, y_of, style, label, **how):
+    """A marker a case at the median of its runs, the least and the greatest as a bar, in the order
+    of x. A case that failed is a cross at the top, numbered as its reason in the caption."""
+    cases = sorted(cases, key=x_of)
+    drawn = [(x_of(case), *spread(y_of(case))) for case in cases if len(y_of(case))]
+    x, y, below, above = np.array(drawn).reshape(-1, 4).T
+    axes.errorbar(x, y, [below, above], color=style.colour, marker=style.marker,
+                  linestyle=style.line, markeredgecolor="black", markeredgewidth=0.4,
+                  elinewidth=0.8, label=label, **how)
+    for case in cases:
+        if case.failure:
+            fail(sheet, axes, x_of(case), case.failure, style)
+
+
+def fail(sheet, axes, x, reason, style=None):
+    """A cross at the top at x, over the marker of its style, with the number of its reason; those
+    at one x below each other."""
+    crosses = axes.__dict__.setdefault("clearway_crosses", {})
+    row = crosses[x] = crosses.get(x, -1) + 1
+    place = axes.get_xaxis_transform()
+    y = 0.97 - 0.085 * row
+    if style:
+        axes.plot([x], [y], marker=style.marker, markersize=7, markerfacecolor="white",
+                  markeredgecolor=style.colour, transform=place, clip_on=False, zorder=5)
+    axes.plot([x], [y], marker="x", markersize=5.5, markeredgewidth=1.5,
+              color="black" if style else VERMILION, transform=place, clip_on=False, zorder=6)
+    axes.annotate(str(sheet.number_of_failure(reason)), (x, y), xycoords=place, xytext=(5, 0),
+                  textcoords="offset points", va="center")
+
+
+def room_for_failures(axes):
+    """Keeps the data below the crosses."""
+    crosses = axes.__dict__.get("clearway_crosses", {})
+    if not crosses:
+        return
+    share = 0.08 + 0.085 * (max(crosses.values()) + 1)
+    transform = axes.yaxis.get_transform()
+    low, high = transform.transform(np.array(axes.get_ylim()))
+    top = low + (high - low) / (1 - share)
+    axes.set_ylim(*transform.inverted().transform(np.array([low, top])))
+
+
+def with_unit(value, unit):
+    """Two digits: 0.00095 s as 950 µs."""
+    for factor, name in ((1, ""), (1e-3, "m"), (1e-6, "µ")):
+        if abs(value) >= factor:
+            return f"{float(f'{value / factor:.2g}'):g} {name}{unit}".replace("-", "−")
+    return f"{value:.2g} {unit}"
+
+
+def short(value):
+    """30000 as 30k, 0.01 as it is."""
+    for factor, name in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if abs(value) >= factor:
+            return f"{value / factor:.3g}{name}"
+    return f"{value:g}"
+
+
+def seconds_axis(axis):
+    """Log scale with plain numbers; every decade, and 2 and 5 where there are few."""
+    axis.axes.set_yscale("log") if axis.axis_name == "y" else axis.axes.set_xscale("log")
+    low, high = axis.get_view_interval()
+    decades = np.log10(high / low)
+    if decades < 0.8:
+        low, high = (low / 1.4, high * 1.4)
+        axis.axes.set_ylim(low, high) if axis.axis_name == "y" else axis.axes.set_xlim(low, high)
+    subs = (1, 2, 5) if decades < 2 else (1, 3) if decades < 3 else (1,)
+    axis.set_major_locator(LogLocator(subs=subs, numticks=20))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def axis_with_zero(axis, values, every=1):
+    """Log scale from the least positive value on, with 0 a decade before it and ticks at the
+    values (every n-th); plain log where 0 is not among them."""
+    positive = sorted({value for value in values if value > 0})
+    if not positive:
+        return
+    setter = axis.axes.set_yscale if axis.axis_name == "y" else axis.axes.set_xscale
+    if 0 in values:
+        setter("symlog", linthresh=positive[0], linscale=0.8)
+        axis.set_view_interval(-0.3 * positive[0], positive[-1] * 2, ignore=True)
+    else:
+        setter("log")
+    ticks = ([0] if 0 in values else []) + positive[::every]
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: power(value)))
+
+
+def power(value):
+    """Plain where that is short, else 10 to the power; rounded to it."""
+    if value == 0 or 0.01 <= abs(value) < 10_000:
+        return f"{value:g}"
+    exponent = int(np.floor(np.log10(abs(value)) + 1e-9))
+    mantissa = value / 10.0**exponent
+    if abs(mantissa - 1) < 1e-6:
+        return f"$10^{{{exponent}}}$"
+    return f"${mantissa:.2g}·10^{{{exponent}}}$"
+
+
+def count_axis(axes, most, label):
+    """Numbers of points with 0, linear up to 1, then log."""
+    axes.set_yscale("symlog", linthresh=1, linscale=0.6)
+    top = int(np.ceil(np.log10(max(most, 10))))
+    axes.set_ylim(-0.35, 10.0**top * 2)
+    axes.yaxis.set_major_locator(FixedLocator([0] + [10.0**i for i in range(0, top + 1)]))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+    axes.set_ylabel(label)
+
+
+def panels(sheet, rows, columns, legend_lines=0, **how):
+    """Axes in rows and columns, and below them, where asked for, room for a legend of all."""
+    heights = [1.0] * rows
+    if legend_lines:
+        room = legend_lines * 0.19 + 0.02
+        heights = [(sheet.body_height - room) / rows] * rows + [room]
+    grid = sheet.figure.add_gridspec(len(heights), columns, height_ratios=heights)
+    share_y = how.pop("sharey", False)
+    axes = np.empty((rows, columns), object)
+    for row in range(rows):
+        for column in range(columns):
+            first = axes[row, 0] if share_y and column else None
+            axes[row, column] = sheet.figure.add_subplot(grid[row, column], sharey=first)
+    if not legend_lines:
+        return axes, None
+    place = sheet.figure.add_subplot(grid[rows, :])
+    place.set_axis_off()
+    return axes, place
+
+
+def legend_in(place, handles, labels, columns):
+    legend = place.legend(handles, labels, loc="center", ncol=columns, frameon=False,
+                          borderaxespad=0, columnspacing=1.4)
+    legend.set_in_layout(False)
+
+
+def engine_handles(names):
+    """Handles of a legend for engines, in their styles."""
+    return [handle_of(engine_style(name)) for name in names]
+
+
+def handle_of(style):
+    return Line2D([], [], color=style.colour, marker=style.marker, linestyle=style.line,
+                  markeredgecolor="black", markeredgewidth=0.4)

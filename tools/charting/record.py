@@ -1,0 +1,80 @@
+"""What `clearway bench` wrote."""
+
+import json
+import re
+import sys
+
+import numpy as np
+
+
+class Case:
+    """One case: its parameters, the reports of its runs and what was found of the result."""
+
+    def __init__(self, raw):
+        self.key = raw["key"]
+        self.parameters = raw.get("parameters", {})
+        self.runs = raw.get("runs", [])
+        self.findings = raw.get("findings") or {}
+        failed = raw.get("failed") or self.findings.get("failed")
+        self.failure = failure_text(failed) if failed else None
+
+    def __getitem__(self, name):
+        return self.parameters[name]
+
+    def get(self, name):
+        return self.parameters.get(name)
+
+    def seconds(self, *names):
+        """A number a run: the sum of these of its times."""
+        return np.array([sum(run["seconds"].get(name, 0) for name in names) for run in self.runs])
+
+    def answer_seconds(self):
+        """What the question takes besides its inputs, a context and writing its result."""
+        return self.seconds("thin", "plan", "field", "engine", "search")
+
+    def values(self, name):
+        return np.array([run[name] for run in self.runs])
+
+
+class Record:
+    """One file of one experiment."""
+
+    def __init__(self, path, raw):
+        self.path = path
+        self.experiment = raw["experiment"]
+        self.size = raw.get("size", "")
+        self.machine = raw.get("machine", {})
+        self.clearway = raw.get("clearway", {})
+        self.parameters = raw.get("parameters", {})
+        self.cases = [Case(one) for one in raw["cases"]]
+
+    def where(self, **wanted):
+        """The cases whose parameters have these values."""
+        return [case for case in self.cases
+                if all(case.get(name) == value for name, value in wanted.items())]
+
+    def names(self, name):
+        """The values of a parameter, each once, as they come."""
+        return list(dict.fromkeys(case[name] for case in self.cases if case.get(name) is not None))
+
+
+def read_record(path):
+    """The record in a file; None where it is JSON of something else."""
+    try:
+        raw = json.loads(path.read_text())
+    except ValueError as error:
+        sys.exit(f"{path}: is not JSON: {error}")
+    if not isinstance(raw, dict) or not {"experiment", "cases"} <= raw.keys():
+        return None
+    return Record(path, raw)
+
+
+def failure_text(failed):
+    """Why a run failed, in a line."""
+    if "after_seconds" in failed:
+        return f"stopped after {failed['after_seconds']:.0f} s"
+    lines = [line.strip() for line in failed.get("log", "").splitlines() if line.strip()]
+    reason = re.sub(r"^(\[[^]]*\]\s*)+", "", lines[-1]) if lines else "no message"
+    reason = re.sub(r"^clearway( \w+)?: ", "", reason)
+    reason = re.sub(r"(?:/[^\s/:]+)+/([^\s/:]+)", r"\1", reason)
+    return f"{reason} (exit code {failed.get('exit_code')})"

@@ -1,0 +1,193 @@
+"""Where methods fail: origin, boundary, sparseness, radius, memory, poses."""
+
+import re
+
+import numpy as np
+
+from charting.plot import (axis_with_zero, count_axis, engine_handles, fail, handle_of, legend_in,
+                           line, panels, power, room_for_failures, seconds_axis, short)
+from charting.sheet import Sheet
+from charting.style import BLACK, BLUE, SKY, Style, engine_style
+
+LAYOUTS = {"adaptive": Style(BLACK, "o", "-", ""),
+           "regular, 50 cells along": Style(SKY, "p", "--", ""),
+           "regular, 2 m": Style("#888888", ">", "-.", "")}
+GIB = 2**30
+
+
+def draw(record):
+    sheet = Sheet(record, "Where methods fail", 8.0, times=("answer",))
+    axes, place = panels(sheet, 4, 3, legend_lines=2)
+    panel = iter(axes.flat)
+    sheet.say("Hall; the tunnel in d to f. Wrong points of a and b: against exact distances. "
+              "c: points that close to the radius, to double's spacing there. "
+              "d to f: eight stray points stretch the tunnel's bounding box; full markers: grid, "
+              "hollow: sweep (e, f: conversion, and in f hollow the most that a run held). "
+              "h and i: the budget relative to the least that the program names, which "
+              "it refuses to go below.")
+    draw_origin(sheet, next(panel), next(panel), record)
+    draw_boundary(sheet, next(panel), record)
+    draw_sparseness(sheet, [next(panel) for _ in range(3)], record)
+    draw_radius(sheet, next(panel), record)
+    draw_memory(sheet, next(panel), record, "--memory", "h  --memory (hall)")
+    draw_memory(sheet, next(panel), record, "--device-memory", "i  --device-memory (hall)")
+    draw_poses(sheet, next(panel), record, "noise of the poses", "j  noise of the poses",
+               "sigma (m and rad)")
+    draw_poses(sheet, next(panel), record, "stretch of the poses", "k  stretch, allowed", "stretch")
+    draw_poses(sheet, next(panel), record, "stretch without --allow-non-rigid",
+               "l  stretch, not allowed", "stretch")
+    for one in axes.flat:
+        room_for_failures(one)
+    engines = record.names("engine")
+    layouts = [name for name in LAYOUTS if record.where(layout=name)]
+    legend_in(place, engine_handles(engines) + [handle_of(LAYOUTS[name]) for name in layouts],
+              engines + layouts, 4)
+    say_differences(sheet, record)
+    return sheet
+
+
+def engine_lines(sheet, axes, cases, x_of, y_of):
+    for name in dict.fromkeys(case["engine"] for case in cases):
+        line(sheet, axes, [case for case in cases if case["engine"] == name], x_of, y_of,
+             engine_style(name), name)
+
+
+def answer(case):
+    return case.answer_seconds()
+
+
+def value(case):
+    return case["value"]
+
+
+def draw_origin(sheet, number, distance, record):
+    cases = record.where(vary="origin")
+    judged = [case for case in cases if "false_hits" in case.findings]
+
+    def wrong(case):
+        if "false_hits" not in case.findings:
+            return np.array([])
+        return np.array([case.findings["false_hits"] + case.findings["misses"]])
+
+    def farthest(case):
+        return np.array([case.findings["largest_distance"]]) if any(wrong(case)) else np.array([])
+
+    engine_lines(sheet, number, cases, value, wrong)
+    count_axis(number, max([wrong(case)[0] for case in judged], default=1), "wrong points")
+    number.set_title("a  far origin: how many")
+    engine_lines(sheet, distance, cases, value, farthest)
+    distance.set(title="b  far origin: how far", ylabel="largest |d − r| (m)")
+    distances = [farthest(case)[0] for case in judged if len(farthest(case))]
+    if distances:
+        distance.set_ylim(min(distances) / 20, max(distances) * 20)
+        distance.set_yscale("log")
+    else:
+        distance.text(0.5, 0.5, "no wrong points", ha="center", transform=distance.transAxes)
+    for axes in (number, distance):
+        axis_with_zero(axes.xaxis, [case["value"] for case in cases], 2)
+        axes.set_xlabel("origin moved in x and y (m)")
+
+
+def draw_boundary(sheet, axes, record):
+    for case in record.where(vary="boundary"):
+        if case.failure:
+            fail(sheet, axes, 1, case.failure)
+            continue
+        within = np.array(case.findings["within_ulps"], float)
+        axes.plot(2.0 ** np.arange(len(within)), within, color=BLUE, marker="o", markersize=3)
+        count_axis(axes, within.max(), "points")
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter(lambda x, _: power(x))
+    axes.set(title="c  near the boundary", xlabel="|d − r|, at most (ulps of r)")
+
+
+def draw_sparseness(sheet, axes, record):
+    time, conversion, memory = axes
+    cases = record.where(vary="sparseness")
+    for name, style in LAYOUTS.items():
+        of_layout = [case for case in cases if case["layout"] == name]
+        converted = [case for case in of_layout if case.get("engine") is None]
+        runs = [case for case in of_layout if case.get("engine") is not None]
+        for engine in dict.fromkeys(case["engine"] for case in runs):
+            hollow = {"markerfacecolor": "white"} if engine.startswith("sweep") else {}
+            of_engine = [case for case in runs if case["engine"] == engine]
+            line(sheet, time, of_engine, value, answer, style, name, **hollow)
+            if hollow:
+                line(sheet, memory, of_engine, value,
+                     lambda case: case.values("peak_resident_bytes") / GIB, style, name, **hollow)
+        for case in converted:
+            if case.failure:
+                fail(sheet, time, case["value"], case.failure, style)
+        for panel, finding, unit in ((conversion, "convert_seconds", 1),
+                                     (memory, "convert_peak_bytes", GIB)):
+            line(sheet, panel, converted, value,
+                 lambda case: np.array([case.findings[finding] / unit])
+                 if finding in case.findings else np.array([]), style, name)
+    time.set(title="d  sparse: answer", ylabel="answer (s)")
+    conversion.set(title="e  sparse: conversion", ylabel="conversion (s)")
+    memory.set(title="f  sparse: memory", ylabel="peak memory (GiB)")
+    for panel in axes:
+        panel.set(xlabel="bounding box made longer by", xscale="log")
+        panel.xaxis.set_major_formatter(lambda x, _: short(x))
+        seconds_axis(panel.yaxis)
+
+
+def draw_radius(sheet, axes, record):
+    engine_lines(sheet, axes, record.where(vary="radius"), value, answer)
+    axes.set(title="g  radius", xlabel="radius (m)", ylabel="answer (s)", xscale="log")
+    axes.xaxis.set_major_formatter(lambda x, _: short(x))
+    seconds_axis(axes.yaxis)
+
+
+def draw_memory(sheet, axes, record, option, title):
+    axes.set(title=title, xlabel="budget / least that works", ylabel="answer (s)")
+    cases = record.where(vary=option)
+    if not cases:
+        axes.text(0.5, 0.5, "no GPU measured", ha="center", transform=axes.transAxes)
+        axes.set(xticks=[], yticks=[])
+        return
+    least = {engine: least_of(record, option, engine)
+             for engine in dict.fromkeys(case["engine"] for case in cases)}
+    engine_lines(sheet, axes, cases, lambda case: case["value"] / least[case["engine"]], answer)
+    axes.set_xscale("log", base=2)
+    axes.set_xticks([1, 2, 4, 8], ["1", "2", "4", "8"])
+    axes.set_xticks([], minor=True)
+    seconds_axis(axes.yaxis)
+    sheet.say("Least " + option + " that works: " + ", ".join(
+        f"{engine} {bytes_text(least[engine])}" for engine in least) + ".")
+
+
+def bytes_text(count):
+    return f"{count / GIB:.2f} GiB" if count >= GIB else f"{count / 2**20:.0f} MiB"
+
+
+def least_of(record, option, engine):
+    """As a refusal named it; without one, the least that worked."""
+    for case in record.where(vary="least" + option, engine=engine):
+        found = re.search(re.escape(option) + r" (\d+)", case.failure or "")
+        if found:
+            return int(found[1])
+    return min(case["value"] for case in record.where(vary=option, engine=engine) if case.runs)
+
+
+def draw_poses(sheet, axes, record, vary, title, label):
+    cases = record.where(vary=vary)
+    engine_lines(sheet, axes, cases, value, answer)
+    axis_with_zero(axes.xaxis, [case["value"] for case in cases], 2)
+    axes.set(title=title, xlabel=label, ylabel="answer (s)")
+    if any(case.runs for case in cases):
+        seconds_axis(axes.yaxis)
+    else:
+        axes.set(yticks=[])
+
+
+def say_differences(sheet, record):
+    """Whether the engines of j and k give the k-d tree's set."""
+    for letter, vary in (("j", "noise of the poses"), ("k", "stretch of the poses")):
+        judged = [case for case in record.where(vary=vary) if "equal" in case.findings]
+        differing = [f"{case['engine']} at {case['value']:g} by "
+                     f"{case.findings['only_here'] + case.findings['only_in_reference']} points"
+                     for case in judged if not case.findings["equal"]]
+        if judged:
+            sheet.say(f"{letter}: " + ("differ from kdtree: " + ", ".join(differing)
+                                       if differing else "all sets equal kdtree's") + ".")

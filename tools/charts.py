@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""Draws the JSON files of `clearway bench`, each as SVG and PNG named as its experiment.
+
+Needs matplotlib and numpy (Debian: python3-matplotlib). Other JSON files are left out.
+Example: tools/charts.py figures -o charts
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from charting import accuracy, datasets, grid, points, scaling, stability, table, threads
+from charting.record import read_record
+
+FIGURES = {"table": table, "threads": threads, "grid": grid, "datasets": datasets,
+           "points": points, "accuracy": accuracy, "stability": stability, "scaling": scaling}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="with JSON files of clearway bench")
+    parser.add_argument("-o", "--output", type=Path, 
+                        help="folder of the charts (default: the same)")
+    options = parser.parse_args()
+    output = options.output or options.folder
+    records = [read_record(path) for path in sorted(options.folder.glob("*.json"))]
+    records = [record for record in records if record and record.experiment in FIGURES]
+    if not records:
+        sys.exit(f"{options.folder}: no JSON file of clearway bench")
+    output.mkdir(parents=True, exist_ok=True)
+    for record in records:
+        if not record.cases:
+            print(f"{record.path}: has no cases yet", file=sys.stderr)
+            continue
+        for path in FIGURES[record.experiment].draw(record).save(output):
+            print(path)
+        if record.experiment == "table":
+            (output / "table.md").write_text(table.markdown(record))
+            print(output / "table.md")
+
+
+if __name__ == "__main__":
+    main()

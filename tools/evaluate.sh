@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Builds Clearway, measures all experiments of `clearway bench` and draws their charts: the whole
+# evaluation of docs/evaluation.md. Installs missing packages (Debian 12). Run again, it goes on
+# where it was stopped.
+# Usage: tools/evaluate.sh [small|full] FOLDER
+# Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
+set -euo pipefail
+size=small
+case "${1:-}" in small | full)
+  size=$1
+  shift
+  ;;
+esac
+if [ $# -ne 1 ] || [ "${1#-}" != "$1" ]; then
+  echo "usage: tools/evaluate.sh [small|full] FOLDER" >&2
+  exit 2
+fi
+mkdir -p "$1"
+folder=$(cd "$1" && pwd)
+cd "$(dirname "$0")/.."
+source tools/setup.sh
+install_missing_packages
+
+cmake --preset release >/dev/null
+cmake --build build/release --target clearway
+
+for experiment in table threads grid datasets points accuracy stability scaling; do
+  printf '\n== %s\n' "$experiment"
+  build/release/tools/clearway bench "$experiment" -o "$folder/$experiment.json" \
+    --work "$folder/work" --size "$size" --resume
+done
+printf '\n== charts\n'
+tools/charts.py "$folder" -o "$folder/charts"
+printf '\nAll experiments at size %s took %d min %d s.\n' "$size" $((SECONDS / 60)) $((SECONDS % 60))
