@@ -88,7 +88,8 @@ TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {
   CAPTURE(done.err);
   REQUIRE(done.exit_code == 0);
   std::set<std::string> methods;
-  for (const Json& one : accuracy.figures()["cases"]) {
+  const Json figures = accuracy.figures();
+  for (const Json& one : figures["cases"]) {
     CAPTURE(one["key"]);
     const std::string method = one["parameters"]["method"];
     methods.insert(method);
