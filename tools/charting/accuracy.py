@@ -33,7 +33,7 @@ def draw(record):
     axes, place = panels(sheet, 2, 1, legend_lines=3)
     styles = styles_of(record.names("method"))
     number, distance = axes[:, 0]
-    draw_panel(sheet, number, record, styles, wrong)
+    draw_panel(number, record, styles, wrong)
     run = [case for case in record.cases if case.runs]
     count_axis(number, max([wrong(case) for case in run], default=1), "wrongly decided points")
     number.set_title("a  how many points are decided wrongly")
@@ -41,7 +41,7 @@ def draw(record):
 
     distances = [case.findings["largest_distance"] for case in run if wrong(case)]
     none = 10.0 ** (np.floor(np.log10(min([d for d in distances if d > 0], default=1e-3))) - 2)
-    draw_panel(sheet, distance, record, styles,
+    draw_panel(distance, record, styles,
                lambda case: max(case.findings["largest_distance"], none * 10) if wrong(case)
                else none)
     distance_axis(distance, none, max(distances, default=1e-3))
@@ -52,6 +52,10 @@ def draw(record):
             panel.set_xlim(min(seconds) / 3, max(seconds) * 3)
         seconds_axis(panel.xaxis)
         panel.set_xlabel("answer (s)")
+        for case in record.cases:
+            if case.failure:
+                fail(sheet, panel, panel.get_xlim()[1] / 1.3, f"{case.key}: {case.failure}",
+                     styles[case["method"]])
         room_for_failures(panel)
     for panel, y_of in ((number, wrong),
                         (distance, lambda case: case.findings["largest_distance"])):
@@ -69,12 +73,10 @@ def draw(record):
     return sheet
 
 
-def draw_panel(sheet, axes, record, styles, y_of):
+def draw_panel(axes, record, styles, y_of):
     labels = axes.__dict__["clearway_labels"] = []
     for case in record.cases:
         style = styles[case["method"]]
-        if case.failure:
-            fail(sheet, axes, 1, f"{case.key}: {case.failure}", style)
         if not case.runs or not case.findings:
             continue
         x, below, above = spread(case.answer_seconds())

@@ -71,9 +71,26 @@ def short(value):
     return f"{value:g}"
 
 
+def log_axis(axis):
+    """Log scale with plain numbers. True where there is something to show, else no ticks."""
+    is_y = axis.axis_name == "y"
+    limits = axis.axes.dataLim.intervaly if is_y else axis.axes.dataLim.intervalx
+    empty = not np.isfinite(limits).all() or limits.max() <= 0
+    if empty:
+        axis.axes.set_ylim(0.1, 1) if is_y else axis.axes.set_xlim(0.1, 1)
+    axis.axes.set_yscale("log") if is_y else axis.axes.set_xscale("log")
+    axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+    axis.set_minor_formatter(NullFormatter())
+    if empty:
+        axis.set_major_locator(NullLocator())
+        axis.set_minor_locator(NullLocator())
+    return not empty
+
+
 def seconds_axis(axis):
-    """Log scale with plain numbers; every decade, and 2 and 5 where there are few."""
-    axis.axes.set_yscale("log") if axis.axis_name == "y" else axis.axes.set_xscale("log")
+    """Log scale with ticks every decade, and 2 and 5 where there are few."""
+    if not log_axis(axis):
+        return
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
     if decades < 0.8:
@@ -81,8 +98,6 @@ def seconds_axis(axis):
         axis.axes.set_ylim(low, high) if axis.axis_name == "y" else axis.axes.set_xlim(low, high)
     subs = (1, 2, 5) if decades < 2 else (1, 3) if decades < 3 else (1,)
     axis.set_major_locator(LogLocator(subs=subs, numticks=20))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
-    axis.set_minor_formatter(NullFormatter())
 
 
 def axis_with_zero(axis, values, every=1):

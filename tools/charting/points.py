@@ -3,8 +3,8 @@
 import numpy as np
 
 from charting import paper
-from charting.plot import (handle_of, legend_in, line, panels, room_for_failures, seconds_axis,
-                           short, with_unit)
+from charting.plot import (handle_of, legend_in, line, log_axis, panels, room_for_failures,
+                           seconds_axis, with_unit)
 from charting.sheet import Sheet
 from charting.style import engine_style
 
@@ -33,9 +33,8 @@ def draw(record):
         panel.set_ylim(0, None)
         room_for_failures(panel)
         panel.set(xlabel="environment points (million)", ylabel="answer (s)")
-    together.set_xscale("log")
+    log_axis(together.xaxis)
     seconds_axis(together.yaxis)
-    together.xaxis.set_major_formatter(lambda value, _: short(value))
     together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="answer (s)")
     room_for_failures(together)
     sheet.say("Lines: least squares through the medians, with the share of the variance that they "

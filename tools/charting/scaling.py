@@ -1,7 +1,7 @@
 """Time by the number of poses, of model points, the radius, and the points of a cell."""
 
-from charting.plot import engine_handles, legend_in, line, panels, room_for_failures, seconds_axis
-from charting.plot import short
+from charting.plot import (engine_handles, legend_in, line, log_axis, panels, room_for_failures,
+                           seconds_axis)
 from charting.sheet import Sheet
 from charting.style import engine_style
 
@@ -21,8 +21,7 @@ def draw(record):
                  lambda case: case["value"], lambda case: case.answer_seconds(),
                  engine_style(name), name)
         panel.set(title=f"{letter}  by {vary}", xlabel=label, ylabel="answer (s)")
-        panel.set_xscale("log")
-        panel.xaxis.set_major_formatter(lambda value, _: short(value))
+        log_axis(panel.xaxis)
         seconds_axis(panel.yaxis)
         room_for_failures(panel)
     legend_in(place, engine_handles(engines), engines, len(engines))

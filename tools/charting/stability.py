@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from charting.plot import (axis_with_zero, count_axis, engine_handles, fail, handle_of, legend_in,
-                           line, panels, power, room_for_failures, seconds_axis, short)
+                           line, log_axis, panels, power, room_for_failures, seconds_axis)
 from charting.sheet import Sheet
 from charting.style import BLACK, BLUE, SKY, Style, engine_style
 
@@ -79,8 +79,8 @@ def draw_origin(sheet, number, distance, record):
     distance.set(title="b  far origin: how far", ylabel="largest |d − r| (m)")
     distances = [farthest(case)[0] for case in judged if len(farthest(case))]
     if distances:
-        distance.set_ylim(min(distances) / 20, max(distances) * 20)
         distance.set_yscale("log")
+        distance.set_ylim(min(distances) / 20, max(distances) * 20)
     else:
         distance.text(0.5, 0.5, "no wrong points", ha="center", transform=distance.transAxes)
     for axes in (number, distance):
@@ -127,15 +127,15 @@ def draw_sparseness(sheet, axes, record):
     conversion.set(title="e  sparse: conversion", ylabel="conversion (s)")
     memory.set(title="f  sparse: memory", ylabel="peak memory (GiB)")
     for panel in axes:
-        panel.set(xlabel="bounding box made longer by", xscale="log")
-        panel.xaxis.set_major_formatter(lambda x, _: short(x))
+        panel.set_xlabel("bounding box made longer by")
+        log_axis(panel.xaxis)
         seconds_axis(panel.yaxis)
 
 
 def draw_radius(sheet, axes, record):
     engine_lines(sheet, axes, record.where(vary="radius"), value, answer)
-    axes.set(title="g  radius", xlabel="radius (m)", ylabel="answer (s)", xscale="log")
-    axes.xaxis.set_major_formatter(lambda x, _: short(x))
+    axes.set(title="g  radius", xlabel="radius (m)", ylabel="answer (s)")
+    log_axis(axes.xaxis)
     seconds_axis(axes.yaxis)
 
 
@@ -143,7 +143,7 @@ def draw_memory(sheet, axes, record, option, title):
     axes.set(title=title, xlabel="budget / least that works", ylabel="answer (s)")
     cases = record.where(vary=option)
     if not cases:
-        axes.text(0.5, 0.5, "no GPU measured", ha="center", transform=axes.transAxes)
+        axes.text(0.5, 0.5, "not measured", ha="center", transform=axes.transAxes)
         axes.set(xticks=[], yticks=[])
         return
     least = {engine: least_of(record, option, engine)
@@ -167,7 +167,8 @@ def least_of(record, option, engine):
         found = re.search(re.escape(option) + r" (\d+)", case.failure or "")
         if found:
             return int(found[1])
-    return min(case["value"] for case in record.where(vary=option, engine=engine) if case.runs)
+    cases = record.where(vary=option, engine=engine)
+    return min([case["value"] for case in cases if case.runs] or [case["value"] for case in cases])
 
 
 def draw_poses(sheet, axes, record, vary, title, label):
@@ -175,10 +176,7 @@ def draw_poses(sheet, axes, record, vary, title, label):
     engine_lines(sheet, axes, cases, value, answer)
     axis_with_zero(axes.xaxis, [case["value"] for case in cases], 2)
     axes.set(title=title, xlabel=label, ylabel="answer (s)")
-    if any(case.runs for case in cases):
-        seconds_axis(axes.yaxis)
-    else:
-        axes.set(yticks=[])
+    seconds_axis(axes.yaxis)
 
 
 def say_differences(sheet, record):
