@@ -158,9 +158,6 @@ EngineChoice Bench::engine(const std::string& name) const {
   std::vector<std::string> run_options{"--engine", engine, "--device", device};
   const bool exact = name.find("float") == std::string::npos;
   if (!exact) run_options = joined(std::move(run_options), {"--precision", "float"});
-  if (device == "cuda") {
-    run_options = joined(std::move(run_options), {"--device-memory", options_.device_memory});
-  }
   return {name, run_options, exact};
 }
 
@@ -188,10 +185,13 @@ std::vector<std::string> Bench::command(const SceneFiles& files,
                                      result.string(),
                                      "--force",
                                      "--json"};
-  const auto given = [&](const char* option) {
-    return std::find(run_options.begin(), run_options.end(), option) != run_options.end();
+  const auto given = [&](const char* word) {
+    return std::find(run_options.begin(), run_options.end(), word) != run_options.end();
   };
   if (!given("--radius")) arguments = joined(std::move(arguments), {"--radius", kRadius});
+  if (given("cuda") && !given("--device-memory")) {
+    arguments = joined(std::move(arguments), {"--device-memory", options_.device_memory});
+  }
   if (!given("--memory")) arguments = joined(std::move(arguments), {"--memory", options_.memory});
   return joined(std::move(arguments), run_options);
 }
