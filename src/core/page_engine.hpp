@@ -49,6 +49,10 @@ class PageEngine {
   /// How many pages may be in flight; at least 1.
   virtual std::uint32_t slots() const = 0;
 
+  /// Whether pages take about as long as each other: then one thread waits for one after the other,
+  /// else one for each, so that no page waits behind a slow one.
+  virtual bool pages_alike() const { return true; }
+
   /// The memory of a slot's page, to be filled: as many bytes in every slot, on kPageAlignment.
   virtual std::span<std::byte> page(std::uint32_t slot) = 0;
 

@@ -19,6 +19,7 @@ class CudaGridEngine final : public PageEngine {
   ~CudaGridEngine() override;
 
   std::uint32_t slots() const override;
+  bool pages_alike() const override { return false; }
   std::span<std::byte> page(std::uint32_t slot) override;
   void start(std::uint32_t slot, const PageShape& shape) override;
   PageAnswer finish(std::uint32_t slot) override;

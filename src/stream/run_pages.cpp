@@ -107,12 +107,13 @@ class Lane {
     using Page = Handed<PageInFlight>;
     using Searched = Handed<SearchedPage>;
     using Mode = tbb::filter_mode;
+    const Mode waiting = engine_.pages_alike() ? Mode::serial_out_of_order : Mode::parallel;
     scope.begin();
-    tbb::parallel_pipeline(
-        engine_.slots(), tbb::make_filter<void, Page>(Mode::serial_in_order, taken) &
-                             tbb::make_filter<Page, Page>(Mode::parallel, started) &
-                             tbb::make_filter<Page, Searched>(Mode::serial_out_of_order, finished) &
-                             tbb::make_filter<Searched, void>(Mode::parallel, collected));
+    tbb::parallel_pipeline(engine_.slots(),
+                           tbb::make_filter<void, Page>(Mode::serial_in_order, taken) &
+                               tbb::make_filter<Page, Page>(Mode::parallel, started) &
+                               tbb::make_filter<Page, Searched>(waiting, finished) &
+                               tbb::make_filter<Searched, void>(Mode::parallel, collected));
   }
 
  private:

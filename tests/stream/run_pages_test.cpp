@@ -60,6 +60,9 @@ class TestEngine final : public PageEngine {
     return answer;
   }
 
+  bool pages_alike() const override { return alike; }
+
+  bool alike = true;
   Act before_start, in_search, after_finish;
   std::atomic<std::uint32_t> started{0}, finished{0};
   static inline std::atomic<int> violations{0};
@@ -191,6 +194,7 @@ TEST_CASE("the answer does not depend on slots, cells a page or threads") {
         for (const int threads : {0, 1, 2, 9}) {
           CAPTURE(slots, page_cells, threads);
           Run run(*scene, slots, page_cells);
+          run.engine.alike = threads % 2 == 0;
           const Answer answer = run.run(threads);
           CHECK(wrong_slots(*scene, answer) == 0);
           CHECK(run.engine.finished == run.pages.size());
@@ -248,6 +252,7 @@ TEST_CASE("what any stage throws ends the run with its message") {
       for (const int stage : {0, 1, 2, 3, 4}) {
         CAPTURE(slots, at, stage);
         Run run(scene, slots, 1);
+        run.engine.alike = (slots + at) % 2 == 0;
         REQUIRE(run.pages.size() > 10);
         if (stage == 0) run.cloud.before_read = throwing_at<InputError>(at, "read failed");
         if (stage == 1) run.engine.before_start = throwing_at<ResourceError>(at, "start failed");
@@ -302,6 +307,21 @@ TEST_CASE("a damaged cell in the middle ends the run and is named") {
   Run run(scene);
   CHECK_THROWS_WITH(run.run(), Catch::Contains("cell " + std::to_string(damaged)));
   CHECK(TestEngine::violations == 0);
+}
+
+TEST_CASE("pages that are not alike do not wait behind a slow one") {
+  const PlannedScene scene({64, 0}, 6000);
+  Run run(scene, 4, 1);
+  REQUIRE(run.pages.size() > 40);
+  run.engine.alike = false;
+  std::atomic<std::uint32_t> before_slow = 0;
+  run.engine.in_search = [&](std::uint32_t page) {
+    if (page != 1) return;
+    sleep_ms(400);
+    before_slow = run.progress.calls.load();
+  };
+  CHECK(wrong_slots(scene, run.run(8)) == 0);
+  CHECK(before_slow > run.pages.size() / 2);
 }
 
 TEST_CASE("of two engines the faster one gets more pages, and the answer is the same") {

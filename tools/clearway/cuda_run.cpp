@@ -23,13 +23,14 @@ std::uint64_t usual_page_bytes(const Store& store) {
   return kPageCells * a_cell;
 }
 
+/// waiting: threads that wait for each device.
 PageEngineKind cuda_kind(const Store& store, const EngineOptions& options,
-                         const DeviceChoice& device) {
+                         const DeviceChoice& device, std::uint32_t waiting) {
   PageEngineKind kind;
   kind.most_slots = kMostSlots;
   kind.page_cells = kPageCells;
   kind.page_bytes = usual_page_bytes(store);
-  kind.threads = options.threads + static_cast<int>(device.gpus.size());
+  kind.threads = options.threads + static_cast<int>(device.gpus.size() * waiting);
   kind.most_device_bytes = device.memory_bytes;
   return kind;
 }
@@ -58,7 +59,7 @@ Statistics report_of(const PageEngines& engines, EngineReport& report) {
 
 PageEngineKind cuda_sweep(const Store& store, const EngineOptions& options,
                           const DeviceChoice& device) {
-  PageEngineKind kind = cuda_kind(store, options, device);
+  PageEngineKind kind = cuda_kind(store, options, device, 1);
   kind.field_fineness = kFieldFineness;
   kind.host_bytes = [&store, device](const SearchPlan& plan, const SlotLayout& layout) {
     return device.gpus.size() * layout.slots *
@@ -81,7 +82,7 @@ PageEngineKind cuda_sweep(const Store& store, const EngineOptions& options,
 
 PageEngineKind cuda_grid(const Store& store, const Question& question, const EngineOptions& options,
                          const DeviceChoice& device) {
-  PageEngineKind kind = cuda_kind(store, options, device);
+  PageEngineKind kind = cuda_kind(store, options, device, kMostSlots);
   const LazyGridScene scene(store, question, options);
   kind.host_bytes = [scene, device](const SearchPlan& plan, const SlotLayout& layout) {
     const GridScene& grid = scene.of(plan);
