@@ -1,5 +1,7 @@
 """A page with a chart: title, axes, what the paper says beside them, caption and footer."""
 
+import textwrap
+
 import matplotlib.pyplot as plt
 from matplotlib.font_manager import FontProperties
 
@@ -37,7 +39,8 @@ class Sheet:
         self.caption.append(sentence)
 
     def number_of_failure(self, reason):
-        """The number that a reason has in the caption."""
+        """The number that a reason has in the caption, which has room for the begin of it."""
+        reason = textwrap.shorten(reason, 110, placeholder=" ...")
         return self._failures.setdefault(reason, len(self._failures) + 1)
 
     def finish(self):

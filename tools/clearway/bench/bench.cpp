@@ -68,6 +68,10 @@ SceneSize scene_size(const std::string& scene, const std::string& size) {
                                                        {"plant", {2'000'000, 40'000, 8'000}},
                                                        {"tunnel", {500'000, 5'000, 1'900}}};
   if (size == "smoke") return {20'000, 500, 100};
+  if (size == "tenth") {
+    const SceneSize whole = kFull.at(scene);
+    return {whole.points / 10, whole.model_points, whole.poses};
+  }
   return (size == "full" ? kFull : kSmall).at(scene);
 }
 
@@ -79,21 +83,23 @@ Bench::Bench(const std::string& experiment, const BenchOptions& options)
   std::filesystem::create_directories(options_.work);
 }
 
-SceneFiles Bench::scene(const std::string& name) {
-  const std::filesystem::path folder = options_.work / (name + "-" + options_.size);
+SceneFiles Bench::scene(const std::string& name) { return scene(name, options_.size); }
+
+SceneFiles Bench::scene(const std::string& name, const std::string& of_size) {
+  const std::filesystem::path folder = options_.work / (name + "-" + of_size);
   SceneFiles files{.environment = folder / "environment.las",
                    .store = {},
                    .model = folder / "model.ply",
                    .trajectory = folder / "trajectory.txt"};
   if (!std::filesystem::exists(files.trajectory)) {
-    const SceneSize size = scene_size(name, options_.size);
+    const SceneSize size = scene_size(name, of_size);
     spdlog::info("{}: making the scene", folder.string());
     output_of_program({"scene", name, "-o", folder.string(), "--points",
                        std::to_string(size.points), "--model-points",
                        std::to_string(size.model_points), "--poses", std::to_string(size.poses),
                        "--force"});
   }
-  files.store = store(name + "-" + options_.size, files.environment);
+  files.store = store(name + "-" + of_size, files.environment);
   return files;
 }
 

@@ -28,7 +28,7 @@ struct SceneSize {
   std::uint64_t points, model_points, poses;
 };
 
-/// size: that of the options.
+/// size: that of the options, or "tenth" of the points of the paper's.
 SceneSize scene_size(const std::string& scene, const std::string& size);
 
 /// A question to be asked: a store, a model and a trajectory.
@@ -54,8 +54,9 @@ class Bench {
   bool cuda() const { return cuda_; }
   const std::filesystem::path& work() const { return options_.work; }
 
-  /// Made on the first call, kept in the work folder.
+  /// Made on the first call, kept in the work folder, at the size of the options or another one.
   SceneFiles scene(const std::string& name);
+  SceneFiles scene(const std::string& name, const std::string& size);
   /// A store of an environment, made on the first call; `name` is that of its file.
   std::filesystem::path store(const std::string& name, const std::filesystem::path& environment,
                               const std::vector<std::string>& options = {});

@@ -5,7 +5,9 @@
 
 namespace clearway::tool {
 void bench_threads(Bench& bench) {
-  const SceneFiles files = bench.scene("hall");
+  // Large enough to keep all threads busy.
+  const bool small = bench.options().size == "small";
+  const SceneFiles files = bench.scene("hall", small ? "tenth" : bench.options().size);
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   const int step = cores > 8 ? cores / 8 : 1;
   for (const std::string name : {"kdtree cpu", "sweep cpu"}) {
