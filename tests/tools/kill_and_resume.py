@@ -128,7 +128,7 @@ def torment(name, command, reference, output, kills, draw):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
-    parser.add_argument("--kills", type=int, default=12)
+    parser.add_argument("--kills", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="")
     parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu")
