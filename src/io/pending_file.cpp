@@ -70,11 +70,13 @@ File create_locked(const fs::path& path) {
   }
 }
 
+fs::path partial_of(const fs::path& path) { return path.string() + ".partial"; }
+
 }  // namespace
 
 PendingFile::PendingFile(fs::path path, bool overwrite)
     : final_((check_output_name(path, overwrite), std::move(path))),
-      partial_(final_.string() + ".partial"),
+      partial_(partial_of(final_)),
       overwrite_(overwrite),
       lock_(create_locked(partial_)) {}
 
@@ -103,9 +105,11 @@ void PendingFile::publish() {
 
 void refuse_overwriting(const fs::path& output, const std::vector<fs::path>& inputs) {
   for (const fs::path& input : inputs) {
-    std::error_code unknown;
-    if (fs::equivalent(output, input, unknown) && !unknown) {
-      throw UsageError(output.string() + ": is an input too; expected another name for the output");
+    for (const fs::path& written : {output, partial_of(output)}) {
+      std::error_code unknown;
+      if (!fs::equivalent(written, input, unknown) || unknown) continue;
+      throw UsageError(written.string() +
+                       ": is an input too; expected another name for the output");
     }
   }
 }

@@ -36,7 +36,7 @@ class PendingFile {
   bool published_ = false;
 };
 
-/// Throws UsageError when `output` is one of `inputs`, which overwriting it would destroy.
+/// Throws UsageError when `output`, or the name it has until it is complete, is one of `inputs`.
 void refuse_overwriting(const std::filesystem::path& output,
                         const std::vector<std::filesystem::path>& inputs);
 

@@ -75,11 +75,21 @@ TEST_CASE("figures of another experiment or size, or of something else, are not 
   threads.write({{"experiment", "table"}, {"cases", Json::array()}});
   const Outcome another = threads.run("--resume");
   CHECK(another.exit_code == 2);
-  CHECK_THAT(another.err, Contains("another experiment"));
-  threads.write(Json::array({1}));
-  CHECK(threads.run("--resume").exit_code == 3);
+  CHECK_THAT(another.err, Contains("its experiment is another"));
+  for (const std::string odd : {"[1]", R"({"cases": [1]})", R"({"cases": [{}]})"}) {
+    threads.write(Json::parse(odd));
+    CHECK(threads.run("--resume").exit_code == 3);
+  }
   std::ofstream(threads.file()) << "{";
   CHECK(threads.run("--resume").exit_code == 3);
+}
+
+TEST_CASE("a run that exceeds the limit has failed, and the experiment goes on") {
+  const Experiment datasets("datasets");
+  REQUIRE(datasets.run("--scenes hall --limit 1").exit_code == 0);
+  const std::size_t cases = datasets.figures()["cases"].size();
+  CHECK(cases == 3);
+  CHECK(datasets.run("--scenes hall --memory abc").exit_code == 2);
 }
 
 TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {

@@ -88,6 +88,18 @@ TEST_CASE("forcing does not overwrite an input") {
   CHECK(bytes_of(site.folder / "r.csv") == result);
 }
 
+TEST_CASE("an input that has the name of an unfinished output is not overwritten") {
+  const Site site;
+  const std::filesystem::path model = site.folder / "r.h5.partial";
+  std::filesystem::copy_file(site.folder / "model.xyz", model);
+  const Outcome refused =
+      site.run("run --env " + site.path("site.h5") + " --model " + quoted(model) +
+               " --trajectory " + site.path("path.txt") + " --radius 0.1 -o " + site.path("r.h5"));
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("is an input too"));
+  CHECK(std::filesystem::exists(model));
+}
+
 TEST_CASE("an output that is a device, empty or a dangling link is refused") {
   const Site site;
   const std::string convert = "convert " + site.path("scan.xyz") + " -o ";

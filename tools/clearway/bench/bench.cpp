@@ -27,6 +27,16 @@ bool use_cuda(const std::string& device) {
   return found && device != "cpu";
 }
 
+/// The work folder is made.
+const BenchOptions& with_folder(const BenchOptions& options) {
+  std::error_code error;
+  std::filesystem::create_directories(options.work, error);
+  if (error) {
+    throw ResourceError(options.work.string() + ": cannot create the folder: " + error.message());
+  }
+  return options;
+}
+
 Json header_of(const std::string& experiment, const BenchOptions& options, bool cuda) {
   return {{"experiment", experiment},
           {"size", options.size},
@@ -76,12 +86,10 @@ SceneSize scene_size(const std::string& scene, const std::string& size) {
 }
 
 Bench::Bench(const std::string& experiment, const BenchOptions& options)
-    : options_(options),
+    : options_(with_folder(options)),
       cuda_(use_cuda(options.device)),
-      record_(options.output, header_of(experiment, options, cuda_), options.resume,
-              options.force) {
-  std::filesystem::create_directories(options_.work);
-}
+      record_(options_.output, header_of(experiment, options, cuda_), options.resume,
+              options.force) {}
 
 SceneFiles Bench::scene(const std::string& name) { return scene(name, options_.size); }
 
@@ -109,9 +117,9 @@ std::filesystem::path Bench::store(const std::string& name,
   std::filesystem::path path = options_.work / (name + ".h5");
   if (!std::filesystem::exists(path)) {
     spdlog::info("{}: converting", path.string());
-    output_of_program(
-        joined({"convert", environment.string(), "-o", path.string(), "--memory", options_.memory},
-               options));
+    output_of_program(joined({"convert", environment.string(), "-o", path.string(), "--memory",
+                              options_.memory, "--force"},
+                             options));
   }
   return path;
 }
@@ -214,7 +222,8 @@ Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& f
     if (seconds > kEnoughSeconds) break;
     const ProgramRun run = run_program(command(files, result, run_options), options_.limit_seconds);
     if (run.exit_code != 0) {
-      if (!may_fail) throw ResourceError("clearway bench: " + key + ": " + run.log);
+      if (!may_fail && !run.timed_out)
+        throw ResourceError("clearway bench: " + key + ": " + run.log);
       one["failed"] = failure_of(run);
       return record_.add(std::move(one));
     }

@@ -87,8 +87,8 @@ class Bench {
 
   /// `run` on these files, `repetitions` times (those of the options where it is not given), unless
   /// the file has the case already; not again after half a minute. Every report, with wall clock
-  /// and peak memory, goes to "runs". A run that fails with an exit code goes to "failed" instead,
-  /// where that is allowed; otherwise it throws.
+  /// and peak memory, goes to "runs". A run that exceeds the limit goes to "failed" instead, as one
+  /// that fails with an exit code where that is allowed; otherwise that throws.
   Json measure(const std::string& key, Json parameters, const SceneFiles& files,
                const std::vector<std::string>& run_options, const Judge& judge = {},
                std::optional<int> repetitions = {}, bool may_fail = false);

@@ -69,9 +69,15 @@ void add_options(CLI::App& command, BenchOptions& options) {
                   "Seconds after which a run is stopped and counted as failed")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
+  const auto is_size = [](const std::string& text) {
+    parse_size("a size", text);  // throws
+    return std::string();
+  };
   command.add_option("--memory", options.memory, "--memory of every run and conversion")
+      ->check(is_size)
       ->capture_default_str();
   command.add_option("--device-memory", options.device_memory, "--device-memory of every run")
+      ->check(is_size)
       ->capture_default_str();
   CLI::Option* force = command.add_flag("--force", options.force, "Replace an existing file");
   command.add_flag("--resume", options.resume, "Go on with a file of the same experiment")

@@ -2,8 +2,8 @@
 
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -21,6 +21,9 @@
 namespace clearway::tool {
 namespace {
 
+/// How often a signal to this program, and the limit, are looked at.
+constexpr int kLookMilliseconds = 50;
+
 File memory_file(const char* name) { return File::adopt(::memfd_create(name, MFD_CLOEXEC), name); }
 
 std::string text_of(const File& file) {
@@ -35,12 +38,29 @@ std::string joined(const std::vector<std::string>& arguments) {
   return line;
 }
 
-/// Whether the process ends within that time; a signal to this one ends the wait too.
-bool ends_within(pid_t process, double seconds) {
+/// In the child: this program, with these files as standard output and error. Asked to stop when
+/// its parent dies. Does not return.
+[[noreturn]] void become_program(char** words, int output, int log) {
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(log, STDERR_FILENO) >= 0) {
+    ::execv("/proc/self/exe", words);
+  }
+  ::_exit(kResource);
+}
+
+/// Waits for the end of the process, or until it has taken longer than the limit or this program is
+/// to stop; then it is asked to stop and waited for. Whether the limit was it.
+bool wait_within(pid_t process, double limit_seconds, const Stopwatch& wall) {
   const File handle =
       File::adopt(static_cast<int>(::syscall(SYS_pidfd_open, process, 0)), "process");
   pollfd ended{.fd = handle.descriptor(), .events = POLLIN, .revents = 0};
-  return ::poll(&ended, 1, static_cast<int>(1e3 * seconds)) != 0;
+  for (;;) {
+    if (::poll(&ended, 1, kLookMilliseconds) > 0) return false;
+    const bool late = limit_seconds > 0 && wall.seconds() > limit_seconds;
+    if (!late && !stop_requested()) continue;
+    ::kill(process, SIGTERM);
+    return late;
+  }
 }
 
 }  // namespace
@@ -52,18 +72,11 @@ ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds)
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   const File output = memory_file("standard output"), log = memory_file("standard error");
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_adddup2(&actions, output.descriptor(), STDOUT_FILENO);
-  ::posix_spawn_file_actions_adddup2(&actions, log.descriptor(), STDERR_FILENO);
-  pid_t child = 0;
   const Stopwatch wall;
-  const int error =
-      ::posix_spawn(&child, "/proc/self/exe", &actions, nullptr, words.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw ResourceError(line + ": cannot start: " + std::strerror(error));
-  const bool timed_out = limit_seconds > 0 && !ends_within(child, limit_seconds);
-  if (timed_out) ::kill(child, SIGTERM);
+  const pid_t child = ::fork();
+  if (child < 0) throw ResourceError(line + ": cannot start: " + std::strerror(errno));
+  if (child == 0) become_program(words.data(), output.descriptor(), log.descriptor());
+  const bool timed_out = wait_within(child, limit_seconds, wall);
   int status = 0;
   struct rusage usage {};
   while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
@@ -74,8 +87,9 @@ ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds)
                  .log = text_of(log),
                  .wall_seconds = wall.seconds(),
                  .peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
-  if (timed_out && !stop_requested()) return run;
-  if (stop_requested() || run.exit_code == kInterrupted) throw Interrupted(line + ": interrupted");
+  if (stop_requested()) throw Interrupted(line + ": interrupted");
+  if (timed_out) return run;
+  if (run.exit_code == kInterrupted) throw Interrupted(line + ": interrupted");
   if (run.exit_code < 0) {
     throw ResourceError(line + ": ended by signal " + std::to_string(WTERMSIG(status)));
   }

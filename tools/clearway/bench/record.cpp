@@ -1,5 +1,6 @@
 #include "clearway/bench/record.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <span>
 
@@ -12,7 +13,11 @@ namespace {
 Json read(const std::filesystem::path& path) {
   std::ifstream in(path);
   Json all = Json::parse(in, nullptr, false);
-  if (!in || !all.is_object() || !all.contains("cases") || !all["cases"].is_array()) {
+  const auto is_case = [](const Json& one) {
+    return one.is_object() && one.contains("key") && one["key"].is_string();
+  };
+  if (!in || !all.is_object() || !all.contains("cases") || !all["cases"].is_array() ||
+      !std::all_of(all["cases"].begin(), all["cases"].end(), is_case)) {
     throw InputError(path.string() + ": is not a file of clearway bench");
   }
   return all;
@@ -30,8 +35,7 @@ Record::Record(std::filesystem::path path, const Json& header, bool resume, bool
     Json earlier = read(path_);
     for (const auto& [name, value] : header.items()) {
       if (!earlier.contains(name) || earlier[name] != value) {
-        throw UsageError(path_.string() + ": was made with another " + name +
-                         "; --force replaces it");
+        throw UsageError(path_.string() + ": its " + name + " is another; --force replaces it");
       }
     }
     all_ = std::move(earlier);

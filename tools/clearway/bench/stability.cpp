@@ -61,7 +61,8 @@ class Stability {
 
   void memory(const std::string& option, const EngineChoice& engine) {
     const Json refused = measure("least" + option, 1, engine, hall_, {option, "1"}, {}, 1);
-    const std::uint64_t least = least_of(refused["failed"]["log"], option);
+    const Json failed = refused.value("failed", Json::object());
+    const std::uint64_t least = least_of(failed.value("log", ""), option);
     for (const double share : {0.99, 1.0, 1.05, 1.2, 1.5, 2.0, 4.0, 8.0}) {
       const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(least));
       measure(option, bytes, engine, hall_, {option, std::to_string(bytes)}, judge());
