@@ -28,14 +28,19 @@ std::string why_no_cuda_device() {
   return count > 0 ? "" : cudaGetErrorString(cudaErrorNoDevice);
 }
 
+std::string cuda_device_name(int index) {
+  ask_for_queues();
+  cudaDeviceProp properties{};
+  check_cuda(cudaGetDeviceProperties(&properties, index));
+  return properties.name;
+}
+
 CudaDevice open_cuda_device(int index) {
   ask_for_queues();
   check_cuda(cudaSetDevice(index));
-  cudaDeviceProp properties{};
-  check_cuda(cudaGetDeviceProperties(&properties, index));
   std::size_t free_bytes = 0, total_bytes = 0;
   check_cuda(cudaMemGetInfo(&free_bytes, &total_bytes));
-  return {index, properties.name, total_bytes, free_bytes};
+  return {index, cuda_device_name(index), total_bytes, free_bytes};
 }
 
 }  // namespace clearway

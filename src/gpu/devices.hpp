@@ -19,6 +19,9 @@ int cuda_device_count();
 /// Why there are none, in CUDA's words; empty where there is one.
 std::string why_no_cuda_device();
 
+/// Its name, without making its context. Throws ResourceError.
+std::string cuda_device_name(int index);
+
 /// Makes the device's context, which takes a while, and asks what is free. Throws ResourceError.
 CudaDevice open_cuda_device(int index);
 

@@ -14,11 +14,12 @@
 namespace clearway {
 
 /// Stages the pages in their order into whichever slot of an engine is free, has them searched and
-/// collects the answers, with `threads` (0: all); for each engine, one of them at the most waits for
-/// a device, or one a slot where its pages are not alike. Progress counts points. What a stage throws ends the run:
-/// no page is started any more, those under way are finished, then it is thrown on; likewise, with
-/// Interrupted, when the progress asks to stop. The pages fit the slots of every engine. The journal,
-/// where there is one, keeps the answer of every page; what it held before is part of the answer.
+/// collects the answers, with `threads` (0: all); for each engine, one of them at the most waits
+/// for a device, or one a slot where its pages are not alike. Progress counts points. What a stage
+/// throws ends the run: no page is started any more, those under way are finished, then it is
+/// thrown on; likewise, with Interrupted, when the progress asks to stop. The pages fit the slots
+/// of every engine. The journal, where there is one, keeps the answer of every page; what it held
+/// before is part of the answer.
 Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                  std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
                  const Question& question, int threads, Progress& progress, StageTimes& times,

@@ -42,7 +42,7 @@ PageEngineKind cpu_grid(const Store& store, const Question& question,
     return engines;
   };
   kind.finished = [scene](const SearchPlan& plan, const PageEngines& engines,
-                            EngineReport& report) {
+                          EngineReport& report) {
     report.grid_cell = scene.of(plan).grid_cell();
     log_statistics(scene.of(plan),
                    dynamic_cast<const GridCpuEngine&>(*engines.front()).statistics());

@@ -40,15 +40,8 @@ Examples:
   clearway scene hall -o hall --points 5000000
   clearway scene mine -o mine --environment - | clearway convert - -o mine/site.h5)";
 
-scene::Kind kind_named(const std::string& name) {
-  for (const scene::Kind kind : scene::kAllKinds) {
-    if (scene::name_of(kind) == name) return kind;
-  }
-  throw UsageError("no such scene: " + name);
-}
-
 scene::Sizes sizes_of(const SceneOptions& options) {
-  const scene::Sizes full = scene::full_sizes(kind_named(options.kind));
+  const scene::Sizes full = scene::full_sizes(scene::kind_named(options.kind));
   return {options.points.value_or(full.points), options.model_points.value_or(full.model_points),
           options.poses.value_or(full.poses)};
 }
@@ -92,7 +85,7 @@ void make_scene_files(const SceneOptions& options) {
     check_disk_space(options.folder, sizes.points);
   }
 
-  const auto made = scene::make_scene(kind_named(options.kind), sizes, options.seed);
+  const auto made = scene::make_scene(scene::kind_named(options.kind), sizes, options.seed);
   scene::write_model(*made, File::create(model.partial()));
   scene::write_trajectory(*made, File::create(trajectory.partial()));
   ConsoleProgress progress;

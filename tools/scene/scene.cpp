@@ -10,6 +10,13 @@ std::string_view name_of(Kind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
+Kind kind_named(std::string_view name) {
+  for (const Kind kind : kAllKinds) {
+    if (name_of(kind) == name) return kind;
+  }
+  throw UsageError("no such scene: " + std::string(name));
+}
+
 Sizes full_sizes(Kind kind) {
   constexpr Sizes kSizes[] = {{55872714, 214489, 17234},
                               {350109065, 434700, 398999},

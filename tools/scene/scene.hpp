@@ -19,6 +19,8 @@ enum class Kind { kHall, kPlant, kMine, kTunnel };
 inline constexpr Kind kAllKinds[] = {Kind::kHall, Kind::kPlant, Kind::kMine, Kind::kTunnel};
 
 std::string_view name_of(Kind kind);
+/// Throws UsageError where there is none of that name.
+Kind kind_named(std::string_view name);
 
 struct Sizes {
   std::uint64_t points;        ///< of the environment, >= 1

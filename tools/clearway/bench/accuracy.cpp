@@ -17,27 +17,26 @@ class Accuracy {
   explicit Accuracy(Bench& bench)
       : bench_(bench),
         hall_(bench.scene("hall")),
-        fast_(bench.engine(bench.cuda() ? "sweep cuda" : "sweep cpu")),
+        fast_(bench.engine_here("sweep")),
+        float_(bench.engine_here("grid float")),
         truth_(bench.truth("hall", hall_)) {}
 
   void engines() {
     for (const EngineChoice& engine : bench_.exact_engines()) measure("exact", engine, hall_, "");
-    measure("float", float_engine(), hall_, "");
+    measure("float", float_, hall_, "");
   }
 
   void far_origins() {
     for (const auto& [name, shift] : {std::pair{"UTM", kUtm}, {"10,000 km", kFar}}) {
       const SceneFiles files = bench_.shifted("hall", hall_, shift);
       measure("exact, far origin", fast_, files, name);
-      measure("float, far origin", float_engine(), files, name);
+      measure("float, far origin", float_, files, name);
     }
   }
 
   void tolerances() {
     for (const char* tolerance : {"1e-6", "1e-5", "1e-4", "1e-3", "0.01", "0.05"}) {
-      EngineChoice engine = fast_;
-      engine.options.insert(engine.options.end(), {"--tolerance", tolerance});
-      measure("tolerance", engine, hall_, tolerance);
+      measure("tolerance", fast_.with({"--tolerance", tolerance}), hall_, tolerance);
     }
   }
 
@@ -69,10 +68,6 @@ class Accuracy {
   }
 
  private:
-  EngineChoice float_engine() const {
-    return bench_.engine(bench_.cuda() ? "grid float cuda" : "grid float cpu");
-  }
-
   void measure(const std::string& method, const EngineChoice& engine, const SceneFiles& files,
                const Json& value) {
     const std::string key = method + "/" + engine.name + "/" + value.dump();
@@ -84,7 +79,7 @@ class Accuracy {
 
   Bench& bench_;
   SceneFiles hall_;
-  EngineChoice fast_;
+  EngineChoice fast_, float_;
   std::filesystem::path truth_;
 };
 

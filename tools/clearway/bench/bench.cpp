@@ -68,21 +68,20 @@ constexpr const char* kTruthClearance = "0.3";
 
 }  // namespace
 
-SceneSize scene_size(const std::string& scene, const std::string& size) {
-  static const std::map<std::string, SceneSize> kFull{{"mine", {806'183'400, 100'000, 17'795}},
-                                                      {"hall", {55'872'714, 214'489, 17'234}},
-                                                      {"plant", {350'109'065, 434'700, 398'999}},
-                                                      {"tunnel", {18'919'000, 28'622, 19'392}}};
-  static const std::map<std::string, SceneSize> kSmall{{"mine", {4'000'000, 10'000, 1'800}},
-                                                       {"hall", {1'110'000, 20'000, 1'700}},
-                                                       {"plant", {2'000'000, 40'000, 8'000}},
-                                                       {"tunnel", {500'000, 5'000, 1'900}}};
+scene::Sizes scene_size(const std::string& name, const std::string& size) {
+  static const std::map<std::string, scene::Sizes> kSmall{{"mine", {4'000'000, 10'000, 1'800}},
+                                                          {"hall", {1'110'000, 20'000, 1'700}},
+                                                          {"plant", {2'000'000, 40'000, 8'000}},
+                                                          {"tunnel", {500'000, 5'000, 1'900}}};
   if (size == "smoke") return {20'000, 500, 100};
-  if (size == "tenth") {
-    const SceneSize whole = kFull.at(scene);
-    return {whole.points / 10, whole.model_points, whole.poses};
-  }
-  return (size == "full" ? kFull : kSmall).at(scene);
+  if (size == "small") return kSmall.at(name);
+  scene::Sizes sizes = scene::full_sizes(scene::kind_named(name));
+  if (size == "tenth") sizes.points /= 10;
+  return sizes;
+}
+
+EngineChoice EngineChoice::with(const std::vector<std::string>& more) const {
+  return {name, joined(options, more), exact};
 }
 
 Bench::Bench(const std::string& experiment, const BenchOptions& options)
@@ -100,7 +99,7 @@ SceneFiles Bench::scene(const std::string& name, const std::string& of_size) {
                    .model = folder / "model.ply",
                    .trajectory = folder / "trajectory.txt"};
   if (!std::filesystem::exists(files.trajectory)) {
-    const SceneSize size = scene_size(name, of_size);
+    const scene::Sizes size = scene_size(name, of_size);
     spdlog::info("{}: making the scene", folder.string());
     output_of_program({"scene", name, "-o", folder.string(), "--points",
                        std::to_string(size.points), "--model-points",
@@ -132,9 +131,8 @@ std::filesystem::path Bench::answer(const std::string& name, const SceneFiles& f
 }
 
 std::filesystem::path Bench::truth(const std::string& name, const SceneFiles& files) {
-  std::vector<std::string> run_options = engine(cuda_ ? "sweep cuda" : "sweep cpu").options;
-  run_options.insert(run_options.end(), {"--clearance", kTruthClearance});
-  return answer("truth-" + name, files, run_options);
+  const EngineChoice sweep = engine_here("sweep").with({"--clearance", kTruthClearance});
+  return answer("truth-" + name, files, sweep.options);
 }
 
 SceneFiles Bench::shifted(const std::string& name, const SceneFiles& files, const Vec3& shift) {
@@ -173,6 +171,10 @@ EngineChoice Bench::engine(const std::string& name) const {
   const bool exact = name.find("float") == std::string::npos;
   if (!exact) run_options = joined(std::move(run_options), {"--precision", "float"});
   return {name, run_options, exact};
+}
+
+EngineChoice Bench::engine_here(const std::string& name) const {
+  return engine(name + (cuda_ ? " cuda" : " cpu"));
 }
 
 std::vector<EngineChoice> Bench::exact_engines() const {

@@ -9,6 +9,7 @@
 
 #include "clearway/bench/record.hpp"
 #include "core/vec3.hpp"
+#include "scene/scene.hpp"
 
 namespace clearway::tool {
 
@@ -23,13 +24,8 @@ struct BenchOptions {
   bool resume = false, force = false;
 };
 
-/// How large a scene is.
-struct SceneSize {
-  std::uint64_t points, model_points, poses;
-};
-
 /// size: that of the options, or "tenth" of the points of the paper's.
-SceneSize scene_size(const std::string& scene, const std::string& size);
+scene::Sizes scene_size(const std::string& name, const std::string& size);
 
 /// A question to be asked: a store, a model and a trajectory.
 struct SceneFiles {
@@ -42,6 +38,9 @@ struct EngineChoice {
   std::string name;  ///< of the choice, for charts: "sweep cuda"
   std::vector<std::string> options;
   bool exact = true;
+
+  /// The same engine with more options.
+  EngineChoice with(const std::vector<std::string>& more) const;
 };
 
 /// Runs `clearway` again and again, and keeps what it reports.
@@ -79,6 +78,8 @@ class Bench {
   /// The engines of this machine: those on the GPU where there is one, and the CPU's.
   std::vector<EngineChoice> exact_engines() const;
   EngineChoice engine(const std::string& name) const;
+  /// "sweep", "grid" or "grid float" on the GPU where there is one, else on the CPU.
+  EngineChoice engine_here(const std::string& name) const;
 
   /// What is said of a result, added to the case as "findings".
   using Judge = std::function<Json(const std::filesystem::path& result)>;

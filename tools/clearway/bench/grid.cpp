@@ -9,22 +9,16 @@ constexpr const char* kCellPoints[] = {"1024", "4096", "16384", "65536", "262144
 /// Edge of a regular cell, metres.
 constexpr const char* kCellSizes[] = {"0.7", "1", "1.5", "2", "3", "5", "8", "12", "20"};
 
-std::vector<std::string> with(std::vector<std::string> options, const char* name,
-                              const char* value) {
-  options.insert(options.end(), {name, value});
-  return options;
-}
-
 }  // namespace
 
 void bench_grid(Bench& bench) {
   const SceneFiles hall = bench.scene("hall");
-  const EngineChoice engine = bench.engine(bench.cuda() ? "grid cuda" : "grid cpu");
+  const EngineChoice engine = bench.engine_here("grid");
   bench.measure("grid cell/chosen", {{"vary", "grid cell"}, {"value", "chosen"}}, hall,
                 engine.options);
   for (const char* size : kGridCells) {
     bench.measure(std::string("grid cell/") + size, {{"vary", "grid cell"}, {"value", size}}, hall,
-                  with(engine.options, "--grid-cell", size));
+                  engine.with({"--grid-cell", size}).options);
   }
   const std::string name = "hall-" + bench.options().size;
   for (const char* points : kCellPoints) {

@@ -37,7 +37,7 @@ std::string value_in(const char* file, std::string_view key, char separator) {
 nlohmann::ordered_json gpus() {
   auto names = nlohmann::ordered_json::array();
 #ifdef CLEARWAY_CUDA
-  for (int i = 0; i < cuda_device_count(); ++i) names.push_back(open_cuda_device(i).name);
+  for (int i = 0; i < cuda_device_count(); ++i) names.push_back(cuda_device_name(i));
 #endif
   return names;
 }

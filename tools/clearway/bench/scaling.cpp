@@ -55,17 +55,15 @@ class Scaling {
   void measure(const std::string& vary, const Json& value, const SceneFiles& files,
                const std::vector<std::string>& more) {
     for (const EngineChoice& engine : bench_.exact_engines()) {
-      std::vector<std::string> options = engine.options;
-      options.insert(options.end(), more.begin(), more.end());
       bench_.measure(engine.name + "/" + vary + "/" + value.dump(),
-                     {{"engine", engine.name}, {"vary", vary}, {"value", value}}, files, options,
-                     {}, {}, true);
+                     {{"engine", engine.name}, {"vary", vary}, {"value", value}}, files,
+                     engine.with(more).options, {}, {}, true);
     }
   }
 
   Bench& bench_;
   SceneFiles hall_;
-  SceneSize size_ = scene_size("hall", bench_.options().size);
+  scene::Sizes size_ = scene_size("hall", bench_.options().size);
 };
 
 }  // namespace

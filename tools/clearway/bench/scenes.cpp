@@ -9,7 +9,7 @@ namespace {
 /// The engines that decide exactly, and float alone as the paper's GPU method.
 std::vector<EngineChoice> engines_of_table(const Bench& bench) {
   std::vector<EngineChoice> engines = bench.exact_engines();
-  engines.push_back(bench.engine(bench.cuda() ? "grid float cuda" : "grid float cpu"));
+  engines.push_back(bench.engine_here("grid float"));
   return engines;
 }
 

@@ -19,9 +19,9 @@ class Stability {
   explicit Stability(Bench& bench)
       : bench_(bench),
         hall_(bench.scene("hall")),
-        fast_(bench.engine(bench.cuda() ? "sweep cuda" : "sweep cpu")),
-        grid_(bench.engine(bench.cuda() ? "grid cuda" : "grid cpu")),
-        float_(bench.engine(bench.cuda() ? "grid float cuda" : "grid float cpu")),
+        fast_(bench.engine_here("sweep")),
+        grid_(bench.engine_here("grid")),
+        float_(bench.engine_here("grid float")),
         kdtree_(bench.engine("kdtree cpu")),
         truth_(bench.truth("hall", hall_)) {}
 
@@ -95,11 +95,9 @@ class Stability {
   Json measure(const std::string& vary, const Json& value, const EngineChoice& engine,
                const SceneFiles& files, const std::vector<std::string>& more,
                const Bench::Judge& judge, std::optional<int> repetitions = {}) {
-    std::vector<std::string> options = engine.options;
-    options.insert(options.end(), more.begin(), more.end());
     return bench_.measure(vary + "/" + engine.name + "/" + value.dump(),
                           {{"vary", vary}, {"value", value}, {"engine", engine.name}}, files,
-                          options, judge, repetitions, true);
+                          engine.with(more).options, judge, repetitions, true);
   }
 
   /// Converts and runs the grid; the conversion's figures are a case of their own.

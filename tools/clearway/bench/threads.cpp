@@ -12,8 +12,7 @@ void bench_threads(Bench& bench) {
   const int step = cores > 8 ? cores / 8 : 1;
   for (const std::string name : {"kdtree cpu", "sweep cpu"}) {
     const auto measure = [&](int threads) {
-      EngineChoice engine = bench.engine(name);
-      engine.options.insert(engine.options.end(), {"--threads", std::to_string(threads)});
+      const EngineChoice engine = bench.engine(name).with({"--threads", std::to_string(threads)});
       bench.measure(name + "/" + std::to_string(threads) + " threads",
                     {{"scene", "hall"}, {"engine", name}, {"threads", threads}}, files,
                     engine.options);

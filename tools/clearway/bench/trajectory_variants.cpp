@@ -1,14 +1,14 @@
 #include <Eigen/Dense>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
 #include "clearway/bench/publish.hpp"
 #include "clearway/bench/variants.hpp"
 #include "core/error.hpp"
+#include "core/progress.hpp"
 #include "io/refusal.hpp"
-#include "io/text_writer.hpp"
 #include "io/trajectory.hpp"
+#include "io/trajectory_writer.hpp"
 #include "scene/random.hpp"
 
 namespace clearway::tool {
@@ -18,24 +18,9 @@ namespace fs = std::filesystem;
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// As printf's %.17g.
-void write_number(double value, char end, TextWriter& out) {
-  char text[32];
-  const auto written =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17);
-  *written.ptr = end;
-  out << std::string_view(text, written.ptr + 1);
-}
-
-void write_poses(const std::vector<Pose>& poses, const File& file) {
-  TextWriter out(file);
-  for (const Pose& pose : poses) {
-    for (int row = 0; row < 3; ++row) {
-      for (int k = 0; k < 3; ++k) write_number(pose.rotation[3 * row + k], ' ', out);
-      write_number(pose.translation[row], row < 2 ? ' ' : '\n', out);
-    }
-  }
-  out.flush();
+void write_poses(const fs::path& in, const fs::path& out, const std::vector<Pose>& poses) {
+  NoProgress progress;
+  publish(in, out, [&](const File& file) { write_trajectory(poses, file, progress); });
 }
 
 /// Writes the poses after change(pose, index) of each.
@@ -43,7 +28,7 @@ template <typename Change>
 void write_changed(const fs::path& in, const fs::path& out, Change change) {
   auto poses = read_trajectory(in, {.allow_non_rigid = true});
   for (std::size_t i = 0; i < poses.size(); ++i) change(poses[i], i);
-  publish(in, out, [&](const File& file) { write_poses(poses, file); });
+  write_poses(in, out, poses);
 }
 
 void turn(Pose& pose, const Eigen::Vector3d& rotation_vector) {
@@ -66,7 +51,7 @@ void write_every_nth_pose(const fs::path& in, const fs::path& out, std::uint64_t
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (i % n == 0 || i + 1 == poses.size()) kept.push_back(poses[i]);
   }
-  publish(in, out, [&](const File& file) { write_poses(kept, file); });
+  write_poses(in, out, kept);
 }
 
 void write_shifted_poses(const fs::path& in, const fs::path& out, const Vec3& shift) {

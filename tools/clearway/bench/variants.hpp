@@ -45,7 +45,7 @@ int stretch_environment(const std::filesystem::path& las_in, const std::filesyst
 void write_thinned_model(const std::filesystem::path& in, const std::filesystem::path& out,
                          double voxel);
 
-/// Trajectories are written as twelve numbers a line, row-major 3 x 4, that give back every double.
+/// Trajectories are written as io/trajectory_writer.hpp does, which gives back every double.
 /// The variants accept poses that are not rigid.
 
 /// Poses 0, n, 2 n, ... and the last one. n > 0.
