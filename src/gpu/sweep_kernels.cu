@@ -1,0 +1,109 @@
+#include "gpu/cuda_check.hpp"
+#include "gpu/sweep_block.hpp"
+#include "gpu/sweep_kernels.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::uint32_t kWarpsPerBlock = 4;
+constexpr unsigned kThreads = kWarpsPerBlock * kWarpLanes;
+/// Registers are limited so that this many blocks of threads run on a processor at a time: latency
+/// is what there is to hide.
+constexpr unsigned kBlocksPerProcessor = 8;
+
+__device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
+  const auto sum = __reduce_add_sync(0xffffffff, static_cast<unsigned>(of_lane));
+  if (threadIdx.x % kWarpLanes == 0 && sum != 0) {
+    atomicAdd(total, static_cast<unsigned long long>(sum));
+  }
+}
+
+__device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lane) {
+  unsigned long long* total = tallies + kSweepCounts * (blockIdx.x % kSweepTallies);
+  tally(total, of_lane.node_tests);
+  tally(total + 1, of_lane.point_tests);
+  tally(total + 2, of_lane.exact_tests);
+  tally(total + 3, of_lane.points_tested);
+  tally(total + 4, of_lane.settled_tests);
+}
+
+/// A warp a block of the page's cells.
+template <bool kClearance>
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    search_blocks_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  using Block = SweepBlock<CudaWarp, kClearance>;
+  __shared__ typename Block::Shared shared[kWarpsPerBlock];
+  const std::uint32_t warp = threadIdx.x / kWarpLanes;
+  const std::uint32_t block = blockIdx.x * kWarpsPerBlock + warp;
+  if (block >= job.block_count()) return;
+  CudaWarp::PerLane<SweepStatistics> statistics;
+  Block(job, block, shared[warp], statistics).search();
+  tally(tallies, statistics[0]);
+}
+
+/// Warps take one entry after the other, since some take far longer than others.
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    search_entries_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  const std::uint32_t count = job.work.entry_count();
+  CudaWarp::PerLane<SweepStatistics> statistics;
+  for (;;) {
+    const std::uint32_t index = CudaWarp::add(&job.work.counts->taken, 1, count);
+    if (index >= count) break;
+    search_entry<CudaWarp>(job, job.work.entry(index), statistics);
+  }
+  tally(tallies, statistics[0]);
+}
+
+/// A lane a walk.
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    search_walks_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  const std::uint32_t count = job.work.walk_count();
+  const std::uint32_t warp = blockIdx.x * kWarpsPerBlock + threadIdx.x / kWarpLanes;
+  CudaWarp::PerLane<SweepStatistics> statistics;
+  for (std::uint32_t first = warp * kWarpLanes; first < count; first += gridDim.x * kThreads) {
+    SweepHits<CudaWarp>(job, statistics).search_walks(first, count);
+  }
+  tally(tallies, statistics[0]);
+}
+
+/// A thread an item.
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    search_items_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+  const std::uint32_t count = job.work.item_count();
+  SweepStatistics statistics;
+  for (std::uint32_t i = blockIdx.x * kThreads + threadIdx.x; i < count;
+       i += gridDim.x * kThreads) {
+    search_item(job, job.work.items[i], statistics);
+  }
+  __syncwarp();
+  tally(tallies, statistics);
+}
+
+}  // namespace
+
+unsigned resident_sweep_blocks(int device) {
+  int processors = 0;
+  check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
+  return kBlocksPerProcessor * static_cast<unsigned>(processors);
+}
+
+void search_sweep(const SweepPage& page, unsigned long long* tallies, unsigned resident_blocks,
+                  cudaStream_t stream) {
+  const auto blocks = static_cast<unsigned>(divide_up(page.block_count(), kWarpsPerBlock));
+  check_cuda(cudaMemsetAsync(page.work.counts, 0, sizeof(SweepWork::Counts), stream));
+  if (page.clearances != nullptr) {
+    search_blocks_kernel<true><<<blocks, kThreads, 0, stream>>>(page, tallies);
+    check_cuda(cudaGetLastError());
+    return;
+  }
+  search_blocks_kernel<false><<<blocks, kThreads, 0, stream>>>(page, tallies);
+  check_cuda(cudaGetLastError());
+  search_entries_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
+  check_cuda(cudaGetLastError());
+  search_walks_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
+  check_cuda(cudaGetLastError());
+  search_items_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
+  check_cuda(cudaGetLastError());
+}
+
+}  // namespace clearway

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "gpu/sweep_page.hpp"
+
+namespace clearway {
+
+/// Numbers of a SweepStatistics, in its order, and places in which they are added up: several, so
+/// that warps seldom wait for each other.
+constexpr std::uint32_t kSweepCounts = 5;
+constexpr std::uint32_t kSweepTallies = 64;
+
+/// Blocks of threads of search_sweep that a device can hold at a time. Throws ResourceError.
+unsigned resident_sweep_blocks(int device);
+
+/// Clears and fills the page's answer. tallies: kSweepCounts times kSweepTallies, added to.
+/// Enqueued on `stream`, not synchronised. Throws ResourceError.
+void search_sweep(const SweepPage& page, unsigned long long* tallies, unsigned resident_blocks,
+                  cudaStream_t stream);
+
+}  // namespace clearway
