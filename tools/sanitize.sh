@@ -2,6 +2,8 @@
 
 # OpenMP is seen through libomp's archer; src/core/hand_over.hpp tells of oneTBB.
 thread_tests=(stream_tests cpu_tests grid_tests io_convert_tests)
+# Threads that wait in a loop take the processor from those that work.
+export OMP_WAIT_POLICY=passive
 
 test_under_address_sanitizer() {
   cmake --preset asan

@@ -78,10 +78,15 @@ std::uint64_t check_random_scene(std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("random scenes") {
+#ifdef CLEARWAY_SANITIZED
+  constexpr std::uint64_t kScenes = 100;  // each takes tens of times as long
+#else
+  constexpr std::uint64_t kScenes = 1000;
+#endif
   std::uint64_t with_hits = 0;
-  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     CAPTURE(seed);
     with_hits += check_random_scene(seed) > 0;
   }
-  CHECK(with_hits > 250);
+  CHECK(with_hits > kScenes / 4);
 }
