@@ -2,7 +2,7 @@
 """Runs every mode of the CUDA engines on small scenes and compares each result with the CPU's, byte for byte; writes one JSON file.
 
     gpu_equality.py --program build/release/tools/clearway --work /tmp/equality --out figures.json [--gpus 0,1]
-                    [--store site.h5 --model model.ply --trajectory path.txt]
+                    [--scenes hall ...] [--store site.h5 --model model.ply --trajectory path.txt]
 """
 import argparse
 import filecmp
@@ -15,6 +15,7 @@ MODES = {"set": [], "first-pose": ["--first-pose"], "between-poses": ["--between
          "between-poses first-pose": ["--between-poses", "--first-pose"], "clearance": ["--clearance", "0.3"],
          "clearance first-pose": ["--clearance", "0.05", "--first-pose"]}
 GRID_MODES = ["set", "first-pose"]
+SCENES = ["hall", "plant", "mine", "tunnel"]
 
 
 def call(*command):
@@ -25,7 +26,7 @@ def call(*command):
 
 
 def scenes(options):
-    for kind in ("hall", "plant", "mine", "tunnel"):
+    for kind in options.scenes:
         folder = options.work / kind
         call(options.program, "scene", kind, "-o", folder, "--points", options.points, "--model-points", "20000", "--poses", "4000", "--force")
         for cell_points in ("1000", "65536"):
@@ -41,6 +42,7 @@ def main():
     parser.add_argument("--program", type=lambda name: pathlib.Path(name).resolve(), required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--scenes", nargs="*", choices=SCENES, default=SCENES)
     parser.add_argument("--points", default="1000000")
     parser.add_argument("--gpus")
     parser.add_argument("--store", type=pathlib.Path)
@@ -65,7 +67,7 @@ def main():
                     runs.append({"scene": name, "mode": mode, "engine": engine, "device_memory": memory, "same": same,
                                  "colliding_points": report["colliding_points"],
                                  "peak_device_bytes": on_device["peak_device_bytes"]})
-    options.out.write_text(json.dumps({"runs": len(runs), "differing": differing, "each": runs}, indent=1) + "\n")
+        options.out.write_text(json.dumps({"runs": len(runs), "differing": differing, "each": runs}, indent=1) + "\n")
     print(f"{len(runs)} runs, {differing} differ from the CPU's")
     sys.exit(1 if differing else 0)
 
