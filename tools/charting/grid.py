@@ -117,6 +117,8 @@ def draw_cells(axes, x, cells):
     right.plot(x, cells, color=GREEN, marker="D", markersize=4, linestyle="--",
                markeredgecolor="black", markeredgewidth=0.4, label="cells read (right axis)")
     right.set_yscale("log")
-    right.set_ylim(min(cells) / 3, max(cells) * 3)
+    # Between powers of ten, so that at least two are named.
+    right.set_ylim(10 ** np.floor(np.log10(min(cells))),
+                   10 ** (np.floor(np.log10(max(cells))) + 1))
     right.yaxis.set_major_formatter(lambda value, _: short(value))
     right.set_ylabel("cells read")

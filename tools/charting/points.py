@@ -13,7 +13,7 @@ def draw(record):
     engines = record.names("engine")
     rows = -(-(len(engines) + 1) // 2)
     sheet = Sheet(record, "Fig. 4: time by the number of environment points (samples of the hall)",
-                  rows * 1.85 + 0.3, paper.POINTS, ("answer",))
+                  rows * 1.85 + 0.3, paper.POINTS, ("answer", "search"))
     axes, place = panels(sheet, rows, 2, legend_lines=-(-len(engines) // 4))
     for panel in axes.flat[len(engines) + 1:]:
         panel.set_axis_off()
@@ -25,14 +25,14 @@ def draw(record):
         line(sheet, together, cases, lambda case: case["points"],
              lambda case: case.answer_seconds(), style, name, **small)
         line(sheet, panel, cases, lambda case: case["points"] / 1e6,
-             lambda case: case.answer_seconds(), style, name, **small)
+             lambda case: case.seconds("search"), style, name, **small)
         every = max(case["every"] for case in cases)
         panel.set_title(f"{letter}  {name}" + (" (every tenth)" if every == 10 else ""))
         draw_fit(panel, cases)
         panel.set_xlim(0, None)
         panel.set_ylim(0, None)
         room_for_failures(panel)
-        panel.set(xlabel="environment points (million)", ylabel="answer (s)")
+        panel.set(xlabel="environment points (million)", ylabel="search (s)")
     log_axis(together.xaxis)
     seconds_axis(together.yaxis)
     together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="answer (s)")
@@ -45,16 +45,17 @@ def draw(record):
 
 
 def draw_fit(axes, cases):
-    """The straight line through the medians."""
+    """The straight line through the medians of the search."""
     cases = [case for case in cases if case.runs]
     if len(cases) < 3:
         return
     x = np.array([case["points"] / 1e6 for case in cases])
-    y = np.array([np.median(case.answer_seconds()) for case in cases])
+    y = np.array([np.median(case.seconds("search")) for case in cases])
     slope, start = np.polyfit(x, y, 1)
     share = 1 - ((y - start - slope * x) ** 2).sum() / ((y - y.mean()) ** 2).sum()
     ends = np.array([0, x.max()])
     axes.plot(ends, start + slope * ends, color="black", linewidth=1, zorder=4)
-    axes.text(0.97, 0.05, f"{with_unit(start, 's')} + {with_unit(slope, 's')}/million"
+    sign = "−" if slope < 0 else "+"
+    axes.text(0.97, 0.05, f"{with_unit(start, 's')} {sign} {with_unit(abs(slope), 's')}/million"
               f"\nR² = {share:.3f}", transform=axes.transAxes, va="bottom", ha="right",
               bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1}, zorder=6)

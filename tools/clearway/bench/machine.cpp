@@ -1,13 +1,13 @@
 #include "clearway/bench/machine.hpp"
 
 #include <hdf5.h>
+#include <tbb/info.h>
 #include <tbb/version.h>
 #include <unistd.h>
 
 #include <Eigen/Core>
 #include <fstream>
 #include <string>
-#include <thread>
 
 #include "clearway/bench/commit.hpp"
 #ifdef CLEARWAY_CUDA
@@ -46,7 +46,7 @@ nlohmann::ordered_json gpus() {
 
 nlohmann::ordered_json machine_description() {
   return {{"processor", value_in("/proc/cpuinfo", "model name", ':')},
-          {"cores", std::thread::hardware_concurrency()},
+          {"cores", tbb::info::default_concurrency()},  // those that this process may use
           {"memory_bytes", static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                                static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))},
           {"gpus", gpus()},
