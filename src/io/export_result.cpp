@@ -79,7 +79,7 @@ class LasSink final : public RowSink {
 class PlySink final : public RowSink {
  public:
   PlySink(const ResultReader& result, const File& file, const Progress&)
-      : writer_(file, PlyHeader{.points = result.collisions(),
+      : writer_(file, PlyOutput{.points = result.collisions(),
                                 .coordinates = PlyCoordinates::kFloat64,
                                 .first_pose = result.header().first_pose}) {}
 

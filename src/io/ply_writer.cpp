@@ -6,7 +6,7 @@
 namespace clearway {
 namespace {
 
-std::string header_text(const PlyHeader& header) {
+std::string header_text(const PlyOutput& header) {
   const std::string type =
       header.coordinates == PlyCoordinates::kFloat32 ? "property float " : "property double ";
   std::string text = "ply\nformat binary_little_endian 1.0\n";
@@ -19,7 +19,7 @@ std::string header_text(const PlyHeader& header) {
 
 }  // namespace
 
-PlyWriter::PlyWriter(const File& file, const PlyHeader& header) : out_(file), header_(header) {
+PlyWriter::PlyWriter(const File& file, const PlyOutput& header) : out_(file), header_(header) {
   const std::string text = header_text(header);
   out_.put_text(text, text.size());
 }

@@ -13,7 +13,7 @@ namespace clearway {
 enum class PlyCoordinates { kFloat32, kFloat64 };
 
 /// What a PLY file's header has to say before the first point is written.
-struct PlyHeader {
+struct PlyOutput {
   std::uint64_t points = 0;
   PlyCoordinates coordinates = PlyCoordinates::kFloat64;
   bool first_pose = false;  ///< adds the property "first_pose", uint
@@ -25,7 +25,7 @@ struct PlyHeader {
 /// (uint). Buffered; the file stays the caller's.
 class PlyWriter {
  public:
-  PlyWriter(const File& file, const PlyHeader& header);
+  PlyWriter(const File& file, const PlyOutput& header);
 
   /// first_pose: as many as points where the header has it, empty otherwise.
   void write(std::span<const Vec3> points, std::span<const std::uint32_t> first_pose = {});
@@ -35,7 +35,7 @@ class PlyWriter {
 
  private:
   ByteWriter out_;
-  PlyHeader header_;
+  PlyOutput header_;
   std::uint64_t written_ = 0;
 };
 

@@ -1,20 +1,15 @@
-// Journals, --resume, --force and signals of the program.
-#include <fcntl.h>
+// Journals, --resume and --force of the program, after signals too.
 #include <signal.h>
-#include <spawn.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "io/journal.hpp"
 #include "io/pending_file.hpp"
+#include "process.hpp"
 #include "program.hpp"
 
 using namespace clearway;
@@ -24,46 +19,6 @@ using nlohmann::json;
 using std::chrono::steady_clock;
 
 namespace {
-
-/// A process of the built program, its output in a file.
-class Process {
- public:
-  Process(const std::string& arguments, std::filesystem::path log) : log_(std::move(log)) {
-    std::string command = std::string("exec '") + CLEARWAY_PROGRAM + "' " + arguments + " >'" +
-                          log_.string() + "' 2>&1";
-    char sh[] = "/bin/sh", c[] = "-c";
-    char* words[] = {sh, c, command.data(), nullptr};
-    if (::posix_spawn(&pid_, sh, nullptr, nullptr, words, environ) != 0) {
-      throw std::runtime_error("cannot start the program");
-    }
-  }
-  ~Process() {
-    if (pid_ > 0) {
-      ::kill(pid_, SIGKILL);
-      wait();
-    }
-  }
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
-
-  void send(int signal) const { ::kill(pid_, signal); }
-  bool running() {
-    if (pid_ > 0 && ::waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = 0;
-    return pid_ > 0;
-  }
-  /// Exit code, or minus the signal that killed it.
-  int wait() {
-    if (pid_ > 0) ::waitpid(pid_, &status_, 0);
-    pid_ = 0;
-    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
-  }
-  std::string log() const { return bytes_of(log_); }
-
- private:
-  std::filesystem::path log_;
-  pid_t pid_ = 0;
-  int status_ = 0;
-};
 
 /// A hall that engine grid searches for a second, made once.
 class SlowHall {
@@ -357,85 +312,6 @@ TEST_CASE("two runs of one output: the second is refused and leaves the first's 
   }
   CHECK(first.wait() == 0);
   CHECK(work.files() == Names{"out.h5"});
-}
-
-TEST_CASE("a conversion that is asked to stop leaves nothing behind") {
-  const Work work;
-  const std::string command = "convert " + work.hall.path("environment.las") +
-                              " --cell-points 500 -o " + quoted(work.output);
-  bool stopped = false;
-  for (int delay = 20; delay < 2000 && !stopped; delay += 20) {
-    Process process(command + " --resume", work.folder / "log.txt");
-    std::this_thread::sleep_for(std::chrono::milliseconds(delay));
-    process.send(SIGTERM);
-    const int code = process.wait();
-    if (code == -SIGTERM) continue;  // before it could listen
-    stopped = code == 5;
-    REQUIRE((stopped || code == 0));
-    if (stopped) {
-      CHECK_THAT(process.log(), Contains("interrupted") && Contains("again"));
-      CHECK(work.files().empty());
-    }
-    std::filesystem::remove(work.output);
-  }
-  CHECK(stopped);
-  CHECK(run_program(work.folder, command + " --resume").exit_code == 0);
-}
-
-TEST_CASE("an export that is asked to stop, or killed, leaves nothing that looks finished") {
-  const Work work;
-  const std::size_t rows = 600'000;
-  ResultHeader header = sample_header(true);
-  header.environment_points = std::uint64_t{1} << 33;
-  write_result(work.folder / "large.h5", header, sample_rows(header, rows));
-  const std::filesystem::path csv = work.output.string() + ".csv";
-  const std::string command = "export " + quoted(work.folder / "large.h5") + " -o " + quoted(csv);
-  for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
-    CAPTURE(signal);
-    bool stopped = false;
-    for (int delay = 10; delay < 2000 && !stopped; delay += 10) {
-      Process process(command, work.folder / "log.txt");
-      std::this_thread::sleep_for(std::chrono::milliseconds(delay));
-      process.send(signal);
-      const int code = process.wait();
-      const Names files = work.files();
-      if (code == 0) {
-        CHECK(files == Names{"out.h5.csv"});
-        std::filesystem::remove(csv);
-      } else if (signal == SIGKILL) {
-        REQUIRE(code == -SIGKILL);
-        stopped = !files.empty();
-        if (stopped) CHECK(files == Names{"out.h5.csv.partial"});
-      } else if (code != -signal) {  // it could listen already
-        REQUIRE(code == 5);
-        stopped = true;
-        CHECK(files.empty());
-        CHECK_THAT(process.log(), Contains("interrupted") && Contains("starts it again"));
-      }
-    }
-    CHECK(stopped);
-  }
-  CHECK(run_program(work.folder, command).exit_code == 0);
-  CHECK(work.files() == Names{"out.h5.csv"});
-}
-
-TEST_CASE("what does not come to an end is given up within 5 seconds") {
-  const Work work;
-  const auto pipe = work.folder / "pipe";
-  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  const int writer = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);  // never writes
-  REQUIRE(writer >= 0);
-  Process process("convert - -o " + quoted(work.output) + " <" + quoted(pipe),
-                  work.folder / "log.txt");
-  while (work.files().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the handlers are in place
-  const auto begin = steady_clock::now();
-  process.send(SIGTERM);
-  CHECK(process.wait() == 5);
-  CHECK(steady_clock::now() - begin < std::chrono::seconds(5));
-  CHECK_THAT(process.log(), Contains("interrupted before"));
-  CHECK(work.files() == Names{"out.h5.partial"});
-  ::close(writer);
 }
 
 TEST_CASE("options of the journal that make no sense are refused") {

@@ -50,6 +50,7 @@ def main():
                     print(kind, engine, gpus, "same" if run["same"] else "DIFFERS",
                           {stage: round(run["seconds"][stage], 4) for stage in ("context", "search", "read", "compute")}, flush=True)
     options.out.write_text(json.dumps(results, indent=1) + "\n")
+    sys.exit(0 if all(run["same"] for run in results["runs"]) else 1)
 
 
 if __name__ == "__main__":

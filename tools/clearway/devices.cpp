@@ -25,11 +25,13 @@ constexpr std::uint64_t kUsualBytes = std::uint64_t{2} << 30;
 /// "auto" leaves a GPU alone that has less than this free.
 constexpr std::uint64_t kLeastRoom = std::uint64_t{256} << 20;
 
+std::uint64_t wanted_bytes(const EngineOptions& options) {
+  return options.device_memory_bytes > 0 ? options.device_memory_bytes : kUsualBytes;
+}
+
 /// What may be taken of a device: never quite all that is free, for others take some too.
 std::uint64_t allowance(const EngineOptions& options, const CudaDevice& device) {
-  const std::uint64_t wanted =
-      options.device_memory_bytes > 0 ? options.device_memory_bytes : kUsualBytes;
-  return std::min(wanted, device.free_bytes - device.free_bytes / 20);
+  return std::min(wanted_bytes(options), device.free_bytes - device.free_bytes / 20);
 }
 
 DeviceChoice choice_of(const EngineOptions& options, const std::vector<CudaDevice>& devices) {
@@ -59,13 +61,16 @@ std::vector<CudaDevice> open_named(const std::vector<int>& gpus) {
   return devices;
 }
 
-CudaDevice open_emptiest() {
+/// The first with all that is wanted, or else the one with the most: to ask a device takes a
+/// context on it, most of a second.
+CudaDevice open_one_with_room(const EngineOptions& options) {
   std::optional<CudaDevice> best;
   for (int gpu = 0; gpu < cuda_device_count(); ++gpu) {
     const CudaDevice device = open_cuda_device(gpu);
+    if (allowance(options, device) == wanted_bytes(options)) return device;
     if (!best || device.free_bytes > best->free_bytes) best = device;
   }
-  return best.value();
+  return open_cuda_device(best.value().index);  // the last one asked is the current one
 }
 
 DeviceChoice choose_cuda(const EngineOptions& options) {
@@ -73,14 +78,14 @@ DeviceChoice choose_cuda(const EngineOptions& options) {
     throw ResourceError("--device cuda: " + why +
                         "; take --device cpu, or run where nvidia-smi lists a GPU");
   }
-  return choice_of(options,
-                   options.gpus.empty() ? std::vector{open_emptiest()} : open_named(options.gpus));
+  return choice_of(options, options.gpus.empty() ? std::vector{open_one_with_room(options)}
+                                                 : open_named(options.gpus));
 }
 
 DeviceChoice choose_automatically(const EngineOptions& options) {
   if (cuda_device_count() == 0) return {};
   try {
-    const CudaDevice device = open_emptiest();
+    const CudaDevice device = open_one_with_room(options);
     if (device.free_bytes >= kLeastRoom) return choice_of(options, {device});
     spdlog::info("GPU {} has only {} free: the CPU is taken", device.index,
                  format_size(device.free_bytes));

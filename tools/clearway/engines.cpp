@@ -38,6 +38,11 @@ void check_tolerance(const Question& question, const EngineOptions& options) {
 
 /// What the engine cannot do is refused with the name of one that can.
 void check(const Question& question, const EngineOptions& options) {
+  constexpr std::uint64_t kPosesEnd = std::uint64_t{1} << 31;  // a tree numbers 2 n - 1 nodes
+  if (question.poses.size() >= kPosesEnd) {
+    throw InputError("the trajectory has " + std::to_string(question.poses.size()) +
+                     " poses, expected fewer than " + std::to_string(kPosesEnd));
+  }
   if (question.tolerance > 0) check_tolerance(question, options);
   if (question.clearance > 0 && question.between_poses) {
     throw UsageError("--clearance and --between-poses cannot be combined: clearances are at poses");

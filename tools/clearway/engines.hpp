@@ -18,13 +18,13 @@ namespace clearway::tool {
 struct EngineOptions {
   std::string engine = "auto";  ///< "auto", "sweep", "grid" or "kdtree"
   std::string device = "auto";  ///< "auto", "cpu" or "cuda"
-  std::vector<int> gpus;        ///< CUDA's numbers; empty: all
+  std::vector<int> gpus;        ///< CUDA's numbers; empty: the first with room
   int threads = 0;              ///< 0: all cores
   double field_voxel = 0;       ///< metres; 0: chosen
   double grid_cell = 0;         ///< metres; 0: chosen
   bool float_precision = false;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
-  std::uint64_t device_memory_bytes = 0;  ///< of each device; 0: what is free
+  std::uint64_t device_memory_bytes = 0;  ///< of each device; 0: 2 GiB, or what is free
 };
 
 /// What a tolerance spared.

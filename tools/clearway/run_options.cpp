@@ -54,13 +54,13 @@ void add_device(CLI::App& command, EngineOptions& options) {
       ->capture_default_str();
   command
       .add_option("--gpus", options.gpus,
-                  "Numbers of the GPUs to use, for example 0,1 (default: all)")
+                  "Numbers of the GPUs to use, for example 0,1 (default: the first with room)")
       ->delimiter(',')
       ->type_name("N,...")
       ->check(CLI::Range(0, 1023));
-  add_size_option(command, "--device-memory", options.device_memory_bytes,
-                  "Bound of the memory of each GPU, without CUDA's own, for example 2G (default: "
-                  "what is free)");
+  add_size_option(
+      command, "--device-memory", options.device_memory_bytes,
+      "Bound of the memory of each GPU, without CUDA's own (default: 2G, or what is free)");
 }
 
 void add_engine(CLI::App& command, EngineOptions& options) {

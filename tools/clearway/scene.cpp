@@ -12,6 +12,7 @@
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
 #include "clearway/options.hpp"
+#include "clearway/signals.hpp"
 #include "core/error.hpp"
 #include "io/pending_file.hpp"
 #include "scene/write.hpp"
@@ -103,6 +104,16 @@ void make_scene_files(const SceneOptions& options) {
                format_count(sizes.poses));
 }
 
+void run_scene(const SceneOptions& options) {
+  const std::string again = "the same command starts it again";
+  stop_on_signals(again);
+  try {
+    make_scene_files(options);
+  } catch (const Interrupted&) {
+    throw Interrupted(options.folder.string() + ": interrupted; " + again);
+  }
+}
+
 }  // namespace
 
 void add_scene(CLI::App& program) {
@@ -133,12 +144,10 @@ void add_scene(CLI::App& program) {
       ->add_option("--environment", options->environment,
                    "\"-\" writes the environment to standard output instead of a file")
       ->check(CLI::IsMember({"-"}));
-  command->add_option("--threads", options->threads, "Threads (default: all cores)")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
+  add_threads_option(*command, options->threads);
   command->add_flag("--force", options->force, "Overwrite existing files");
   command->footer(kExamples);
-  command->callback([options] { make_scene_files(*options); });
+  command->callback([options] { run_scene(*options); });
 }
 
 }  // namespace clearway::tool

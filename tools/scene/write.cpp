@@ -24,6 +24,7 @@ void scan_in_order(const Scanner& scanner, int threads, LasWriter& writer, Progr
       std::max<std::uint64_t>(1, kBatchPoints / scanner.plan().rays_a_sweep);
   std::uint64_t next = 0;
   const auto number = [&](tbb::flow_control& flow) {
+    throw_if_stopped(progress);
     const std::uint64_t first = next;
     if (first >= sweeps) flow.stop();
     next += batch;

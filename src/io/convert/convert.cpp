@@ -9,9 +9,11 @@
 #include <cmath>
 #include <future>
 #include <memory>
+#include <stop_token>
 
 #include "core/error.hpp"
 #include "core/hand_over.hpp"
+#include "core/kd_order.hpp"
 #include "core/stopwatch.hpp"
 #include "io/convert/count.hpp"
 #include "io/convert/distribute.hpp"
@@ -28,6 +30,7 @@ namespace {
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBaseBytes = 64 * kMiB;     // batches, index, libraries
 constexpr std::uint64_t kThreadBytes = 32 * kMiB;   // a counting grid and its refinement
+constexpr std::uint64_t kCellBytes = 160;           // its index, and its nodes in the tree
 constexpr std::uint64_t kBufferBytes = 16 * kMiB;   // units' write buffers
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
@@ -70,24 +73,39 @@ Lattice lattice_for(const ConversionOptions& options, const Quantisation& quanti
   return Lattice(cube);
 }
 
-SourceFile describe(const std::filesystem::path& path) {
+SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
+                    const Progress& progress) {
   if (path == "-") return {"-", 0, 0};
   const File file = File::open_for_reading(path);
   std::vector<std::byte> buffer(kMiB);
   Xxh64Stream hash;
   std::uint64_t bytes = 0;
   while (const std::size_t got = file.read_some(buffer)) {
+    if (stop.stop_requested()) break;
+    throw_if_stopped(progress);
     hash.update(std::span(buffer).first(got));
     bytes += got;
   }
   return {path.filename().string(), bytes, hash.digest()};
 }
 
-std::vector<SourceFile> describe_all(const std::vector<std::filesystem::path>& files) {
-  std::vector<SourceFile> sources;
-  for (const auto& file : files) sources.push_back(describe(file));
-  return sources;
-}
+/// Describes the inputs on a thread of its own, while they are counted; gives up when it goes.
+class SourceDescription {
+ public:
+  SourceDescription(const std::vector<std::filesystem::path>& files, const Progress& progress)
+      : sources_(std::async(std::launch::async, [&files, &progress, stop = stop_.get_token()] {
+          std::vector<SourceFile> sources;
+          for (const auto& file : files) sources.push_back(describe(file, stop, progress));
+          return sources;
+        })) {}
+  ~SourceDescription() { stop_.request_stop(); }
+
+  std::vector<SourceFile> get() { return sources_.get(); }
+
+ private:
+  std::stop_source stop_;
+  std::future<std::vector<SourceFile>> sources_;
+};
 
 /// padded: points with the padding of cells that are not full, which packs to fewer bytes.
 void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::uint64_t padded) {
@@ -181,13 +199,14 @@ class Conversion {
     if (environment.declared_points()) {
       check_disk(folder_, *environment.declared_points(), *environment.declared_points());
     }
-    auto sources = std::async(std::launch::async, describe_all, environment.files());
+    SourceDescription sources(environment.files(), progress_);
     const Lattice lattice = lattice_for(options_, environment.quantisation());
     CountedEnvironment counted = count_environment(environment, lattice, threads_, progress_);
     report_.non_finite_points = environment.non_finite_points();
     fill_metadata(environment, counted, sources.get());
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
-    check_padding(tree, counted.points);
+    const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
+    check_cells(top, counted.points);
     report_.count_seconds = watch_.lap();
 
     const Distribution distribution =
@@ -195,7 +214,7 @@ class Conversion {
     report_.largest_change = environment.largest_change();
     report_.temporary_bytes = counted.points * sizeof(DistributedPoint);
     report_.distribute_seconds = watch_.lap();
-    write_store(distribution, tree, lattice);
+    write_store(distribution, tree, top, lattice);
     return std::move(report_);
   }
 
@@ -214,27 +233,37 @@ class Conversion {
     report_.remarks = environment.remarks();
   }
 
-  void check_padding(const SplitTree& tree, std::uint64_t points) {
-    const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
-    const std::uint64_t cells = top.empty() ? 0 : top[0].cell_count;
-    const std::uint64_t padded = std::max(points, cells * options_.cell_points);
+  /// Of --memory, beside the cells' index: at least a unit.
+  std::uint64_t bytes_for_units() const {
+    const std::uint64_t others = kBaseBytes + report_.cells * kCellBytes;
+    const std::uint64_t least = others + kUnitBytes;
+    if (options_.memory_bytes < least) {
+      throw ResourceError("--memory is too little: " + std::to_string(report_.cells) +
+                          " cells need at least " + std::to_string(divide_up(least, kMiB)) +
+                          "M; with more --cell-points there are fewer");
+    }
+    return options_.memory_bytes - others;
+  }
+
+  /// Whether memory and disk do for the cells.
+  void check_cells(const std::vector<TopNode>& top, std::uint64_t points) {
+    report_.cells = top.empty() ? 0 : top[0].cell_count;
+    bytes_for_units();
+    const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
     check_disk(folder_, points, padded);
     if (options_.regular_size && padded > 2 * points) {
       report_.remarks.push_back(
-          std::to_string(cells) + " cells of " + std::to_string(options_.cell_points) +
+          std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
           " points for " + std::to_string(points) +
           " points: the padding makes the store large; a smaller --cell-points fits the cubes");
     }
   }
 
   void write_store(const Distribution& distribution, const SplitTree& tree,
-                   const Lattice& lattice) {
-    const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
-    report_.cells = top.empty() ? 0 : top[0].cell_count;
+                   const std::vector<TopNode>& top, const Lattice& lattice) {
     StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
-    const std::uint64_t for_units = options_.memory_bytes - kBaseBytes;
-    const std::size_t units_in_flight =
-        std::clamp<std::size_t>(for_units / kUnitBytes, 1, static_cast<std::size_t>(threads_) + 1);
+    const std::size_t units_in_flight = std::min<std::size_t>(
+        bytes_for_units() / kUnitBytes, static_cast<std::size_t>(threads_) + 1);
     write_cells(distribution, tree, lattice, report_.metadata, units_in_flight, writer, progress_);
     report_.partition_seconds = watch_.lap();
     writer.finish(top);

@@ -191,6 +191,18 @@ TEST_CASE("too little memory is refused with the least that will do") {
   CHECK(conversion_refusal(scan.options).empty());
 }
 
+TEST_CASE("too little memory for the index of many cells is refused before they are made") {
+  std::vector<Quantum> points;  // a cube, and so a cell, each
+  for (int i = 0; i < 120'000; ++i) points.push_back({i % 400 * 2000, i / 400 * 2000, 0});
+  Scan scan(points);
+  scan.options.regular_size = 1;
+  scan.options.cell_points = 64;
+  scan.options.memory_bytes = kLeastConversionMemory;
+  CHECK_THAT(conversion_refusal<ResourceError>(scan.options),
+             Contains("120000 cells need at least 227M") && Contains("--cell-points"));
+  CHECK(scan.files() == std::vector<std::string>{"a.las"});
+}
+
 TEST_CASE("an existing output stays as it is unless it may be overwritten") {
   Scan scan(cube_cloud(100, -50, 50, 1));
   put_bytes(scan.options.output, "mine");

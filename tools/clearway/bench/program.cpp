@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 #include <span>
 
@@ -24,7 +25,13 @@ namespace {
 /// How often a signal to this program, and the limit, are looked at.
 constexpr int kLookMilliseconds = 50;
 
-File memory_file(const char* name) { return File::adopt(::memfd_create(name, MFD_CLOEXEC), name); }
+/// Of a system call that gave `descriptor`. Throws ResourceError where it failed.
+File opened(int descriptor, const char* name) {
+  if (descriptor < 0) throw ResourceError(std::string(name) + ": " + std::strerror(errno));
+  return File::adopt(descriptor, name);
+}
+
+File memory_file(const char* name) { return opened(::memfd_create(name, MFD_CLOEXEC), name); }
 
 std::string text_of(const File& file) {
   std::string text(file.size_bytes(), '\0');
@@ -48,11 +55,9 @@ std::string joined(const std::vector<std::string>& arguments) {
   ::_exit(kResource);
 }
 
-/// Waits for the end of the process, or until it has taken longer than the limit or this program is
-/// to stop; then it is asked to stop and waited for. Whether the limit was it.
-bool wait_within(pid_t process, double limit_seconds, const Stopwatch& wall) {
-  const File handle =
-      File::adopt(static_cast<int>(::syscall(SYS_pidfd_open, process, 0)), "process");
+/// Waits for the end of the process that `handle` is of, or until it has taken longer than the
+/// limit or this program is to stop; then it is asked to stop. Whether the limit was it.
+bool wait_within(pid_t process, const File& handle, double limit_seconds, const Stopwatch& wall) {
   pollfd ended{.fd = handle.descriptor(), .events = POLLIN, .revents = 0};
   for (;;) {
     if (::poll(&ended, 1, kLookMilliseconds) > 0) return false;
@@ -61,6 +66,18 @@ bool wait_within(pid_t process, double limit_seconds, const Stopwatch& wall) {
     ::kill(process, SIGTERM);
     return late;
   }
+}
+
+struct Ending {
+  int status = 0;
+  struct rusage usage {};
+};
+
+Ending reaped(pid_t process) {
+  Ending ending;
+  while (::wait4(process, &ending.status, 0, &ending.usage) < 0 && errno == EINTR) {
+  }
+  return ending;
 }
 
 }  // namespace
@@ -76,11 +93,16 @@ ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds)
   const pid_t child = ::fork();
   if (child < 0) throw ResourceError(line + ": cannot start: " + std::strerror(errno));
   if (child == 0) become_program(words.data(), output.descriptor(), log.descriptor());
-  const bool timed_out = wait_within(child, limit_seconds, wall);
-  int status = 0;
-  struct rusage usage {};
-  while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+  bool timed_out = false;
+  try {
+    const File handle = opened(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)), "pidfd_open");
+    timed_out = wait_within(child, handle, limit_seconds, wall);
+  } catch (...) {
+    ::kill(child, SIGTERM);
+    reaped(child);
+    throw;
   }
+  const auto [status, usage] = reaped(child);
   ProgramRun run{.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
                  .timed_out = timed_out,
                  .output = text_of(output),

@@ -1,5 +1,5 @@
 // Fig. 1: speed by the number of threads.
-#include <thread>
+#include <tbb/info.h>
 
 #include "clearway/bench/bench.hpp"
 
@@ -8,7 +8,7 @@ void bench_threads(Bench& bench) {
   // Large enough to keep all threads busy.
   const bool small = bench.options().size == "small";
   const SceneFiles files = bench.scene("hall", small ? "tenth" : bench.options().size);
-  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int cores = tbb::info::default_concurrency();
   const int step = cores > 8 ? cores / 8 : 1;
   for (const std::string name : {"kdtree cpu", "sweep cpu"}) {
     const auto measure = [&](int threads) {
