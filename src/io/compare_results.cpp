@@ -63,6 +63,7 @@ std::vector<QuestionDifference> question_differences(const ResultHeader& a, cons
   differ("motion", a.between_poses ? "between poses" : "at poses only",
          b.between_poses ? "between poses" : "at poses only");
   differ("tolerance", tolerance_text(a), tolerance_text(b));
+  differ("precision", a.float_precision ? "float" : "exact", b.float_precision ? "float" : "exact");
   differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
   differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
   return out;

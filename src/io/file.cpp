@@ -39,7 +39,7 @@ File File::open_for_reading(const std::filesystem::path& path) {
 }
 
 File File::create(const std::filesystem::path& path) {
-  return {checked_open(path, O_RDWR | O_CREAT | O_TRUNC, "create"), path.string()};
+  return {checked_open(path, O_RDWR | O_CREAT | O_TRUNC | O_NOFOLLOW, "create"), path.string()};
 }
 
 File File::create_temporary(const std::filesystem::path& folder) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "io/point_reader.hpp"
 #include "io/refusal.hpp"
 
 namespace clearway {
@@ -17,7 +16,7 @@ void append(const PointBatch& batch, const CloudInfo& info, std::vector<Vec3>& p
 
 }  // namespace
 
-std::vector<Vec3> read_model(const std::filesystem::path& path) {
+std::vector<Vec3> read_model(const std::filesystem::path& path, CloudInfo* info) {
   const auto reader = open_point_file(path);
   std::vector<Vec3> points;
   PointBatch batch;
@@ -33,6 +32,7 @@ std::vector<Vec3> read_model(const std::filesystem::path& path) {
       }
     }
   }
+  if (info != nullptr) *info = reader->info();
   if (points.empty()) refuse(path.string(), "the model has no points; expected one at least");
   return points;
 }

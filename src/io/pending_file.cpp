@@ -54,14 +54,25 @@ void lock(int descriptor, const fs::path& path) {
 bool is_at(int descriptor, const fs::path& path) {
   struct stat opened {
   }, named{};
-  return ::fstat(descriptor, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+/// A link, a pipe or a device would lead what is written elsewhere.
+void check_partial(const fs::path& path) {
+  std::error_code unknown;
+  const fs::file_status found = fs::symlink_status(path, unknown);
+  if (!fs::exists(found) || fs::is_regular_file(found)) return;
+  throw UsageError(path.string() +
+                   ": is in the place of this output's temporary file and is no file; move it "
+                   "away, or choose another output");
 }
 
 File create_locked(const fs::path& path) {
   for (;;) {
-    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno == EINTR) continue;
+    check_partial(path);
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (descriptor < 0 && (errno == EINTR || errno == ELOOP)) continue;
     if (descriptor < 0) fail(path, "create");
     File file = File::adopt(descriptor, path.string());
     lock(descriptor, path);

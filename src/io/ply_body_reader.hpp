@@ -25,6 +25,9 @@ class PlyBodyReader : public PointReader {
   PlyBodyReader(InputBuffer input, PlyHeader header)
       : input_(std::move(input)), header_(std::move(header)) {
     info_.declared_points = header_.vertices().count;
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "face") info_.faces += element.count;
+    }
   }
 
   /// Consumes every row of an element.

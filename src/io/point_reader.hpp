@@ -23,6 +23,7 @@ struct CloudInfo {
   std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
   std::string crs_wkt;                           ///< as found; empty where there is none
   LengthUnit unit = LengthUnit::kUnknown;        ///< of the horizontal coordinates
+  std::uint64_t faces = 0;                       ///< of a mesh, which are not read
 };
 
 /// Consecutive points of a file, in its order: integers where the file has a quantisation,

@@ -12,8 +12,8 @@
 namespace clearway {
 
 /// What a result says of its question: a function of the source points, the model, the trajectory
-/// and the parameters, and but for the engine that a tolerance makes part of the answer, of nothing
-/// else (design section 4), so that `cmp` compares runs.
+/// and the parameters, and but for the engine and the precision where they are part of the answer,
+/// of nothing else (design section 4), so that `cmp` compares runs.
 struct ResultHeader {
   std::uint64_t environment_points = 0;
   std::uint64_t environment_hash = 0;  ///< of the source points, whatever file format or layout
@@ -25,8 +25,9 @@ struct ResultHeader {
   bool first_pose = false;
   double clearance = 0;  ///< metres, 0: not asked for
   bool between_poses = false;
-  double tolerance = 0;  ///< metres, 0: an exact answer, the same of every engine
-  std::string engine;    ///< that answered; only with a tolerance
+  double tolerance = 0;          ///< metres, 0: an exact answer, the same of every engine
+  std::string engine;            ///< that answered; only with a tolerance
+  bool float_precision = false;  ///< floats alone decided: not an exact answer
   Quantisation quantisation{};
   std::string crs_wkt;
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;

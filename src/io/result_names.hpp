@@ -19,6 +19,8 @@ inline constexpr const char* kPose = "pose";
 
 inline constexpr const char* kTolerance = "tolerance";  // with kEngine, only where there is one
 inline constexpr const char* kEngine = "engine";
+inline constexpr const char* kPrecision = "precision";  // only where it is kFloat
+inline constexpr const char* kFloat = "float";
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";

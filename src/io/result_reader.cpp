@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "io/file.hpp"
 #include "io/hdf5.hpp"
+#include "io/refusal.hpp"
 #include "io/result.hpp"
 #include "io/result_names.hpp"
 
@@ -84,6 +85,13 @@ ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
     header.tolerance = read_number<double>(file, names::kTolerance, name);
     header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
     check_tolerance(header, name);
+  }
+  if (hdf5::has_attribute(file, names::kPrecision, name)) {
+    const std::string precision = hdf5::read_text_attribute(file, names::kPrecision, name);
+    if (precision != names::kFloat) {
+      refuse(name, "attribute 'precision' is " + excerpt(precision) + ", expected float");
+    }
+    header.float_precision = true;
   }
   return header;
 }

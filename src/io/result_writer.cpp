@@ -50,6 +50,7 @@ void write_header(const hdf5::Id& file, const ResultHeader& header) {
     write_number(file, names::kTolerance, header.tolerance);
     hdf5::write_attribute(file, names::kEngine, header.engine);
   }
+  if (header.float_precision) hdf5::write_attribute(file, names::kPrecision, names::kFloat);
 }
 
 /// The piece of a column; a column that the result does not have stays empty.

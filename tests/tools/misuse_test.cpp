@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -168,4 +170,87 @@ TEST_CASE("a model among the scans is asked about") {
   const Outcome outcome = site.run("convert " + site.path("hall") + " -o " + site.path("h.h5"));
   CHECK(outcome.exit_code == 3);
   CHECK_THAT(outcome.err, Contains("model.ply: its coordinates are floating-point numbers"));
+}
+
+TEST_CASE("what is in the place of a temporary file and is no file is refused and left alone") {
+  const Site site;
+  put_bytes(site.folder / "precious", "mine");
+  std::filesystem::create_symlink("precious", site.folder / "a.h5.partial");
+  std::filesystem::create_symlink("nowhere", site.folder / "b.h5.partial");
+  REQUIRE(::mkfifo((site.folder / "c.h5.partial").c_str(), 0600) == 0);
+  for (const char* name : {"a.h5", "b.h5", "c.h5"}) {
+    INFO(name);
+    for (const Outcome& outcome :
+         {site.search("--radius 0.1 -o " + site.path(name)),
+          site.run("convert " + site.path("scan.xyz") + " -o " + site.path(name))}) {
+      CHECK(outcome.exit_code == 2);
+      CHECK_THAT(outcome.err, Contains("in the place of this output's temporary file"));
+    }
+    CHECK_FALSE(std::filesystem::exists(site.folder / name));
+  }
+  CHECK(bytes_of(site.folder / "precious") == "mine");
+  CHECK_FALSE(std::filesystem::exists(site.folder / "nowhere"));
+}
+
+TEST_CASE("options that do not go together are refused before an input is looked at") {
+  const Site site;
+  const std::string run =
+      "run --env none.h5 --model none.ply --trajectory none.txt --radius 0.1 -o " +
+      site.path("r.h5") + " ";
+  for (const char* options :
+       {"--tolerance 0.01 --first-pose", "--clearance 1 --between-poses",
+        "--engine kdtree --clearance 1", "--engine kdtree --field-voxel 1",
+        "--engine kdtree --device-memory 1G", "--engine sweep --grid-cell 1"}) {
+    INFO(options);
+    CHECK(site.run(run + options).exit_code == 2);
+  }
+  CHECK(site.run("compare a.h5 b.h5 --show -1").exit_code == 2);
+  CHECK(site.run("scene hall --seed -1 -o " + site.path("s")).exit_code == 2);
+}
+
+TEST_CASE("a model's faces are not read, which is said") {
+  const Site site;
+  put_bytes(site.folder / "mesh.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Outcome outcome =
+      site.run("run --env " + site.path("site.h5") + " --model " + site.path("mesh.ply") +
+               " --trajectory " + site.path("path.txt") + " --radius 0.1 -o " + site.path("m.h5"));
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("its 1 faces are not read: the model is its 3 points"));
+}
+
+TEST_CASE("the result of floats alone says so") {
+  const Site site;
+  REQUIRE(site.search("--radius 0.6 -o " + site.path("exact.h5")).exit_code == 0);
+  REQUIRE(site.search("--radius 0.6 --engine grid --device cpu --precision float -o " +
+                      site.path("float.h5"))
+              .exit_code == 0);
+  using nlohmann::json;
+  CHECK(json::parse(site.run("info --json " + site.path("float.h5")).out)["precision"] == "float");
+  CHECK_FALSE(
+      json::parse(site.run("info --json " + site.path("exact.h5")).out).contains("precision"));
+  const Outcome compared =
+      site.run("compare --json " + site.path("exact.h5") + " " + site.path("float.h5"));
+  CHECK(compared.exit_code == 0);
+  CHECK(json::parse(compared.out)["question_differences"][0]["what"] == "precision");
+}
+
+TEST_CASE("a resumed conversion leaves the store of the same inputs alone, and no other") {
+  const Site site;
+  const std::string convert =
+      "convert " + site.path("scan.xyz") + " -o " + site.path("site.h5") + " --resume";
+  const std::string before = bytes_of(site.folder / "site.h5");
+  const Outcome again = site.run(convert);
+  CHECK(again.exit_code == 0);
+  CHECK_THAT(again.err, Contains("is the store of these inputs already"));
+  for (const char* other : {" --cell-points 128", " --layout regular:5", " --scale 0.5"}) {
+    const Outcome refused = site.run(convert + other);
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains("exists already"));
+  }
+  put_bytes(site.folder / "scan.xyz", bytes_of(site.folder / "scan.xyz") + "0 0 0\n");
+  CHECK(site.run(convert).exit_code == 2);
+  CHECK((bytes_of(site.folder / "site.h5") == before));
 }

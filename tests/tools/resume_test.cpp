@@ -186,13 +186,35 @@ TEST_CASE("resuming without a journal starts afresh and says so") {
   const Outcome outcome = work.run("--resume");
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.err, Contains("no journal to resume, starts afresh"));
-  check_refused(work.run("--resume"), 2, "exists already");
   put_bytes(work.journal, "CLWYJ");
   CHECK_THAT(work.run("--force").err, Contains("removed, starts afresh"));
   std::filesystem::remove(work.output);
   put_bytes(work.journal, "CLWYJ");
   CHECK_THAT(work.run("").err, Contains("nothing in it yet"));
   CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("a resumed run leaves a result alone that answers its question, and no other") {
+  const Work work;
+  const Outcome first = work.run("--json");
+  REQUIRE(first.exit_code == 0);
+  const std::string bytes = bytes_of(work.output);
+  const Outcome again = work.run("--resume --json", "0.1", "sweep");
+  CHECK(again.exit_code == 0);
+  CHECK_THAT(again.err, Contains("is the answer already"));
+  CHECK(json::parse(again.out)["colliding_points"] == json::parse(first.out)["colliding_points"]);
+  check_refused(work.run("--resume", "0.2"), 2, "exists already");
+  check_refused(work.run(""), 2, "exists already");
+  CHECK((bytes_of(work.output) == bytes));
+
+  std::string damaged = bytes;
+  damaged[damaged.size() / 2] ^= 1;
+  put_bytes(work.output, damaged);
+  check_refused(work.run("--resume"), 2, "exists already");
+
+  REQUIRE(work.run("--force --precision float").exit_code == 0);
+  check_refused(work.run("--resume"), 2, "exists already");
+  check_refused(work.run("--resume --precision float"), 2, "exists already");
 }
 
 TEST_CASE("an existing result stays until a resumed run replaces it, and only where asked for") {

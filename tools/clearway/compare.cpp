@@ -36,6 +36,7 @@ void add_compare(CLI::App& program, int& exit_code) {
   command
       ->add_option("--show", options->show, "Print the first N differing points with coordinates")
       ->type_name("N")
+      ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(

@@ -61,8 +61,12 @@ void run_convert(Options& options) {
   const std::string again = "the same command starts it again, from the beginning";
   stop_on_signals(again);
   ConsoleProgress progress;
-  if (options.resume) spdlog::info("a conversion keeps no journal: starts afresh");
   try {
+    if (options.resume && is_converted(conversion, progress)) {
+      spdlog::info("{}: is the store of these inputs already; nothing to do",
+                   conversion.output.string());
+      return;
+    }
     log_report(conversion, convert(conversion, progress));
   } catch (const Interrupted&) {
     throw Interrupted(conversion.output.string() + ": interrupted; " + again);
@@ -105,7 +109,8 @@ void add_convert(CLI::App& program) {
       command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
   command
       ->add_flag("--resume", options->resume,
-                 "Convert again after a conversion that was interrupted or killed; it begins anew")
+                 "Leave the store of these inputs alone where it is there already; one that was "
+                 "interrupted or killed begins anew")
       ->excludes(force);
   command->footer(
       "Needs temporary disk beside the output: 20 bytes a point, 32 from standard input.\n"

@@ -75,7 +75,7 @@ CudaDevice open_one_with_room(const EngineOptions& options) {
 
 DeviceChoice choose_cuda(const EngineOptions& options) {
   if (const std::string why = why_no_cuda_device(); !why.empty()) {
-    throw ResourceError("--device cuda: " + why +
+    throw ResourceError((options.gpus.empty() ? "--device cuda: " : "--gpus: ") + why +
                         "; take --device cpu, or run where nvidia-smi lists a GPU");
   }
   return choice_of(options, options.gpus.empty() ? std::vector{open_one_with_room(options)}

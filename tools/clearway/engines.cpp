@@ -36,33 +36,12 @@ void check_tolerance(const Question& question, const EngineOptions& options) {
   }
 }
 
-/// What the engine cannot do is refused with the name of one that can.
-void check(const Question& question, const EngineOptions& options) {
-  constexpr std::uint64_t kPosesEnd = std::uint64_t{1} << 31;  // a tree numbers 2 n - 1 nodes
-  if (question.poses.size() >= kPosesEnd) {
-    throw InputError("the trajectory has " + std::to_string(question.poses.size()) +
-                     " poses, expected fewer than " + std::to_string(kPosesEnd));
-  }
-  if (question.tolerance > 0) check_tolerance(question, options);
-  if (question.clearance > 0 && question.between_poses) {
-    throw UsageError("--clearance and --between-poses cannot be combined: clearances are at poses");
-  }
-  if (question.clearance > 0 && options.engine == "kdtree") {
-    throw UsageError("--clearance: engine kdtree has no clearances; take --engine sweep");
-  }
-  if (options.engine == "grid" && (question.clearance > 0 || question.between_poses)) {
-    throw UsageError(std::string(question.clearance > 0 ? "--clearance" : "--between-poses") +
-                     ": engine grid does not offer it; take --engine sweep");
-  }
-  if (options.engine != "grid" && (options.grid_cell > 0 || options.float_precision)) {
-    throw UsageError("--grid-cell and --precision float are of --engine grid");
-  }
-  if (std::set(options.gpus.begin(), options.gpus.end()).size() < options.gpus.size()) {
-    throw UsageError("--gpus names a GPU twice");
-  }
-  if (options.device == "cpu" && (!options.gpus.empty() || options.device_memory_bytes > 0)) {
-    throw UsageError("--gpus and --device-memory are of --device cuda");
-  }
+/// The trees over the poses number up to 2 n - 1 nodes.
+void check_poses(const Question& question) {
+  constexpr std::uint64_t kEnd = std::uint64_t{1} << 31;
+  if (question.poses.size() < kEnd) return;
+  throw InputError("the trajectory has " + std::to_string(question.poses.size()) +
+                   " poses, expected fewer than " + std::to_string(kEnd));
 }
 
 PageEngineKind page_engine(const Store& store, const Question& question,
@@ -84,11 +63,40 @@ std::string chosen_engine(const EngineOptions& options) {
   return options.engine == "auto" ? "sweep" : options.engine;
 }
 
+void check_question(const Question& question, const EngineOptions& options) {
+  EngineOptions chosen = options;
+  chosen.engine = chosen_engine(options);
+  if (question.tolerance > 0) check_tolerance(question, chosen);
+  if (question.clearance > 0 && question.between_poses) {
+    throw UsageError("--clearance and --between-poses cannot be combined: clearances are at poses");
+  }
+  if (question.clearance > 0 && chosen.engine == "kdtree") {
+    throw UsageError("--clearance: engine kdtree has no clearances; take --engine sweep");
+  }
+  if (chosen.engine == "grid" && (question.clearance > 0 || question.between_poses)) {
+    throw UsageError(std::string(question.clearance > 0 ? "--clearance" : "--between-poses") +
+                     ": engine grid does not offer it; take --engine sweep");
+  }
+  if (chosen.engine != "grid" && (options.grid_cell > 0 || options.float_precision)) {
+    throw UsageError("--grid-cell and --precision float are of --engine grid");
+  }
+  if (chosen.engine == "kdtree" && (options.field_voxel > 0 || options.device_memory_bytes > 0)) {
+    throw UsageError("--field-voxel and --device-memory are not of --engine kdtree");
+  }
+  if (std::set(options.gpus.begin(), options.gpus.end()).size() < options.gpus.size()) {
+    throw UsageError("--gpus names a GPU twice");
+  }
+  if (options.device == "cpu" && (!options.gpus.empty() || options.device_memory_bytes > 0)) {
+    throw UsageError("--gpus and --device-memory are of --device cuda");
+  }
+}
+
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
                   const OpenJournal& open_journal, Progress& progress, EngineReport& report) {
   EngineOptions resolved = options;
   resolved.engine = chosen_engine(options);
-  check(question, resolved);
+  check_question(question, options);
+  check_poses(question);
   const DeviceChoice device = choose_device(resolved);
   if (options.threads == 0) resolved.threads = tbb::this_task_arena::max_concurrency();
   report.engine = resolved.engine;

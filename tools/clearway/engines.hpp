@@ -62,6 +62,10 @@ using OpenJournal =
 /// The engine that these options choose: "sweep", "grid" or "kdtree".
 std::string chosen_engine(const EngineOptions& options);
 
+/// Throws UsageError, with the name of one that can, where the engine cannot answer such a
+/// question, whatever its model and poses.
+void check_question(const Question& question, const EngineOptions& options);
+
 /// Answers the question with the engine and device chosen, as far as the journal does not. Throws
 /// UsageError where that engine cannot, ResourceError where the device is not there or, before
 /// cells are read, where a memory bound is too little; InputError for a damaged cell or a journal

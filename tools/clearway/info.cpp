@@ -77,6 +77,7 @@ ordered_json describe(const ResultReader& result) {
     description["tolerance"] = h.tolerance;
     description["engine"] = h.engine;
   }
+  if (h.float_precision) description["precision"] = "float";
   return description;
 }
 

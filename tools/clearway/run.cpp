@@ -33,10 +33,11 @@ constexpr const char* kHowToResume =
 struct Inputs {
   explicit Inputs(const RunOptions& options)
       : store(options.environment),
-        model(read_model(options.model)),
+        model(read_model(options.model, &model_info)),
         poses(read_trajectory(options.trajectory, options.trajectory_options)) {}
 
   Store store;
+  CloudInfo model_info;
   std::vector<Vec3> model;
   std::vector<Pose> poses;
 };
@@ -55,8 +56,20 @@ ResultHeader header_of(const Inputs& inputs, const RunOptions& options) {
           .between_poses = options.between_poses,
           .tolerance = options.tolerance,
           .engine = options.tolerance > 0 ? chosen_engine(options.engine) : "",
+          .float_precision = options.engine.float_precision,
           .quantisation = metadata.quantisation,
           .crs_wkt = metadata.crs_wkt};
+}
+
+Question question_of(const RunOptions& options, std::span<const Vec3> model,
+                     std::span<const Pose> poses) {
+  return {.model = model,
+          .poses = poses,
+          .radius = options.radius,
+          .first_pose = options.first_pose,
+          .between_poses = options.between_poses,
+          .clearance = options.clearance,
+          .tolerance = options.tolerance};
 }
 
 nlohmann::ordered_json seconds_of(const EngineReport& engine, const Seconds& seconds) {
@@ -118,7 +131,24 @@ nlohmann::ordered_json report_of(const Inputs& inputs, const RunOptions& options
           {"seconds", seconds_of(engine, seconds)}};
 }
 
-void warn_of(const Inputs& inputs) {
+/// Of an answer that was there already: without what a search would tell.
+nlohmann::ordered_json report_of(const ResultReader& result) {
+  const ResultHeader& header = result.header();
+  return {{"environment_points", header.environment_points},
+          {"model_points", header.model_points},
+          {"poses", header.poses},
+          {"colliding_points", result.collisions()},
+          {"clearance_points", result.clearances()}};
+}
+
+void warn_of(const Inputs& inputs, const RunOptions& options) {
+  if (inputs.model_info.faces > 0) {
+    spdlog::warn(
+        "{}: its {} faces are not read: the model is its {} points; sample the surface where "
+        "they are farther apart than the radius",
+        options.model.string(), format_count(inputs.model_info.faces),
+        format_count(inputs.model.size()));
+  }
   if (inputs.poses.empty()) spdlog::warn("the trajectory has no poses: nothing can collide");
   const LengthUnit unit = inputs.store.metadata().unit;
   if (unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) {
@@ -129,6 +159,7 @@ void warn_of(const Inputs& inputs) {
 void run(const RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
+  check_question(question_of(options, {}, {}), options.engine);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   PendingFile output(options.output, options.force || options.resume);
   stop_on_signals(kHowToResume);
@@ -136,19 +167,14 @@ void run(const RunOptions& options) {
   ConsoleProgress progress;
   Seconds seconds;
   const Inputs inputs(options);
-  warn_of(inputs);
+  warn_of(inputs, options);
   const ResultHeader header = header_of(inputs, options);
-  if (journal.already_answered(inputs.store, header)) {
+  if (journal.already_answered(inputs.store, header, progress)) {
     spdlog::info("{}: is the answer already; nothing to do", options.output.string());
+    if (options.json) print(report_of(ResultReader(options.output)).dump(2) + "\n");
     return;
   }
-  const Question question{.model = inputs.model,
-                          .poses = inputs.poses,
-                          .radius = options.radius,
-                          .first_pose = options.first_pose,
-                          .between_poses = options.between_poses,
-                          .clearance = options.clearance,
-                          .tolerance = options.tolerance};
+  const Question question = question_of(options, inputs.model, inputs.poses);
   seconds.inputs = total.seconds();
   EngineReport engine;
   throw_if_stopped(progress);
@@ -163,8 +189,12 @@ void run(const RunOptions& options) {
   engine.resumed_poses = journal.earlier().poses;
 
   const Stopwatch write;
-  write_answer(inputs.store, answer, header, output.partial(), engine.write_bytes, progress);
-  output.publish();
+  try {
+    write_answer(inputs.store, answer, header, output.partial(), engine.write_bytes, progress);
+    output.publish();
+  } catch (const ResourceError& error) {
+    throw ResourceError(std::string(error.what()) + "; " + kHowToResume);
+  }
   journal.remove();
   seconds.write = write.seconds();
   seconds.total = total.seconds();

@@ -5,6 +5,7 @@
 
 #include "clearway/options.hpp"
 #include "core/error.hpp"
+#include "io/verify_result.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -53,9 +54,10 @@ JournalIdentity identity_of(const Store& store, const ResultHeader& header,
   return identity;
 }
 
-bool answers(const fs::path& file, const ResultHeader& question) {
+bool answers(const fs::path& file, const ResultHeader& question, Progress& progress) {
   try {
-    return ResultReader(file).header() == question;
+    const ResultReader result(file);
+    return result.header() == question && verify_result(result, progress).empty();
   } catch (const InputError&) {
     return false;
   }
@@ -76,7 +78,9 @@ RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
       replaces_(options.force && fs::exists(options.output)) {
   std::error_code none;
   if (!fs::exists(fs::symlink_status(path_, none))) {
-    if (options.resume) spdlog::info("{}: no journal to resume, starts afresh", path_.string());
+    if (options.resume && !fs::exists(options.output)) {
+      spdlog::info("{}: no journal to resume, starts afresh", path_.string());
+    }
     return;
   }
   if (!fs::is_regular_file(fs::symlink_status(path_)) ||
@@ -111,21 +115,25 @@ RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
   read_.emplace(std::move(read));
 }
 
-bool RunJournal::already_answered(const Store& store, const ResultHeader& header) {
+bool RunJournal::already_answered(const Store& store, const ResultHeader& header,
+                                  Progress& progress) {
   if (replaces_) return false;
-  if (read_ && fs::exists(options_.output)) {
-    const JournalIdentity& earlier = *read_->identity();
-    const bool same =
-        difference(earlier, identity_of(store, header, options_.engine, value_of(earlier, "engine"),
-                                        value_of(earlier, "device"), false))
-            .empty();
-    if (same && answers(options_.output, header)) {
-      remove();
-      return true;
-    }
+  if (options_.resume && fs::exists(options_.output) && is_of(store, header) &&
+      answers(options_.output, header, progress)) {
+    if (read_) remove();
+    return true;
   }
   output_.refuse_existing();
   return false;
+}
+
+bool RunJournal::is_of(const Store& store, const ResultHeader& header) const {
+  if (!read_) return header.tolerance == 0 && !header.float_precision;
+  const JournalIdentity& earlier = *read_->identity();
+  return difference(earlier,
+                    identity_of(store, header, options_.engine, value_of(earlier, "engine"),
+                                value_of(earlier, "device"), false))
+      .empty();
 }
 
 AnswerJournal& RunJournal::open(const Store& store, const Question& question,

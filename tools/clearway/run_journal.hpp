@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clearway/run_options.hpp"
+#include "core/progress.hpp"
 #include "io/journal.hpp"
 #include "io/pending_file.hpp"
 #include "io/result.hpp"
@@ -21,10 +22,10 @@ class RunJournal {
   /// The output is this process's alone; output and options outlive it.
   RunJournal(PendingFile& output, const RunOptions& options);
 
-  /// Whether the earlier run published its result, of this question, and was only kept from
-  /// removing its journal; that is then done. Throws UsageError where another output is there that
-  /// this run may not overwrite.
-  bool already_answered(const Store& store, const ResultHeader& header);
+  /// Whether, with options.resume, the output is there, intact, and answers this question: exactly,
+  /// or from an earlier run that was only kept from removing its journal. A journal is removed
+  /// then. Throws UsageError where another output is there that this run may not overwrite.
+  bool already_answered(const Store& store, const ResultHeader& header, Progress& progress);
 
   /// The journal of this question, engine and device to keep the answer in. Throws UsageError,
   /// naming what differs, where the earlier one is of others.
@@ -38,6 +39,8 @@ class RunJournal {
   const JournalledWork& earlier() const { return earlier_; }
 
  private:
+  bool is_of(const Store& store, const ResultHeader& header) const;
+
   PendingFile& output_;
   const RunOptions& options_;
   std::filesystem::path path_;

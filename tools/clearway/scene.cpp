@@ -39,7 +39,7 @@ Scenes (environment points, model points, poses; the defaults):
 
 Examples:
   clearway scene hall -o hall --points 5000000
-  clearway scene mine -o mine --environment - | clearway convert - -o mine/site.h5)";
+  clearway scene mine -o mine --environment - | clearway convert - -o mine.h5)";
 
 scene::Sizes sizes_of(const SceneOptions& options) {
   const scene::Sizes full = scene::full_sizes(scene::kind_named(options.kind));
@@ -139,7 +139,9 @@ void add_scene(CLI::App& program) {
   count("--model-points", options->model_points, 100'000'000,
         "Model points (default: the paper's)");
   count("--poses", options->poses, 1'000'000'000, "Poses of the trajectory (default: the paper's)");
-  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all random numbers")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command
       ->add_option("--environment", options->environment,
                    "\"-\" writes the environment to standard output instead of a file")

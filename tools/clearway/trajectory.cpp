@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "clearway/options.hpp"
 #include "clearway/signals.hpp"
 #include "clearway/standard_output.hpp"
+#include "core/error.hpp"
 #include "core/point_box.hpp"
 #include "core/resample_trajectory.hpp"
 #include "core/thin_trajectory.hpp"
@@ -62,12 +64,16 @@ void write_changed(const Options& options, const Change& change) {
   const std::vector<Pose> before = read_trajectory(options.input, options.trajectory);
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   const Box model = box_of(read_model(options.model));
+  const double motion_before = largest_motion(model, before);
+  if (!std::isfinite(motion_before)) {
+    throw InputError(options.input.string() +
+                     ": poses too far apart: the motion from one to the next is no finite number");
+  }
   ConsoleProgress progress;
   const std::vector<Pose> after = changed(before, model, options, change, progress);
   write_trajectory(after, File::create(output.partial()), progress);
   output.publish();
 
-  const double motion_before = largest_motion(model, before);
   const double motion_after = largest_motion(model, after);
   spdlog::info(
       "{}: {} poses, from {}; the largest motion from one to the next {:.6g} m, was {:.6g} m",

@@ -17,34 +17,37 @@ namespace {
 
 constexpr std::uint64_t kBatchPoints = 1 << 15;
 
-/// Sweeps of consecutive batches: scanned in parallel, written in order.
+/// Sweeps of consecutive batches: scanned in parallel, written in order. Points lie in a ring, a
+/// place a batch in flight: what oneTBB holds between two stages is lost when a stage throws.
 void scan_in_order(const Scanner& scanner, int threads, LasWriter& writer, Progress& progress) {
   const std::uint64_t sweeps = scanner.plan().sweeps();
   const std::uint64_t batch =
       std::max<std::uint64_t>(1, kBatchPoints / scanner.plan().rays_a_sweep);
+  std::vector<Scanner::Points> ring(static_cast<std::size_t>(4 * threads));
   std::uint64_t next = 0;
   const auto number = [&](tbb::flow_control& flow) {
     throw_if_stopped(progress);
-    const std::uint64_t first = next;
-    if (first >= sweeps) flow.stop();
-    next += batch;
-    return first;
+    if (next * batch >= sweeps) flow.stop();
+    return next++;
   };
-  const auto scan = [&](std::uint64_t first) {
-    Scanner::Points points;
+  const auto scan = [&](std::uint64_t index) {
+    Scanner::Points& points = ring[index % ring.size()];
+    points.clear();
     points.reserve((batch + 1) * scanner.plan().rays_a_sweep);
-    for (std::uint64_t i = first; i < std::min(first + batch, sweeps); ++i) scanner.scan(i, points);
-    return points;
+    const std::uint64_t end = std::min((index + 1) * batch, sweeps);
+    for (std::uint64_t i = index * batch; i < end; ++i) scanner.scan(i, points);
+    return index;
   };
-  const auto write = [&](const Scanner::Points& points) {
+  const auto write = [&](std::uint64_t index) {
+    const Scanner::Points& points = ring[index % ring.size()];
     writer.write(points);
     progress.advance(points.size());
   };
   tbb::parallel_pipeline(
-      static_cast<std::size_t>(4 * threads),
+      ring.size(),
       tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order, number) &
-          tbb::make_filter<std::uint64_t, Scanner::Points>(tbb::filter_mode::parallel, scan) &
-          tbb::make_filter<Scanner::Points, void>(tbb::filter_mode::serial_in_order, write));
+          tbb::make_filter<std::uint64_t, std::uint64_t>(tbb::filter_mode::parallel, scan) &
+          tbb::make_filter<std::uint64_t, void>(tbb::filter_mode::serial_in_order, write));
 }
 
 }  // namespace

@@ -21,6 +21,8 @@
 #include "io/convert/pack_unit.hpp"
 #include "io/file.hpp"
 #include "io/pending_file.hpp"
+#include "io/point_reader.hpp"
+#include "io/store.hpp"
 #include "io/store_writer.hpp"
 #include "io/xxh64.hpp"
 
@@ -92,12 +94,14 @@ SourceFile describe(const std::filesystem::path& path, const std::stop_token& st
 /// Describes the inputs on a thread of its own, while they are counted; gives up when it goes.
 class SourceDescription {
  public:
-  SourceDescription(const std::vector<std::filesystem::path>& files, const Progress& progress)
-      : sources_(std::async(std::launch::async, [&files, &progress, stop = stop_.get_token()] {
-          std::vector<SourceFile> sources;
-          for (const auto& file : files) sources.push_back(describe(file, stop, progress));
-          return sources;
-        })) {}
+  SourceDescription(std::vector<std::filesystem::path> files, const Progress& progress)
+      : sources_(std::async(std::launch::async,
+                            [files = std::move(files), &progress, stop = stop_.get_token()] {
+                              std::vector<SourceFile> sources;
+                              for (const auto& file : files)
+                                sources.push_back(describe(file, stop, progress));
+                              return sources;
+                            })) {}
   ~SourceDescription() { stop_.request_stop(); }
 
   std::vector<SourceFile> get() { return sources_.get(); }
@@ -281,7 +285,29 @@ class Conversion {
   Stopwatch watch_;
 };
 
+/// None where there is no sound store.
+std::optional<StoreMetadata> metadata_of(const std::filesystem::path& store) {
+  if (!std::filesystem::is_regular_file(store)) return std::nullopt;
+  try {
+    return Store(store).metadata();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
+
+bool is_converted(const ConversionOptions& options, const Progress& progress) {
+  if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
+  const std::optional<StoreMetadata> found = metadata_of(options.output);
+  const auto wanted = [&options](double scale) {
+    return !options.scale || scale == *options.scale;
+  };
+  return found && found->cell_points == options.cell_points &&
+         found->layout == layout_name(options.regular_size) &&
+         std::all_of(found->quantisation.scale, found->quantisation.scale + 3, wanted) &&
+         SourceDescription(list_point_files(options.inputs), progress).get() == found->sources;
+}
 
 ConversionReport convert(const ConversionOptions& options, Progress& progress) {
   check_options(options);

@@ -43,4 +43,9 @@ struct ConversionReport {
 /// to stop; whatever happens, nothing stands under the output's name that is not complete.
 ConversionReport convert(const ConversionOptions& options, Progress& progress);
 
+/// Whether the output is there already and is the store of these inputs, by names and contents,
+/// with these options. Never of a stream. Throws ResourceError where an input is missing;
+/// Interrupted.
+bool is_converted(const ConversionOptions& options, const Progress& progress);
+
 }  // namespace clearway
