@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
-#include "io/file.hpp"
 #include "io/hdf5.hpp"
 #include "io/result.hpp"
 #include "io/result_names.hpp"
@@ -181,7 +180,6 @@ struct ResultReader::State {
 };
 
 ResultReader::ResultReader(const std::filesystem::path& path) {
-  File::open_for_reading(path);
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
 }
 
