@@ -17,7 +17,6 @@ class ModelTree {
   explicit ModelTree(std::span<const Vec3> model);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
-  bool empty() const { return points_.empty(); }
   const Vec3& point(std::uint32_t index) const { return points_[index]; }
   const Box& box() const { return box_; }
 

@@ -1,6 +1,8 @@
 #include "core/packed_chunk.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 #include <string>
 
 namespace clearway {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "core/packed_cloud.hpp"
 #include "core/page_engine.hpp"

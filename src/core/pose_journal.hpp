@@ -51,8 +51,6 @@ class PoseMarkLog {
     marks_.clear();
   }
 
-  static constexpr std::uint64_t most_bytes() { return kMarks * sizeof(PoseMark); }
-
  private:
   static constexpr std::size_t kMarks = 4096;
 

@@ -30,7 +30,6 @@ class EnvironmentTree {
   EnvironmentTree(const PackedCloud& cloud, int threads);
 
   const PackedCloud& cloud() const { return cloud_; }
-  bool empty() const { return cloud_.tree().empty(); }
   EnvironmentNode root() const { return from_top(0); }
 
   /// The two halves of a node that is not a block.

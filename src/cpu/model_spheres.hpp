@@ -36,7 +36,6 @@ class ModelSpheres {
   /// InputError for a model of 2^28 or more points.
   ModelSpheres(std::span<const Vec3> model, double leaf_radius);
 
-  bool empty() const { return nodes_.empty(); }
   /// Node 0 is the root.
   const ModelSphere& node(std::uint32_t index) const { return nodes_[index]; }
   const Box& box() const { return box_; }

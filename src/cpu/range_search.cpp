@@ -1,7 +1,6 @@
 #include "cpu/range_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <limits>
 

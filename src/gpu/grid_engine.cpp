@@ -1,9 +1,7 @@
 #include "gpu/grid_engine.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <deque>
-#include <string>
 
 #include "core/error.hpp"
 #include "gpu/cuda_stream.hpp"

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/device_bits.hpp"
 #include "gpu/sweep_page.hpp"
 #include "gpu/sweep_walk.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/device_bits.hpp"
 #include "core/spread_order.hpp"
 #include "core/sweep_ref.hpp"
 #include "gpu/warp.hpp"

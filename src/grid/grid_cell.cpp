@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "grid/grid_search.hpp"
+#include "grid/grid_task.hpp"
 
 namespace clearway {
 namespace {

@@ -35,7 +35,6 @@ struct GridCpuEngine::Slot {
 
   void build(const GridScene& scene);
   void search(const GridScene& scene, std::uint64_t task, std::uint32_t work_list);
-  std::uint64_t allocated_bytes() const;
 
   struct alignas(kPageAlignment) Line {
     std::byte bytes[kPageAlignment];
@@ -111,14 +110,6 @@ void GridCpuEngine::Slot::search(const GridScene& scene, std::uint64_t index,
   search_open();
 }
 
-std::uint64_t GridCpuEngine::Slot::allocated_bytes() const {
-  const auto bytes = [](const auto&... vectors) {
-    return (std::uint64_t{0} + ... + (vectors.capacity() * sizeof(vectors[0])));
-  };
-  return bytes(page, entry_runs, cells, cell_runs, sorted, keys, order, points, buckets, occupancy,
-               group_occupancy, hits, done, first_poses, latest, open);
-}
-
 GridCpuEngine::GridCpuEngine(const GridScene& scene, const SlotLayout& layout,
                              std::uint32_t work_list)
     : scene_(scene), layout_(layout), work_list_(std::max(1U, work_list)) {
@@ -174,12 +165,6 @@ PageAnswer GridCpuEngine::finish(std::uint32_t slot) { return slots_[slot]->answ
 GridStatistics GridCpuEngine::statistics() const {
   const std::lock_guard lock(mutex_);
   return statistics_;
-}
-
-std::uint64_t GridCpuEngine::allocated_bytes() const {
-  std::uint64_t bytes = 0;
-  for (const auto& slot : slots_) bytes += slot->allocated_bytes();
-  return bytes;
 }
 
 std::uint64_t GridCpuEngine::slot_bytes(const GridScene& scene, const SlotLayout& layout) {

@@ -29,7 +29,6 @@ class GridCpuEngine final : public PageEngine {
 
   /// Of all pages finished.
   GridStatistics statistics() const;
-  std::uint64_t allocated_bytes() const;
 
   /// What one slot takes, bytes, at the most.
   static std::uint64_t slot_bytes(const GridScene& scene, const SlotLayout& layout);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/device_bits.hpp"
 #include "core/macros.hpp"
 #include "grid/grid_view.hpp"
 
@@ -11,23 +12,9 @@
 /// place are searched together; that costs time, never an answer.
 namespace clearway {
 
-/// Ors into a word that others write too.
+/// or_into, left out where the bits are set already.
 CLEARWAY_HD inline void or_bits(std::uint64_t& word, std::uint64_t bits) {
-  if ((word & bits) == bits) return;
-#ifdef __CUDA_ARCH__
-  atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
-#else
-  word |= bits;
-#endif
-}
-
-/// Place of the lowest set bit of a word that is not 0.
-CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t word) {
-#ifdef __CUDA_ARCH__
-  return static_cast<std::uint32_t>(__ffsll(static_cast<long long>(word)) - 1);
-#else
-  return static_cast<std::uint32_t>(__builtin_ctzll(word));
-#endif
+  if ((word & bits) != bits) or_into(&word, bits);
 }
 
 /// Monotone in x; |x * per_metre| < 2^22.

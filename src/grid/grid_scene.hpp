@@ -34,7 +34,6 @@ class GridScene {
   std::span<const GridNode> nodes() const { return nodes_; }
   std::span<const std::uint32_t> runs() const { return runs_; }
   bool first_pose() const { return first_pose_; }
-  std::uint32_t blocks_per_cell() const { return view_.slots / kBlockPoints; }
   double grid_cell() const { return grid_cell_; }  ///< metres
   double group_radius() const { return group_radius_; }
 

@@ -1,53 +1,16 @@
 #pragma once
 
-#include <cfloat>
-
+#include "core/device_bits.hpp"
 #include "core/hit_set.hpp"
 #include "core/predicate.hpp"
+#include "core/sweep_bounds.hpp"
 #include "grid/float_predicate.hpp"
 #include "grid/grid_build.hpp"
+#include "grid/grid_task.hpp"
 
 /// Bodies of the search. Every bound: docs/numerics.md, "Grid".
 /// Source: Schauer et al. (the paper), section 3.2.
 namespace clearway {
-
-/// One cell, at most kRunPoses poses and kTaskParts parts of the model.
-struct GridTask {
-  std::uint32_t cell;
-  std::uint32_t node;
-  std::uint32_t first_part;
-};
-
-CLEARWAY_HD inline std::uint32_t task_slices(const GridSceneView& scene) {
-  return static_cast<std::uint32_t>(divide_up(scene.part_count, kTaskParts));
-}
-
-/// The last i below n with starts[i] <= value; starts ascend from 0.
-template <typename Value>
-CLEARWAY_HD inline std::uint32_t last_not_above(const Value* starts, std::uint32_t n, Value value) {
-  std::uint32_t lo = 0;
-  for (std::uint32_t hi = n; hi - lo > 1;) {
-    const std::uint32_t middle = lo + (hi - lo) / 2;
-    (starts[middle] <= value ? lo : hi) = middle;
-  }
-  return lo;
-}
-
-/// Task `index` below cell_runs[cells] * task_slices.
-CLEARWAY_HD inline GridTask task_of(const GridSceneView& scene, const GridPageView& page,
-                                    std::uint64_t index) {
-  const std::uint32_t slices = task_slices(scene);
-  const std::uint64_t run = index / slices;
-  const std::uint32_t cell = last_not_above(page.cell_runs, page.page.shape.cells, run);
-  const GridCell& grid = page.cells[cell];
-  const auto in_cell = static_cast<std::uint32_t>(run - page.cell_runs[cell]);
-  const std::uint32_t* starts = page.entry_runs + grid.first_entry;
-  const std::uint32_t entry = last_not_above(starts, grid.node_count, in_cell);
-  std::uint32_t node = page.page.nodes(page.page.cell(cell))[entry];
-  const GridNode& planned = scene.nodes[node];
-  if (planned.count > kRunPoses) node = scene.runs[planned.first_run + (in_cell - starts[entry])];
-  return {cell, node, static_cast<std::uint32_t>(index % slices) * kTaskParts};
-}
 
 /// Where a sphere's centre is at a pose, and how far from it a point may be that the sphere's
 /// points touch.
@@ -59,12 +22,12 @@ struct MovedSphere {
 CLEARWAY_HD inline MovedSphere moved(const GridSceneView& scene, const GridSphere& sphere,
                                      std::uint32_t pose, double spread) {
   const double sum = scene.search_radius + scene.bounds[pose].stretch * sphere.radius + spread;
-  return {transform(scene.poses[pose], sphere.centre), sum * (1 + 32 * (DBL_EPSILON / 2)) + 1e-150};
+  return {transform(scene.poses[pose], sphere.centre), sum * (1 + 32 * kUnitRoundoff) + 1e-150};
 }
 
 /// False only when no point of the box can be touched. An overflow dismisses nothing.
 CLEARWAY_HD inline bool may_touch(const Box& box, const MovedSphere& sphere) {
-  const double squared = sphere.reach * sphere.reach * (1 + 8 * (DBL_EPSILON / 2));
+  const double squared = sphere.reach * sphere.reach * (1 + 8 * kUnitRoundoff);
   return !(least_squared_distance(box, sphere.centre) > squared);
 }
 
@@ -105,13 +68,7 @@ CLEARWAY_HD inline void mark_hit(const GridSceneView& scene, const GridPageView&
                                  std::uint32_t cell, std::uint32_t index, std::uint32_t pose) {
   const std::uint64_t slot = std::uint64_t{cell} * scene.slots + index;
   or_bits(page.hits[slot / kBlockPoints], std::uint64_t{1} << (slot % kBlockPoints));
-  if (page.first_poses == nullptr) return;
-  std::uint32_t& first = page.first_poses[slot];
-#ifdef __CUDA_ARCH__
-  atomicMin(&first, pose);
-#else
-  if (pose < first) first = pose;
-#endif
+  if (page.first_poses != nullptr) lower_to(&page.first_poses[slot], pose);
 }
 
 /// The decision about a pair: the predicate's, or that of floats alone. m: as moved.

@@ -1,26 +1,12 @@
 #include "io/compare_results.hpp"
 
-#include <array>
-#include <charconv>
-#include <cinttypes>
-#include <cstdio>
-
 #include "core/error.hpp"
+#include "io/refusal.hpp"
 #include "io/result_cursor.hpp"
+#include "io/xxh64.hpp"
 
 namespace clearway {
 namespace {
-
-std::string hash_text(std::uint64_t hash) {
-  std::array<char, 17> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, hash);
-  return digits.data();
-}
-
-std::string number_text(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
 
 std::string content_text(std::uint64_t count, const char* unit, std::uint64_t hash) {
   return std::to_string(count) + " " + unit + ", hash " + hash_text(hash);
@@ -32,19 +18,19 @@ std::string environment_text(const ResultHeader& header) {
 
 std::string quantisation_text(const Quantisation& quantisation) {
   std::string text = "scale";
-  for (const double scale : quantisation.scale) text.append(" ").append(number_text(scale));
+  for (const double scale : quantisation.scale) text.append(" ").append(shown(scale));
   text += ", offset";
-  for (const double offset : quantisation.offset) text.append(" ").append(number_text(offset));
+  for (const double offset : quantisation.offset) text.append(" ").append(shown(offset));
   return text;
 }
 
 std::string clearance_text(const ResultHeader& header) {
-  return header.clearance > 0 ? number_text(header.clearance) + " m" : "not asked for";
+  return header.clearance > 0 ? shown(header.clearance) + " m" : "not asked for";
 }
 
 std::string tolerance_text(const ResultHeader& header) {
   if (!(header.tolerance > 0)) return "none: exact";
-  return number_text(header.tolerance) + " m, engine " + header.engine;
+  return shown(header.tolerance) + " m, engine " + header.engine;
 }
 
 std::vector<QuestionDifference> question_differences(const ResultHeader& a, const ResultHeader& b) {
@@ -56,7 +42,7 @@ std::vector<QuestionDifference> question_differences(const ResultHeader& a, cons
          content_text(b.model_points, "points", b.model_hash));
   differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
          content_text(b.poses, "poses", b.trajectory_hash));
-  differ("radius", number_text(a.radius) + " m", number_text(b.radius) + " m");
+  differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");
   differ("first poses", a.first_pose ? "asked for" : "not asked for",
          b.first_pose ? "asked for" : "not asked for");
   differ("clearance", clearance_text(a), clearance_text(b));

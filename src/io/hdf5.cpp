@@ -68,10 +68,6 @@ void check_superblock(const File& file) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// The innermost description of HDF5's last failure.
 std::string description() {
   std::string text;

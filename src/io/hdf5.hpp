@@ -13,7 +13,7 @@
 /// Owners and the few calls of HDF5 that Clearway makes. All HDF5 calls of a file are made by one
 /// thread. Files are written with H5F_LIBVER_V110 on both bounds, no object times, fletcher32 on
 /// every unpacked dataset and fixed-length strings, so that equal contents give equal bytes and
-/// damaged metadata is noticed (design section 3).
+/// damaged metadata is noticed (docs/store-format.md).
 namespace clearway::hdf5 {
 
 /// HDF5 could not do it though no system call failed: of a file that is read, damaged contents.
@@ -111,14 +111,24 @@ template <typename Number>
 void write_attribute(const Id& object, const std::string& name, std::span<const Number> values);
 void write_attribute(const Id& object, const std::string& name, const std::string& text);
 
+/// An attribute of one number.
+template <typename Number>
+void write_number(const Id& object, const std::string& name, Number value) {
+  write_attribute<Number>(object, name, std::span(&value, 1));
+}
+
 /// Throws like read_attribute where that cannot be told.
 bool has_attribute(const Id& object, const std::string& name, const std::string& file);
 template <typename Number>
 std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
                                    const std::string& file);
+template <typename Number>
+Number read_number(const Id& object, const std::string& name, const std::string& file) {
+  return read_attribute<Number>(object, name, 1, file).front();
+}
 std::string read_text_attribute(const Id& object, const std::string& name, const std::string& file);
 
-/// A one-dimensional dataset written or read by ranges of rows.
+/// A one- or two-dimensional dataset written or read by ranges of rows.
 template <typename Number>
 class Rows {
  public:

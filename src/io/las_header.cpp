@@ -1,6 +1,5 @@
 #include "io/las_header.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "core/quantisation.hpp"
 #include "io/input_buffer.hpp"

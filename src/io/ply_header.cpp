@@ -1,11 +1,11 @@
 #include "io/ply_header.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <string_view>
 #include <utility>
 
+#include "io/column_names.hpp"
 #include "io/refusal.hpp"
 
 namespace clearway {
@@ -13,17 +13,6 @@ namespace {
 
 constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;  // bytes
 constexpr std::size_t kLargestElement = std::size_t{1} << 16;     // bytes
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t start = line.find_first_not_of(" \t", at);
-    if (start == std::string_view::npos) break;
-    at = std::min(line.find_first_of(" \t", start), line.size());
-    words.push_back(line.substr(start, at - start));
-  }
-  return words;
-}
 
 std::optional<PlyType> type_named(std::string_view name) {
   static constexpr std::pair<std::string_view, PlyType> kTypes[] = {
@@ -76,7 +65,9 @@ class HeaderParser {
                                 " within the header; expected " +
                                 (input_.line() <= 1 ? "`ply`" : "`end_header`"));
     }
-    return words_of(line);
+    std::vector<std::string_view> words;
+    split_fields(line, ' ', words);
+    return words;
   }
 
   void read_format() {

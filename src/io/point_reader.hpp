@@ -61,8 +61,8 @@ std::unique_ptr<PointReader> open_las_stream(File stream);
 
 /// The point files of a list of inputs in the order that counts: the inputs as given, a folder's
 /// files in byte order of their names (not recursive; hidden files, and files whose ending is not
-/// that of a point format alone, such as .md, .txt and .csv, are left out). Throws InputError for a
-/// missing input and for a folder without any point file.
+/// that of a point format alone, such as .md, .txt and .csv, are left out). Throws ResourceError
+/// for a missing input, InputError for a folder without any point file.
 std::vector<std::filesystem::path> list_point_files(
     const std::vector<std::filesystem::path>& inputs);
 

@@ -1,6 +1,7 @@
 #include "io/refusal.hpp"
 
 #include <charconv>
+#include <cstdio>
 
 #include "core/error.hpp"
 
@@ -30,6 +31,12 @@ std::string excerpt(std::string_view text) {
 std::string shown(double value) {
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+std::string brief(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.9g", value);
+  return digits;
 }
 
 }  // namespace clearway

@@ -13,7 +13,7 @@ namespace clearway {
 
 /// What a result says of its question: a function of the source points, the model, the trajectory
 /// and the parameters, and but for the engine and the precision where they are part of the answer,
-/// of nothing else (design section 4), so that `cmp` compares runs.
+/// of nothing else (docs/result-format.md), so that `cmp` compares runs.
 struct ResultHeader {
   std::uint64_t environment_points = 0;
   std::uint64_t environment_hash = 0;  ///< of the source points, whatever file format or layout

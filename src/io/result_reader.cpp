@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
-#include "io/file.hpp"
 #include "io/hdf5.hpp"
 #include "io/refusal.hpp"
 #include "io/result.hpp"
@@ -18,11 +17,6 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 std::span<double> as_numbers(std::span<Vec3> points) {
   return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
-}
-
-template <typename Number>
-Number read_number(const hdf5::Id& file, const std::string& attribute, const std::string& name) {
-  return hdf5::read_attribute<Number>(file, attribute, 1, name).front();
 }
 
 /// What HDF5 cannot do with a file that could be opened is taken for damaged content, unless a
@@ -42,13 +36,13 @@ void check_format(const hdf5::Id& file, const std::string& name) {
     throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
                      "\"; this HDF5 file is not a result of clearway run");
   }
-  const auto version = read_number<std::uint32_t>(file, "version", name);
+  const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
   if (version != names::kVersion) {
     throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
                      std::to_string(names::kVersion) + "; another release of clearway wrote it");
   }
   if (!hdf5::has_attribute(file, "complete", name) ||
-      read_number<std::uint8_t>(file, "complete", name) != 1) {
+      hdf5::read_number<std::uint8_t>(file, "complete", name) != 1) {
     throw InputError(name + ": not complete: the run that wrote it was interrupted");
   }
 }
@@ -68,21 +62,21 @@ void check_tolerance(const ResultHeader& header, const std::string& name) {
 ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
   check_format(file, name);
   ResultHeader header;
-  header.environment_points = read_number<std::uint64_t>(file, "environment_points", name);
-  header.environment_hash = read_number<std::uint64_t>(file, "environment_hash", name);
-  header.model_points = read_number<std::uint64_t>(file, "model_points", name);
-  header.model_hash = read_number<std::uint64_t>(file, "model_hash", name);
-  header.poses = read_number<std::uint64_t>(file, "poses", name);
-  header.trajectory_hash = read_number<std::uint64_t>(file, "trajectory_hash", name);
-  header.radius = read_number<double>(file, "radius", name);
-  header.first_pose = read_number<std::uint8_t>(file, "first_pose", name) != 0;
-  header.clearance = read_number<double>(file, "clearance", name);
-  header.between_poses = read_number<std::uint8_t>(file, "between_poses", name) != 0;
+  header.environment_points = hdf5::read_number<std::uint64_t>(file, "environment_points", name);
+  header.environment_hash = hdf5::read_number<std::uint64_t>(file, "environment_hash", name);
+  header.model_points = hdf5::read_number<std::uint64_t>(file, "model_points", name);
+  header.model_hash = hdf5::read_number<std::uint64_t>(file, "model_hash", name);
+  header.poses = hdf5::read_number<std::uint64_t>(file, "poses", name);
+  header.trajectory_hash = hdf5::read_number<std::uint64_t>(file, "trajectory_hash", name);
+  header.radius = hdf5::read_number<double>(file, "radius", name);
+  header.first_pose = hdf5::read_number<std::uint8_t>(file, "first_pose", name) != 0;
+  header.clearance = hdf5::read_number<double>(file, "clearance", name);
+  header.between_poses = hdf5::read_number<std::uint8_t>(file, "between_poses", name) != 0;
   read_axes(file, "scale", name, header.quantisation.scale);
   read_axes(file, "offset", name, header.quantisation.offset);
   header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
   if (hdf5::has_attribute(file, names::kTolerance, name)) {
-    header.tolerance = read_number<double>(file, names::kTolerance, name);
+    header.tolerance = hdf5::read_number<double>(file, names::kTolerance, name);
     header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
     check_tolerance(header, name);
   }
@@ -103,14 +97,14 @@ struct ResultReader::State {
       : name(path.string()),
         file(hdf5::open_file(path)),
         header(read_header(file, name)),
-        collisions_hash(read_number<std::uint64_t>(file, names::kCollisionsHash, name)),
+        collisions_hash(hdf5::read_number<std::uint64_t>(file, names::kCollisionsHash, name)),
         source(open<std::uint64_t>(names::kGroup, names::kSource, 0)),
         xyz(open<double>(names::kGroup, names::kXyz, 3)) {
     if (header.first_pose) {
       first_pose.emplace(open<std::uint32_t>(names::kGroup, names::kFirstPose, 0));
     }
     if (header.clearance > 0) {
-      clearance_hash = read_number<std::uint64_t>(file, names::kClearanceHash, name);
+      clearance_hash = hdf5::read_number<std::uint64_t>(file, names::kClearanceHash, name);
       clearance.emplace(
           ClearanceDatasets{open<std::uint64_t>(names::kClearanceGroup, names::kSource, 0),
                             open<double>(names::kClearanceGroup, names::kDistance, 0),
@@ -194,7 +188,6 @@ struct ResultReader::State {
 };
 
 ResultReader::ResultReader(const std::filesystem::path& path) {
-  File::open_for_reading(path);
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
 }
 

@@ -25,29 +25,24 @@ std::span<const double> as_numbers(std::span<const Vec3> points) {
   return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
 }
 
-template <typename Number>
-void write_number(const hdf5::Id& file, const std::string& name, Number value) {
-  hdf5::write_attribute(file, name, std::span<const Number>(&value, 1));
-}
-
 void write_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_attribute(file, "format", std::string(names::kFormat));
-  write_number(file, "version", names::kVersion);
-  write_number(file, "environment_points", header.environment_points);
-  write_number(file, "environment_hash", header.environment_hash);
-  write_number(file, "model_points", header.model_points);
-  write_number(file, "model_hash", header.model_hash);
-  write_number(file, "poses", header.poses);
-  write_number(file, "trajectory_hash", header.trajectory_hash);
-  write_number(file, "radius", header.radius);
-  write_number(file, "first_pose", static_cast<std::uint8_t>(header.first_pose));
-  write_number(file, "clearance", header.clearance);
-  write_number(file, "between_poses", static_cast<std::uint8_t>(header.between_poses));
+  hdf5::write_number(file, "version", names::kVersion);
+  hdf5::write_number(file, "environment_points", header.environment_points);
+  hdf5::write_number(file, "environment_hash", header.environment_hash);
+  hdf5::write_number(file, "model_points", header.model_points);
+  hdf5::write_number(file, "model_hash", header.model_hash);
+  hdf5::write_number(file, "poses", header.poses);
+  hdf5::write_number(file, "trajectory_hash", header.trajectory_hash);
+  hdf5::write_number(file, "radius", header.radius);
+  hdf5::write_number(file, "first_pose", static_cast<std::uint8_t>(header.first_pose));
+  hdf5::write_number(file, "clearance", header.clearance);
+  hdf5::write_number(file, "between_poses", static_cast<std::uint8_t>(header.between_poses));
   hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
   hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
   if (header.tolerance > 0) {
-    write_number(file, names::kTolerance, header.tolerance);
+    hdf5::write_number(file, names::kTolerance, header.tolerance);
     hdf5::write_attribute(file, names::kEngine, header.engine);
   }
   if (header.float_precision) hdf5::write_attribute(file, names::kPrecision, names::kFloat);
@@ -265,9 +260,9 @@ void ResultWriter::finish() {
   hdf5::naming(s.name, [&] {
     s.collisions->flush();
     if (s.clearances) s.clearances->flush();
-    write_number(s.file, names::kCollisionsHash, s.collisions->hash());
-    if (s.clearances) write_number(s.file, names::kClearanceHash, s.clearances->hash());
-    write_number(s.file, "complete", std::uint8_t{1});
+    hdf5::write_number(s.file, names::kCollisionsHash, s.collisions->hash());
+    if (s.clearances) hdf5::write_number(s.file, names::kClearanceHash, s.clearances->hash());
+    hdf5::write_number(s.file, "complete", std::uint8_t{1});
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
     // After the flush nothing is left that closing could fail to write.
     s.clearances.reset();

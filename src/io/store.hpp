@@ -1,17 +1,15 @@
 #pragma once
 
-#include <atomic>
+#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/packed_cloud.hpp"
 #include "io/mapped_file.hpp"
-#include "io/store_layout.hpp"
-#include "io/store_metadata.hpp"
+#include "io/store_index.hpp"
 
 namespace clearway {
 
@@ -22,10 +20,10 @@ class Store final : public PackedCloud {
  public:
   explicit Store(const std::filesystem::path& path);
 
-  const StoreMetadata& metadata() const { return metadata_; }
+  const StoreMetadata& metadata() const { return index_.metadata; }
   const std::string& name() const { return map_.name(); }
-  const CellIndex& index() const { return index_; }
-  std::span<const TopNode> top_tree() const { return top_; }
+  const CellIndex& index() const { return index_.cells; }
+  std::span<const TopNode> top_tree() const { return index_.top; }
 
   /// Hash of the cells' hashes and of everything else that the store says: tells whether two files
   /// are the same store without reading their points.
@@ -35,12 +33,12 @@ class Store final : public PackedCloud {
   PackedChunk<std::uint64_t> sources(std::uint32_t cell) const;
 
   // PackedCloud
-  std::uint64_t point_count() const override { return metadata_.point_count; }
-  std::uint32_t cell_points() const override { return metadata_.cell_points; }
-  const Quantisation& quantisation() const override { return metadata_.quantisation; }
+  std::uint64_t point_count() const override { return metadata().point_count; }
+  std::uint32_t cell_points() const override { return metadata().cell_points; }
+  const Quantisation& quantisation() const override { return metadata().quantisation; }
   std::span<const Cell> cells() const override { return cells_; }
   std::span<const TreeNode> tree() const override { return tree_; }
-  std::span<const BlockBox> blocks() const override { return blocks_; }
+  std::span<const BlockBox> blocks() const override { return index_.blocks; }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
   /// Reads the file, not the map: one call where x, y and z are adjacent in it.
@@ -64,15 +62,11 @@ class Store final : public PackedCloud {
   template <typename Number>
   PackedChunk<Number> chunk(std::uint32_t cell, int dataset,
                             std::span<const std::byte> bytes) const;
-  void check_index() const;
 
   MappedFile map_;
-  StoreMetadata metadata_;
-  CellIndex index_;
-  std::vector<TopNode> top_;
+  StoreIndex index_;
   std::vector<Cell> cells_;
   std::vector<TreeNode> tree_;
-  std::vector<BlockBox> blocks_;
   /// Per cell: 1 when the hashes of x, y and z were found right in the map.
   mutable std::vector<std::uint8_t> checked_;
   mutable std::vector<std::uint8_t> read_;  ///< per cell: 1 when they were read past the map

@@ -38,15 +38,12 @@ hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t ce
 
 /// The datasets of /sources are the first of `hashes`.
 void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnHashes& hashes) {
-  const auto number = [&file]<typename Number>(const char* name, Number value) {
-    hdf5::write_attribute<Number>(file, name, std::span(&value, 1));
-  };
   hdf5::write_attribute(file, "format", kStoreFormat);
-  number("version", kStoreVersion);
-  number("point_count", metadata.point_count);
-  number("input_points", metadata.input_points);
-  number("cell_points", metadata.cell_points);
-  number("points_hash", metadata.points_hash);
+  hdf5::write_number(file, "version", kStoreVersion);
+  hdf5::write_number(file, "point_count", metadata.point_count);
+  hdf5::write_number(file, "input_points", metadata.input_points);
+  hdf5::write_number(file, "cell_points", metadata.cell_points);
+  hdf5::write_number(file, "points_hash", metadata.points_hash);
   hdf5::write_attribute<double>(file, "scale", metadata.quantisation.scale);
   hdf5::write_attribute<double>(file, "offset", metadata.quantisation.offset);
   hdf5::write_attribute(file, "layout", metadata.layout);
@@ -222,10 +219,8 @@ void StoreWriter::write_index(const std::vector<TopNode>& tree) {
     hdf5::write_dataset<std::uint32_t>(group, "nodes", nodes, 3);
     state.hashes.add(nodes);
   }
-  const std::uint64_t index_hash = state.hashes.digest();
-  hdf5::write_attribute<std::uint64_t>(state.file, "index_hash", std::span(&index_hash, 1));
-  const std::uint32_t complete = 1;
-  hdf5::write_attribute<std::uint32_t>(state.file, "complete", std::span(&complete, 1));
+  hdf5::write_number(state.file, "index_hash", state.hashes.digest());
+  hdf5::write_number(state.file, "complete", std::uint32_t{1});
   for (hdf5::Id& dataset : state.points) dataset.close(state.path.string() + ": cannot write");
   state.file.close(state.path.string() + ": cannot write");
   state.confirm_addresses();

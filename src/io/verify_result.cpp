@@ -20,10 +20,11 @@ void check_rows(const ResultReader& result, const ResultRows& rows) {
 
 }  // namespace
 
-std::vector<std::string> verify_result(const ResultReader& result, Progress& progress) {
+std::optional<std::string> verify_result(const ResultReader& result, Progress& progress) {
   ResultRowStream stream(result);
   ResultRows rows;
   progress.begin("verify", result.collisions() + result.clearances(), "points");
+  std::optional<std::string> fault;
   try {
     while (stream.read(rows)) {
       check_rows(result, rows);
@@ -31,11 +32,11 @@ std::vector<std::string> verify_result(const ResultReader& result, Progress& pro
     }
     ClearanceRowStream clearances(result);
     for (ClearanceRows read; clearances.read(read);) progress.advance(read.size());
-  } catch (const InputError& fault) {
-    return {fault.what()};
+  } catch (const InputError& error) {
+    fault = error.what();
   }
   progress.end();
-  return {};
+  return fault;
 }
 
 }  // namespace clearway

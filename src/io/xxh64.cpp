@@ -3,10 +3,20 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <array>
+#include <cinttypes>
+#include <cstdio>
+
 namespace clearway {
 
 std::uint64_t xxh64(std::span<const std::byte> bytes) {
   return XXH64(bytes.data(), bytes.size(), 0);
+}
+
+std::string hash_text(std::uint64_t hash) {
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, hash);
+  return digits.data();
 }
 
 struct Xxh64Stream::State {

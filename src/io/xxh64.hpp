@@ -4,11 +4,15 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 namespace clearway {
 
 /// XXH64 with seed 0.
 std::uint64_t xxh64(std::span<const std::byte> bytes);
+
+/// A hash for people: its 16 hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
 
 /// The same over bytes that arrive in pieces.
 class Xxh64Stream {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
-#include <string>
 #include <utility>
 
 namespace clearway {

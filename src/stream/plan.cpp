@@ -37,8 +37,8 @@ class Planner {
 
 }  // namespace
 
-std::vector<PlannedCell> plan(const PackedCloud& cloud, const MotionTree& motion,
-                              const SweepFilter& filter) {
+std::vector<PlannedCell> plan(const PackedCloud& cloud, const SweepFilter& filter) {
+  const MotionTree& motion = filter.motion();
   if (cloud.tree().empty() || motion.nodes().empty()) return {};
   std::vector<PlannedCell> cells = Planner(cloud, filter).plan();
   const auto first_pose = [&motion](const PlannedCell& cell) {

@@ -10,7 +10,6 @@ namespace clearway {
 
 /// The cells within reach of the trajectory, each with the motion nodes that may touch it, in the
 /// order in which the trajectory first reaches them. A pure function; reads no points.
-std::vector<PlannedCell> plan(const PackedCloud& cloud, const MotionTree& motion,
-                              const SweepFilter& filter);
+std::vector<PlannedCell> plan(const PackedCloud& cloud, const SweepFilter& filter);
 
 }  // namespace clearway

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <iostream>
 
+#include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
-#include "gpu/predicate_check.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "support/engines.hpp"
 #include "support/grid_runs.hpp"
@@ -41,7 +41,7 @@ bool only_lists_tests(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   constexpr int kSkipped = 77;
-  if (!clearway::only_lists_tests(count, arguments) && !clearway::has_cuda_device()) {
+  if (!clearway::only_lists_tests(count, arguments) && clearway::cuda_device_count() == 0) {
     std::cout << "skipped: no CUDA device here\n";
     return kSkipped;
   }

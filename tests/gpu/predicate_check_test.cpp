@@ -1,4 +1,4 @@
-#include "gpu/predicate_check.hpp"
+#include "predicate_check.hpp"
 
 #include <bit>
 #include <catch2/catch.hpp>
@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "gpu/devices.hpp"
 
 using namespace clearway;
 
@@ -120,7 +121,7 @@ TEST_CASE("the kernel's body decides as the predicate spelt out, on the host") {
 
 TEST_CASE("the predicate on the device is the host's bit for bit") {
   const auto cases = cases_at_the_radius(1'000'000);
-  if (!has_cuda_device()) {
+  if (cuda_device_count() == 0) {
     std::cout << "no CUDA device here: the device's refusal is tested instead\n";
     CHECK_THROWS_AS(decide_on_device(cases), ResourceError);
     return;

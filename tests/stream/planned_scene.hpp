@@ -26,7 +26,7 @@ class PlannedScene {
         field(tree, question.radius, {.reach = clearance}, 1),
         motion(poses, tree.box()),
         filter(question, motion, tree, field, cloud),
-        cells(plan(cloud, motion, filter)) {}
+        cells(plan(cloud, filter)) {}
 
  private:
   static constexpr Box kRoom{{0, 0, 0}, {12, 6, 3}};

@@ -31,7 +31,7 @@ class Site {
                       std::uint64_t memory_bytes) const {
     NoProgress progress;
     write_answer(*store_, answer, header, folder_ / "out.h5", memory_bytes, progress);
-    CHECK(verify_result(ResultReader(folder_ / "out.h5"), progress).empty());
+    CHECK_FALSE(verify_result(ResultReader(folder_ / "out.h5"), progress));
     return bytes_of(folder_ / "out.h5");
   }
 

@@ -187,7 +187,7 @@ Answer run_sweep(const PackedCloud& cloud, const Question& asked, int threads,
   const ModelField field(model, search_radius(question), {.reach = question.clearance}, threads);
   const MotionTree motion(question.poses, model.box(), question.between_poses);
   const SweepFilter filter(question, motion, model, field, cloud);
-  const std::vector<PlannedCell> cells = plan(cloud, motion, filter);
+  const std::vector<PlannedCell> cells = plan(cloud, filter);
   const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
                           .page_bytes = 2 * smallest_page_bytes(cloud, cells),
                           .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};

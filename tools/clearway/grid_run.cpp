@@ -14,7 +14,7 @@ constexpr std::uint32_t kSlotsAhead = 2;
 }  // namespace
 
 const GridScene& LazyGridScene::of(const SearchPlan& plan) const {
-  if (!scene_->has_value()) scene_->emplace(question_, plan.motion, store_, options_);
+  if (!scene_->has_value()) scene_->emplace(question_, plan.filter.motion(), store_, options_);
   return scene_->value();
 }
 

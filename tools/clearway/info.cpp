@@ -8,19 +8,17 @@
 #include "clearway/commands.hpp"
 #include "clearway/options.hpp"
 #include "clearway/standard_output.hpp"
-#include "io/file.hpp"
 #include "io/hdf5.hpp"
 #include "io/journal.hpp"
 #include "io/result.hpp"
 #include "io/store.hpp"
+#include "io/xxh64.hpp"
 #include "stream/answer_journal.hpp"
 
 namespace clearway::tool {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 ordered_json box_json(const Store& store) {
   if (store.tree().empty()) return nullptr;
@@ -35,7 +33,7 @@ ordered_json describe(const Store& store) {
   ordered_json sources = ordered_json::array();
   for (const SourceFile& source : m.sources) {
     sources.push_back(
-        {{"name", source.name}, {"bytes", source.bytes}, {"xxh64", hex(source.xxh64)}});
+        {{"name", source.name}, {"bytes", source.bytes}, {"xxh64", hash_text(source.xxh64)}});
   }
   return {{"kind", "store"},
           {"version", kStoreVersion},
@@ -50,8 +48,8 @@ ordered_json describe(const Store& store) {
           {"bounds", box_json(store)},
           {"length_unit", to_string(m.unit)},
           {"crs_wkt", m.crs_wkt},
-          {"points_hash", hex(m.points_hash)},
-          {"fingerprint", hex(store.fingerprint())},
+          {"points_hash", hash_text(m.points_hash)},
+          {"fingerprint", hash_text(store.fingerprint())},
           {"sources", sources}};
 }
 
@@ -70,9 +68,9 @@ ordered_json describe(const ResultReader& result) {
                            {"scale", h.quantisation.scale},
                            {"offset", h.quantisation.offset},
                            {"crs_wkt", h.crs_wkt},
-                           {"environment_hash", hex(h.environment_hash)},
-                           {"model_hash", hex(h.model_hash)},
-                           {"trajectory_hash", hex(h.trajectory_hash)}};
+                           {"environment_hash", hash_text(h.environment_hash)},
+                           {"model_hash", hash_text(h.model_hash)},
+                           {"trajectory_hash", hash_text(h.trajectory_hash)}};
   if (h.tolerance > 0) {
     description["tolerance"] = h.tolerance;
     description["engine"] = h.engine;
@@ -126,7 +124,6 @@ struct Options {
 };
 
 void run_info(const Options& options) {
-  File::open_for_reading(options.file);  // a missing file is no malformed one
   const ordered_json description = describe_file(options.file);
   // Names of files need not be UTF-8.
   constexpr auto kReplace = ordered_json::error_handler_t::replace;

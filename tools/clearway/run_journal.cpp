@@ -6,6 +6,7 @@
 #include "clearway/options.hpp"
 #include "core/error.hpp"
 #include "io/verify_result.hpp"
+#include "io/xxh64.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -15,8 +16,6 @@ namespace fs = std::filesystem;
 constexpr const char* kReplaces = "overwrites";
 
 std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
-
-std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 std::string work_text(const JournalledWork& work) {
   if (work.poses > 0) return format_count(work.poses) + " poses finished";
@@ -33,9 +32,9 @@ std::string value_of(const JournalIdentity& identity, const std::string& name) {
 JournalIdentity identity_of(const Store& store, const ResultHeader& header,
                             const EngineOptions& options, const std::string& engine,
                             const std::string& device, bool replaces) {
-  JournalIdentity identity{{"environment", hex(store.fingerprint())},
-                           {"model", hex(header.model_hash)},
-                           {"trajectory", hex(header.trajectory_hash)},
+  JournalIdentity identity{{"environment", hash_text(store.fingerprint())},
+                           {"model", hash_text(header.model_hash)},
+                           {"trajectory", hash_text(header.trajectory_hash)},
                            {"radius", fmt::format("{}", header.radius)},
                            {"first_pose", yes_or_no(header.first_pose)},
                            {"clearance", fmt::format("{}", header.clearance)},
@@ -57,7 +56,7 @@ JournalIdentity identity_of(const Store& store, const ResultHeader& header,
 bool answers(const fs::path& file, const ResultHeader& question, Progress& progress) {
   try {
     const ResultReader result(file);
-    return result.header() == question && verify_result(result, progress).empty();
+    return result.header() == question && !verify_result(result, progress);
   } catch (const InputError&) {
     return false;
   }

@@ -13,11 +13,10 @@ namespace clearway::tool {
 SearchPlan::SearchPlan(const Store& cloud, const Question& question, const QuestionTrees& trees,
                        const ModelFieldOptions& field_options, int threads, const Stopwatch& clock)
     : store(cloud),
-      motion(trees.motion),
       field(trees.model, search_radius(question), field_options, threads),
       field_seconds(clock.seconds()),
       filter(question, trees.motion, trees.model, field, cloud),
-      cells(plan(cloud, trees.motion, filter)),
+      cells(plan(cloud, filter)),
       plan_seconds(clock.seconds() - field_seconds) {}
 
 std::uint64_t SearchPlan::allocated_bytes() const {
@@ -34,7 +33,8 @@ std::uint64_t SearchPlan::least_page_bytes() const { return smallest_page_bytes(
 
 std::uint64_t SearchPlan::most_poses() const {
   std::uint64_t most = 0;
-  for (const PlannedCell& cell : cells) most = std::max(most, pose_count(motion, cell.nodes));
+  for (const PlannedCell& cell : cells)
+    most = std::max(most, pose_count(filter.motion(), cell.nodes));
   return most;
 }
 

@@ -47,7 +47,6 @@ struct SearchPlan {
   std::uint64_t most_poses() const;
 
   const Store& store;
-  const MotionTree& motion;
   ModelField field;
   double field_seconds;
   SweepFilter filter;

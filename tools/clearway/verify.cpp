@@ -8,7 +8,6 @@
 #include "clearway/options.hpp"
 #include "clearway/standard_output.hpp"
 #include "core/error.hpp"
-#include "io/file.hpp"
 #include "io/hdf5.hpp"
 #include "io/journal.hpp"
 #include "io/verify_result.hpp"
@@ -34,11 +33,13 @@ Findings verify_journal(const std::filesystem::path& file) {
 }
 
 Findings findings_of(const std::filesystem::path& file) {
-  File::open_for_reading(file);  // a missing file is no damaged one
   ConsoleProgress progress;
   try {
     if (is_journal(file)) return verify_journal(file);
-    if (hdf5::holds(file, "collisions")) return {verify_result(ResultReader(file), progress)};
+    if (hdf5::holds(file, "collisions")) {
+      if (const auto fault = verify_result(ResultReader(file), progress)) return {{*fault}};
+      return {};
+    }
     return {verify_store(Store(file), progress)};
   } catch (const InputError& fault) {
     return {{fault.what()}};

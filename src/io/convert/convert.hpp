@@ -39,8 +39,8 @@ struct ConversionReport {
 };
 
 /// Turns scans into a store (docs/conversion.md). Throws UsageError, InputError, ResourceError;
-/// Interrupted when the progress asks
-/// to stop; whatever happens, nothing stands under the output's name that is not complete.
+/// Interrupted when the progress asks to stop; whatever happens, nothing stands under the output's
+/// name that is not complete.
 ConversionReport convert(const ConversionOptions& options, Progress& progress);
 
 /// Whether the output is there already and is the store of these inputs, by names and contents,

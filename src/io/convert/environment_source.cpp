@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/error.hpp"
 #include "io/convert/spooled_reader.hpp"
-#include "io/store_metadata.hpp"
+#include "io/refusal.hpp"
 
 namespace clearway {
 namespace {
@@ -42,12 +43,6 @@ void refuse_pipe(const std::filesystem::path& file) {
                    "clearway convert -");
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
 }  // namespace
 
 EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
@@ -58,7 +53,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     throw UsageError("standard input (-) cannot be combined with other inputs");
   }
   if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
-    throw UsageError("--scale " + number(*options.scale) + ": expected a positive length");
+    throw UsageError("--scale " + brief(*options.scale) + ": expected a positive length");
   }
   if (streams) {
     files_ = {"-"};
@@ -69,8 +64,14 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     std::for_each(files_.begin(), files_.end(), refuse_pipe);
   }
   open_inputs();
-  check_crs();
-  choose_quantisation();
+  crs_ = common_crs(files_, infos_, options_.ignore_crs);
+  if (auto kept = common_quanta(files_, infos_, options_.scale)) {
+    quantisation_ = kept->quantisation;
+    shifts_ = std::move(kept->shifts);
+    return;
+  }
+  if (!options_.scale) refuse_mixture(files_, infos_);
+  choose_offset_and_scale();
 }
 
 EnvironmentSource::~EnvironmentSource() = default;
@@ -78,8 +79,7 @@ EnvironmentSource::~EnvironmentSource() = default;
 void EnvironmentSource::open_inputs() {
   declared_points_ = 0;
   for (std::size_t i = 0; i < files_.size(); ++i) {
-    inputs_.push_back({.info = reader(i).info()});
-    const CloudInfo& info = inputs_.back().info;
+    const CloudInfo& info = infos_.emplace_back(reader(i).info());
     if (declared_points_ && info.declared_points) {
       *declared_points_ += *info.declared_points;
     } else {
@@ -88,95 +88,13 @@ void EnvironmentSource::open_inputs() {
   }
 }
 
-void EnvironmentSource::check_crs() {
-  remarks_.clear();
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const CloudInfo& info = inputs_[i].info;
-    const std::string name = files_[i].string();
-    if (info.unit == LengthUnit::kDegree && !options_.ignore_crs) {
-      throw InputError(name +
-                       ": its coordinate reference system is in degrees, expected lengths; " +
-                       "project the scan first (for example with PDAL), or use --ignore-crs");
-    }
-    if (i == 0) {
-      unit_ = info.unit;
-      crs_wkt_ = info.crs_wkt;
-      continue;
-    }
-    if (info.unit != unit_ && !options_.ignore_crs) {
-      throw InputError(name + ": its unit of length is " + to_string(info.unit) + ", expected " +
-                       to_string(unit_) + " as in " + files_[0].string() + " (or --ignore-crs)");
-    }
-    if (info.crs_wkt != crs_wkt_) {
-      remarks_.push_back(name + ": another coordinate reference system than " + files_[0].string() +
-                         "; the first one's is kept");
-    }
-  }
-  if (unit_ == LengthUnit::kFoot || unit_ == LengthUnit::kUsSurveyFoot) {
-    remarks_.push_back("the coordinates are in feet (" + to_string(unit_) +
-                       "): radius, model and trajectory must be in feet too");
-  }
-}
-
-void EnvironmentSource::choose_quantisation() {
-  if (!try_keeping_integers()) choose_offset_and_scale();
-}
-
-bool EnvironmentSource::try_keeping_integers() {
-  const auto scale_of = [](const Quantisation& q) {
-    return std::array<double, 3>{q.scale[0], q.scale[1], q.scale[2]};
-  };
-  if (inputs_.empty() || !inputs_[0].info.quantisation) return false;
-  quantisation_ = *inputs_[0].info.quantisation;
-  const auto scale = scale_of(quantisation_);
-  if (options_.scale && scale != std::array{*options_.scale, *options_.scale, *options_.scale}) {
-    return false;
-  }
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    Input& input = inputs_[i];
-    const bool same = input.info.quantisation && scale_of(*input.info.quantisation) == scale;
-    bool whole = same;
-    for (std::size_t k = 0; k < 3 && same; ++k) {
-      const double shift =
-          (input.info.quantisation->offset[k] - quantisation_.offset[k]) / scale[k];
-      const double rounded = std::nearbyint(shift);
-      // A millionth of a quantum is the noise of offsets written in decimal.
-      whole = whole && std::abs(shift - rounded) <= 1e-6 && std::abs(rounded) < 0x1p53;
-      input.shift[k] = whole ? static_cast<std::int64_t>(rounded) : 0;
-    }
-    if (!whole) {
-      if (options_.scale) return false;
-      if (!input.info.quantisation) return false;  // refused with the right words
-      throw InputError(files_[i].string() + ": its scale or offset does not agree with that of " +
-                       files_[0].string() + "; --scale sets one for all, for example --scale " +
-                       number(scale[0]));
-    }
-    input.kept = true;
-  }
-  return true;
-}
-
 void EnvironmentSource::choose_offset_and_scale() {
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    inputs_[i].kept = false;
-    const bool mixed =
-        inputs_[i].info.quantisation.has_value() != inputs_[0].info.quantisation.has_value();
-    if (mixed && !options_.scale) {
-      const bool integers = inputs_[0].info.quantisation.has_value();
-      throw InputError(files_[i].string() + ": its coordinates are " +
-                       (integers ? "floating-point numbers" : "integers times a scale") +
-                       ", expected " + (integers ? "integers" : "floating-point numbers") +
-                       " as in " + files_[0].string() +
-                       ". Does it belong to the environment (a model does not)? If so, --scale " +
-                       "METRES rounds all of them to one scale");
-    }
-  }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3 lo{kInfinity, kInfinity, kInfinity};
   Vec3 hi{-kInfinity, -kInfinity, -kInfinity};
   while (next_batch(raw_)) {
     for (std::size_t i = 0; i < raw_.size(); ++i) {
-      const Vec3 p = point_of(raw_, inputs_[file_].info, i);
+      const Vec3 p = point_of(raw_, infos_[file_], i);
       if (!is_finite(p)) continue;
       for (int k = 0; k < 3; ++k) {
         lo[k] = std::min(lo[k], p[k]);
@@ -192,9 +110,9 @@ void EnvironmentSource::choose_offset_and_scale() {
     quantisation_.offset[k] = offset;
     quantisation_.scale[k] = options_.scale.value_or(fitting);
     if (any && (hi[k] - offset) / quantisation_.scale[k] > kGreatestQuantum) {
-      throw InputError("coordinates from " + number(lo[k]) + " to " + number(hi[k]) +
-                       " do not fit 32-bit integers at --scale " + number(quantisation_.scale[k]) +
-                       "; --scale " + number(fitting) + " fits");
+      throw InputError("coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
+                       " do not fit 32-bit integers at --scale " + brief(quantisation_.scale[k]) +
+                       "; --scale " + brief(fitting) + " fits");
     }
   }
 }
@@ -223,10 +141,10 @@ bool EnvironmentSource::next_batch(PointBatch& batch) {
     file_points_ += batch.size();
     return true;
   }
-  if (stream_ && (inputs_[0].info.crs_wkt != stream_->info().crs_wkt ||
-                  inputs_[0].info.unit != stream_->info().unit)) {
-    inputs_[0].info = stream_->info();  // a CRS may follow the points
-    check_crs();
+  if (stream_ &&
+      (infos_[0].crs_wkt != stream_->info().crs_wkt || infos_[0].unit != stream_->info().unit)) {
+    infos_[0] = stream_->info();  // a CRS may follow the points
+    crs_ = common_crs(files_, infos_, options_.ignore_crs);
   }
   return false;
 }
@@ -236,29 +154,28 @@ bool EnvironmentSource::read(QuantaBatch& batch) {
   batch.offsets.clear();
   if (!next_batch(raw_)) return false;
   batch.first_source = input_points_;
-  const Input& input = inputs_[file_];
-  if (input.kept) {
-    append_kept(raw_, input, batch);
+  if (shifts_.empty()) {
+    append_rounded(raw_, batch);
   } else {
-    append_rounded(raw_, input, batch);
+    append_kept(raw_, batch);
   }
   input_points_ += raw_.size();
   return true;
 }
 
-void EnvironmentSource::append_kept(const PointBatch& batch, const Input& input, QuantaBatch& out) {
+void EnvironmentSource::append_kept(const PointBatch& batch, QuantaBatch& out) {
   out.quanta = batch.quanta;
-  const Quantisation& own = *input.info.quantisation;
+  const Quantisation& own = *infos_[file_].quantisation;
   if (own == quantisation_) return;
   for (auto& q : out.quanta) {
     for (std::size_t k = 0; k < 3; ++k) {
       const int axis = static_cast<int>(k);
       const double before = coordinate(own, axis, q[k]);
-      const std::int64_t shifted = q[k] + input.shift[k];
+      const std::int64_t shifted = q[k] + shifts_[file_][k];
       if (shifted < std::numeric_limits<std::int32_t>::min() ||
           shifted > std::numeric_limits<std::int32_t>::max()) {
         throw InputError(files_[file_].string() + ": too far from " + files_[0].string() +
-                         " for 32-bit integers of " + number(own.scale[k]) +
+                         " for 32-bit integers of " + brief(own.scale[k]) +
                          "; a coarser --scale fits");
       }
       q[k] = static_cast<std::int32_t>(shifted);
@@ -268,10 +185,9 @@ void EnvironmentSource::append_kept(const PointBatch& batch, const Input& input,
   }
 }
 
-void EnvironmentSource::append_rounded(const PointBatch& batch, const Input& input,
-                                       QuantaBatch& out) {
+void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out) {
   for (std::size_t i = 0; i < batch.size(); ++i) {
-    const Vec3 p = point_of(batch, input.info, i);
+    const Vec3 p = point_of(batch, infos_[file_], i);
     if (!is_finite(p)) {
       drop_non_finite(file_points_ - batch.size() + i);
       if (out.offsets.empty()) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/convert/input_agreement.hpp"
 #include "io/convert/quanta_batch.hpp"
 #include "io/point_reader.hpp"
 
@@ -18,7 +19,7 @@ struct EnvironmentOptions {
   std::filesystem::path temporary_folder = ".";
 };
 
-/// All inputs of a conversion as one sequence of points in one quantisation (design section 3):
+/// All inputs of a conversion as one sequence of points in one quantisation (docs/conversion.md):
 /// integers are kept as read where the inputs have them; files of the same scale are rebased by
 /// whole quanta; everything else is rounded to the nearest quantum of a chosen scale.
 class EnvironmentSource {
@@ -30,13 +31,13 @@ class EnvironmentSource {
   ~EnvironmentSource();
 
   const Quantisation& quantisation() const { return quantisation_; }
-  const std::string& crs_wkt() const { return crs_wkt_; }
-  LengthUnit unit() const { return unit_; }
+  const std::string& crs_wkt() const { return crs_.wkt; }
+  LengthUnit unit() const { return crs_.unit; }
   const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-": stream
   /// Points that the inputs declare, where all do.
   std::optional<std::uint64_t> declared_points() const { return declared_points_; }
   /// Remarks for the log (different CRS, feet).
-  const std::vector<std::string>& remarks() const { return remarks_; }
+  const std::vector<std::string>& remarks() const { return crs_.remarks; }
 
   /// The next batch in input order; false at the end.
   bool read(QuantaBatch& batch);
@@ -49,31 +50,21 @@ class EnvironmentSource {
   double largest_change() const { return largest_change_; }
 
  private:
-  struct Input {
-    CloudInfo info;
-    std::array<std::int64_t, 3> shift{};  ///< whole quanta to add; only where kept
-    bool kept = false;                    ///< integers are kept (rebased), not rounded anew
-  };
-
   void open_inputs();
-  void check_crs();
-  void choose_quantisation();
-  bool try_keeping_integers();
   void choose_offset_and_scale();
   bool next_batch(PointBatch& batch);
   PointReader& reader(std::size_t file);
-  void append_kept(const PointBatch& batch, const Input& input, QuantaBatch& out);
-  void append_rounded(const PointBatch& batch, const Input& input, QuantaBatch& out);
+  void append_kept(const PointBatch& batch, QuantaBatch& out);
+  void append_rounded(const PointBatch& batch, QuantaBatch& out);
   void drop_non_finite(std::uint64_t source);
 
   EnvironmentOptions options_;
   std::vector<std::filesystem::path> files_;
-  std::vector<Input> inputs_;
+  std::vector<CloudInfo> infos_;  // of the files
   Quantisation quantisation_{};
-  std::string crs_wkt_;
-  LengthUnit unit_ = LengthUnit::kUnknown;
+  std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
+  CommonCrs crs_;
   std::optional<std::uint64_t> declared_points_;
-  std::vector<std::string> remarks_;
 
   std::unique_ptr<PointReader> stream_;   // standard input, spooled
   std::unique_ptr<PointReader> current_;  // the open file

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 #include "core/hand_over.hpp"
 #include "core/kd_order.hpp"
@@ -15,8 +16,8 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kHistogramFrom =
-    1024;  // points from which a histogram finds the median's bin
+/// Points from which a histogram finds the median's bin.
+constexpr std::size_t kHistogramFrom = 1024;
 constexpr unsigned kHistogramBits = 10;
 constexpr std::size_t kParallelFrom = 1 << 16;
 

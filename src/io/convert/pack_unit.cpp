@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
 #include "core/hand_over.hpp"
@@ -135,7 +134,6 @@ OrderedUnit::OrderedUnit(const Distribution& distribution, std::size_t unit, con
 }
 
 OrderedUnit::~OrderedUnit() = default;
-OrderedUnit::OrderedUnit(OrderedUnit&&) noexcept = default;
 
 std::size_t OrderedUnit::cells_left() const { return state_->cells.size() - state_->next; }
 

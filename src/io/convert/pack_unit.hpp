@@ -21,7 +21,6 @@ class OrderedUnit {
   OrderedUnit(const Distribution& distribution, std::size_t unit, const SplitTree& tree,
               const Lattice& lattice, const Quantisation& quantisation, std::uint32_t cell_points);
   ~OrderedUnit();
-  OrderedUnit(OrderedUnit&&) noexcept;
 
   /// The next cells, with padding at most kBucketPoints points but at least a cell; empty at the
   /// end.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/quantisation.hpp"
 #include "io/convert/quanta_batch.hpp"

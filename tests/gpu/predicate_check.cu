@@ -1,5 +1,6 @@
+#include "gpu/cuda_check.hpp"
 #include "gpu/device_buffer.hpp"
-#include "gpu/predicate_check.hpp"
+#include "predicate_check.hpp"
 
 namespace clearway {
 namespace {
@@ -11,11 +12,6 @@ __global__ void decide_cases_kernel(const PredicateCase* cases, PredicateAnswer*
 }
 
 }  // namespace
-
-bool has_cuda_device() {
-  int count = 0;
-  return cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
-}
 
 std::vector<PredicateAnswer> decide_on_device(const std::vector<PredicateCase>& cases) {
   constexpr unsigned kThreads = 256;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/pose.hpp"
@@ -28,9 +27,6 @@ CLEARWAY_HD inline PredicateAnswer decide(const PredicateCase& c) {
   return {squared_distance(c.environment, moved), collides(c.environment, moved, c.radius),
           collides_inside(c.environment, moved, transform(c.next, c.model), c.radius)};
 }
-
-/// Whether this machine has a CUDA device that the program can use.
-bool has_cuda_device();
 
 /// The predicate's answers computed on the current CUDA device: bit for bit the host's, or the
 /// device must not be used. Throws ResourceError with CUDA's own words.

@@ -1,0 +1,101 @@
+#include "io/convert/input_agreement.hpp"
+
+#include <cmath>
+
+#include "io/refusal.hpp"
+#include "io/store_metadata.hpp"
+
+namespace clearway {
+namespace {
+
+using Axes = std::array<double, 3>;
+
+Axes scale_of(const Quantisation& q) { return {q.scale[0], q.scale[1], q.scale[2]}; }
+
+/// How many quanta `offset` lies above that of `to` on each axis; none where not whole numbers.
+std::optional<std::array<std::int64_t, 3>> whole_shift(const double* offset,
+                                                       const Quantisation& to) {
+  std::array<std::int64_t, 3> shift;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double quanta = (offset[k] - to.offset[k]) / to.scale[k];
+    const double rounded = std::nearbyint(quanta);
+    // A millionth of a quantum is the noise of offsets written in decimal.
+    if (!(std::abs(quanta - rounded) <= 1e-6 && std::abs(rounded) < 0x1p53)) return std::nullopt;
+    shift[k] = static_cast<std::int64_t>(rounded);
+  }
+  return shift;
+}
+
+}  // namespace
+
+CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                     bool ignore) {
+  CommonCrs common;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const CloudInfo& info = infos[i];
+    const std::string name = files[i].string();
+    if (info.unit == LengthUnit::kDegree && !ignore) {
+      refuse(name,
+             "its coordinate reference system is in degrees, expected lengths; project the scan "
+             "first (for example with PDAL), or use --ignore-crs");
+    }
+    if (i == 0) {
+      common.unit = info.unit;
+      common.wkt = info.crs_wkt;
+      continue;
+    }
+    if (info.unit != common.unit && !ignore) {
+      refuse(name, "its unit of length is " + to_string(info.unit) + ", expected " +
+                       to_string(common.unit) + " as in " + files[0].string() +
+                       " (or --ignore-crs)");
+    }
+    if (info.crs_wkt != common.wkt) {
+      common.remarks.push_back(name + ": another coordinate reference system than " +
+                               files[0].string() + "; the first one's is kept");
+    }
+  }
+  if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
+    common.remarks.push_back("the coordinates are in feet (" + to_string(common.unit) +
+                             "): radius, model and trajectory must be in feet too");
+  }
+  return common;
+}
+
+std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path> files,
+                                          std::span<const CloudInfo> infos,
+                                          std::optional<double> scale) {
+  if (infos.empty() || !infos[0].quantisation) return std::nullopt;
+  CommonQuanta common{.quantisation = *infos[0].quantisation, .shifts = {}};
+  const Axes first = scale_of(common.quantisation);
+  if (scale && first != Axes{*scale, *scale, *scale}) return std::nullopt;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const std::optional<Quantisation>& own = infos[i].quantisation;
+    const auto shift = own && scale_of(*own) == first
+                           ? whole_shift(own->offset, common.quantisation)
+                           : std::nullopt;
+    if (!shift) {
+      if (scale || !own) return std::nullopt;
+      refuse(files[i].string(),
+             "its scale or offset does not agree with that of " + files[0].string() +
+                 "; --scale sets one for all, for example --scale " + brief(first[0]));
+    }
+    common.shifts.push_back(*shift);
+  }
+  return common;
+}
+
+void refuse_mixture(std::span<const std::filesystem::path> files,
+                    std::span<const CloudInfo> infos) {
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const bool integers = infos[0].quantisation.has_value();
+    if (infos[i].quantisation.has_value() == integers) continue;
+    refuse(files[i].string(),
+           std::string("its coordinates are ") +
+               (integers ? "floating-point numbers" : "integers times a scale") + ", expected " +
+               (integers ? "integers" : "floating-point numbers") + " as in " + files[0].string() +
+               ". Does it belong to the environment (a model does not)? If so, --scale METRES "
+               "rounds all of them to one scale");
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/quantisation.hpp"
+#include "io/point_reader.hpp"
+
+/// What the inputs of a conversion agree on (docs/conversion.md). Everywhere files and what they
+/// say of themselves, in the order of the inputs. Throws InputError naming the file that differs.
+namespace clearway {
+
+struct CommonCrs {
+  LengthUnit unit = LengthUnit::kUnknown;
+  std::string wkt;
+  std::vector<std::string> remarks;  ///< for the log: different CRS, feet
+};
+
+/// The first input's. Degrees, and other units than the first one's, are refused unless `ignore`.
+CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                     bool ignore);
+
+struct CommonQuanta {
+  Quantisation quantisation{};                      ///< the first input's
+  std::vector<std::array<std::int64_t, 3>> shifts;  ///< per input: whole quanta to add
+};
+
+/// How the inputs' integers can be kept: all of one scale, the one asked for if any, and their
+/// offsets apart by whole quanta. None where they are to be rounded anew.
+std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path> files,
+                                          std::span<const CloudInfo> infos,
+                                          std::optional<double> scale);
+
+/// Throws where some inputs have integers and others floating-point numbers.
+void refuse_mixture(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos);
+
+}  // namespace clearway
