@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "clearway/bench/work_folder.hpp"
 #include "program.hpp"
 
 using namespace clearway::test;
@@ -17,10 +18,11 @@ class Experiment {
   explicit Experiment(const std::string& name) : name_(name) {}
 
   Outcome run(const std::string& more = "") const {
-    return run_program(folder_,
-                       "bench " + name_ + " --size smoke --device cpu --repetitions 2 -o " +
-                           quoted(file()) + " --work " + quoted(folder_ / "work") + " " + more);
+    return run_program(folder_, "bench " + name_ +
+                                    " --size smoke --device cpu --repetitions 2 -o " +
+                                    quoted(file()) + " --work " + quoted(work()) + " " + more);
   }
+  std::filesystem::path work() const { return folder_ / "work"; }
   std::filesystem::path file() const { return folder_ / "figures.json"; }
   Json figures() const { return Json::parse(bytes_of(file())); }
   void write(const Json& figures) const { std::ofstream(file()) << figures.dump(); }
@@ -75,7 +77,7 @@ TEST_CASE("figures of another experiment or size, or of something else, are not 
   threads.write({{"experiment", "table"}, {"cases", Json::array()}});
   const Outcome another = threads.run("--resume");
   CHECK(another.exit_code == 2);
-  CHECK_THAT(another.err, Contains("its experiment is another"));
+  CHECK_THAT(another.err, Contains("differs in experiment: table in the file, threads now"));
   for (const std::string odd : {"[1]", R"({"cases": [1]})", R"({"cases": [{}]})"}) {
     threads.write(Json::parse(odd));
     CHECK(threads.run("--resume").exit_code == 3);
@@ -92,6 +94,83 @@ TEST_CASE("a run that exceeds the limit has failed, and the experiment goes on")
   CHECK(datasets.run("--scenes hall --memory abc").exit_code == 2);
 }
 
+TEST_CASE("what a smaller limit has stopped is measured anew, in its place") {
+  const Experiment datasets("datasets");
+  const std::string options = "--scenes hall --resume --limit ";
+  REQUIRE(datasets.run(options + "20").exit_code == 0);
+  Json figures = datasets.figures();
+  CHECK(figures["parameters"]["limit"] == 20);
+  // The second case as it is kept now, the last one and the parameters as they were before.
+  figures["parameters"].erase("limit");
+  for (const std::size_t i : {1, 2}) figures["cases"][i]["runs"] = Json::array();
+  figures["cases"][1]["failed"] = {{"after_seconds", 21.5}, {"limit", 20}};
+  figures["cases"][2]["failed"] = {{"after_seconds", 21.5}};
+  datasets.write(figures);
+  REQUIRE(datasets.run(options + "20").exit_code == 0);
+  CHECK(datasets.figures()["cases"] == figures["cases"]);
+  for (const auto& [limit, anew] : {std::pair{"21", 1}, {"22", 2}}) {
+    REQUIRE(datasets.run(options + limit).exit_code == 0);
+    const Json now = datasets.figures();
+    CHECK(now["parameters"]["limit"] == std::stod(limit));
+    REQUIRE(now["cases"].size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CAPTURE(limit, i);
+      CHECK(now["cases"][i]["key"] == figures["cases"][i]["key"]);
+      const bool stopped = static_cast<int>(i) > anew;
+      CHECK(now["cases"][i].contains("failed") == stopped);
+      CHECK(now["cases"][i]["runs"].size() == (stopped ? 0 : 2));
+    }
+  }
+}
+
+TEST_CASE("the parameter that differs from the file's is named with both values") {
+  const Experiment datasets("datasets");
+  REQUIRE(datasets.run("--scenes hall").exit_code == 0);
+  const std::pair<std::string, std::string> differences[] = {
+      {"--scenes hall --device-memory 3G", "differs in --device-memory: 2G in the file, 3G now"},
+      {"--scenes mine,hall", "differs in --scenes: hall in the file, mine,hall now"}};
+  for (const auto& [options, difference] : differences) {
+    const Outcome refused = datasets.run(options + " --resume");
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains(difference));
+  }
+  Json figures = datasets.figures();
+  figures["parameters"].erase("repetitions");
+  datasets.write(figures);
+  const Outcome older = datasets.run("--scenes hall --resume");
+  CHECK(older.exit_code == 2);
+  CHECK_THAT(older.err, Contains("differs in --repetitions: nothing in the file, 2 now"));
+}
+
+TEST_CASE("scenes are chosen where an experiment is about any") {
+  const Experiment scaling("scaling");
+  const Outcome refused = scaling.run("--scenes hall");
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("--scenes is of table and datasets"));
+  CHECK_FALSE(std::filesystem::exists(scaling.file()));
+}
+
+TEST_CASE("a work folder is of one bench at a time") {
+  const Experiment datasets("datasets");
+  {
+    const clearway::tool::WorkFolder taken(datasets.work());
+    const Outcome refused = datasets.run("--scenes hall");
+    CHECK(refused.exit_code == 4);
+    CHECK_THAT(refused.err, Contains("another bench uses it"));
+    CHECK_FALSE(std::filesystem::exists(datasets.file()));
+  }
+  CHECK(datasets.run("--scenes hall").exit_code == 0);
+}
+
+TEST_CASE("a failure that says nothing of the method ends the experiment") {
+  const Experiment scaling("scaling");
+  std::filesystem::create_directories(scaling.work() / "result.h5");
+  const Outcome ended = scaling.run();
+  CHECK(ended.exit_code == 4);
+  CHECK_THAT(ended.err, Contains("kdtree cpu/poses/100") && Contains("is a directory"));
+  CHECK(scaling.figures()["cases"].empty());
+}
+
 TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {
   const Experiment accuracy("accuracy");
   const Outcome done = accuracy.run("--limit 4");
@@ -103,7 +182,12 @@ TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {
     CAPTURE(one["key"]);
     const std::string method = one["parameters"]["method"];
     methods.insert(method);
-    if (one.contains("failed")) continue;
+    if (one.contains("failed")) {
+      CHECK(one["failed"]["limit"] == 4);
+      const std::string key = one["key"];
+      CHECK_THAT(done.err, Contains("warning: " + key + ": counted as failed: stopped after"));
+      continue;
+    }
     const Json& wrong = one["findings"];
     if (method == "exact") CHECK(wrong["false_hits"].get<int>() + wrong["misses"].get<int>() == 0);
     if (method == "tolerance") {

@@ -82,7 +82,7 @@ def datasets():
     for scene, engine in itertools.product(("mine", "hall", "plant", "tunnel"), ENGINES):
         slow = scene == "plant" and engine == "kdtree cpu"
         yield case({"scene": scene, "engine": engine}, ENGINES[engine],
-                   failed={"after_seconds": 120.0} if slow else None)
+                   failed={"after_seconds": 120.0, "limit": 120.0} if slow else None)
 
 
 def points():
@@ -184,7 +184,7 @@ def write_records(folder):
                               "cores": 16, "memory_bytes": 2**37, "gpus": ["NVIDIA H200"],
                               "system": "Debian GNU/Linux 12 (bookworm)"},
                   "clearway": {"version": "0.1.0", "commit": "0123456789ab"},
-                  "parameters": {"repetitions": 3}, "cases": list(experiment())}
+                  "parameters": {"repetitions": 3, "limit": 120.0}, "cases": list(experiment())}
         (folder / f"{experiment.__name__}.json").write_text(json.dumps(record))
 
 

@@ -74,7 +74,7 @@ class Accuracy {
     bench_.measure(
         key, {{"method", method}, {"engine", engine.name}, {"value", value}}, files, engine.options,
         [&](const std::filesystem::path& result) { return judged(result, truth_); }, {},
-        !engine.exact);
+        engine.exact ? Refusal::kNone : Refusal::kMemory);
   }
 
   Bench& bench_;

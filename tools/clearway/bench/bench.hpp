@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "clearway/bench/failure.hpp"
 #include "clearway/bench/record.hpp"
+#include "clearway/bench/work_folder.hpp"
 #include "core/vec3.hpp"
 #include "scene/scene.hpp"
 
@@ -43,15 +45,17 @@ struct EngineChoice {
   EngineChoice with(const std::vector<std::string>& more) const;
 };
 
-/// Runs `clearway` again and again, and keeps what it reports.
+/// Runs `clearway` again and again, and keeps what it reports. The work folder is its own as long
+/// as it lives.
 class Bench {
  public:
+  /// Throws as WorkFolder and Record do, and ResourceError for a GPU that is not there.
   Bench(const std::string& experiment, const BenchOptions& options);
 
   const BenchOptions& options() const { return options_; }
   bool full() const { return options_.size == "full"; }
   bool cuda() const { return cuda_; }
-  const std::filesystem::path& work() const { return options_.work; }
+  const std::filesystem::path& work() const { return work_.path(); }
 
   /// Made on the first call, kept in the work folder, at the size of the options or another one.
   SceneFiles scene(const std::string& name);
@@ -71,9 +75,10 @@ class Bench {
   SceneFiles shifted(const std::string& name, const SceneFiles& files, const Vec3& shift);
 
   /// `convert` into a store that replaces one of that name; its wall clock, peak memory and size,
-  /// or that it failed.
-  Json convert(const std::filesystem::path& environment, const std::filesystem::path& store,
-               const std::vector<std::string>& convert_options);
+  /// or that it failed for want of time or memory. Throws where it failed otherwise. `key` is that
+  /// of the case, for messages.
+  Json convert(const std::string& key, const std::filesystem::path& environment,
+               const std::filesystem::path& store, const std::vector<std::string>& convert_options);
 
   /// The engines of this machine: those on the GPU where there is one, and the CPU's.
   std::vector<EngineChoice> exact_engines() const;
@@ -84,15 +89,16 @@ class Bench {
   /// What is said of a result, added to the case as "findings".
   using Judge = std::function<Json(const std::filesystem::path& result)>;
 
-  bool has(const std::string& key) const { return record_.find(key) != nullptr; }
+  /// The case of that key, where it need not be measured.
+  const Json* find(const std::string& key) const { return record_.find(key); }
 
   /// `run` on these files, `repetitions` times (those of the options where it is not given), unless
   /// the file has the case already; not again after half a minute. Every report, with wall clock
-  /// and peak memory, goes to "runs". A run that exceeds the limit goes to "failed" instead, as one
-  /// that fails with an exit code where that is allowed; otherwise that throws.
+  /// and peak memory, goes to "runs". A run that exceeds the limit or ends with `expected` goes to
+  /// "failed" instead, with a warning; one that fails otherwise throws ResourceError.
   Json measure(const std::string& key, Json parameters, const SceneFiles& files,
                const std::vector<std::string>& run_options, const Judge& judge = {},
-               std::optional<int> repetitions = {}, bool may_fail = false);
+               std::optional<int> repetitions = {}, Refusal expected = Refusal::kNone);
 
   /// Any other case.
   Json keep(const std::string& key, Json parameters, const std::function<Json()>& findings);
@@ -101,7 +107,11 @@ class Bench {
   std::vector<std::string> command(const SceneFiles& files, const std::filesystem::path& result,
                                    const std::vector<std::string>& run_options) const;
 
+  /// The failure, where it is a finding; throws ResourceError where it is not.
+  Json finding(const std::string& key, const ProgramRun& failed, Refusal expected) const;
+
   BenchOptions options_;
+  WorkFolder work_;
   bool cuda_;
   Record record_;
 };

@@ -15,18 +15,30 @@ struct Experiment {
   const char* name;
   void (*run)(Bench&);
   const char* help;
+  bool of_any_scene = false;  ///< takes --scenes; the others need certain ones
 };
 
 constexpr Experiment kExperiments[] = {
-    {"table", bench_table, "Colliding points of every engine on the four scenes (Table 1)"},
+    {"table", bench_table, "Colliding points of every engine on the four scenes (Table 1)", true},
     {"threads", bench_threads, "Speed by the number of threads (Fig. 1)"},
     {"grid", bench_grid, "Time of each step by grid resolution and layout (Fig. 2)"},
-    {"datasets", bench_datasets, "Time of every engine and device on the four scenes (Fig. 3)"},
+    {"datasets", bench_datasets, "Time of every engine and device on the four scenes (Fig. 3)",
+     true},
     {"points", bench_points, "Time by the number of environment points, 111 samples (Fig. 4)"},
     {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
     {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
     {"scaling", bench_scaling, "Time by poses, model points, radius and cell size"},
 };
+
+/// Throws UsageError with the experiments that take --scenes.
+void check_scenes(const Experiment& experiment, bool given) {
+  if (!given || experiment.of_any_scene) return;
+  std::string others;
+  for (const Experiment& other : kExperiments) {
+    if (other.of_any_scene) others += std::string(others.empty() ? "" : " and ") + other.name;
+  }
+  throw UsageError("--scenes is of " + others + "; " + experiment.name + " has scenes of its own");
+}
 
 void run_bench(const Experiment& experiment, const BenchOptions& options) {
   stop_on_signals(kHowToResume);
@@ -38,13 +50,15 @@ void run_bench(const Experiment& experiment, const BenchOptions& options) {
   }
 }
 
-void add_options(CLI::App& command, BenchOptions& options) {
+/// Gives back --scenes.
+CLI::Option* add_options(CLI::App& command, BenchOptions& options) {
   command.add_option("-o,--output", options.output, "The figures, a JSON file")
       ->type_name("FILE")
       ->required();
   command
-      .add_option("--work", options.work,
-                  "Folder for scenes, stores and results, which are kept there")
+      .add_option(
+          "--work", options.work,
+          "Folder for scenes, stores and results, which are kept there; of one bench at a time")
       ->type_name("DIR")
       ->required();
   command
@@ -58,15 +72,21 @@ void add_options(CLI::App& command, BenchOptions& options) {
                   "cpu measures no GPU; auto measures one where there is one")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
-  command.add_option("--repetitions", options.repetitions, "Runs of every case")
+  command
+      .add_option(
+          "--repetitions", options.repetitions,
+          "Runs of every case; table, and stability but for its budgets of memory, run each "
+          "once")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command.add_option("--scenes", options.scenes, "Scenes of table and datasets (default: all)")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
+  CLI::Option* scenes =
+      command.add_option("--scenes", options.scenes, "Of table and datasets: which (default: all)")
+          ->delimiter(',')
+          ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
   command
       .add_option("--limit", options.limit_seconds,
-                  "Seconds after which a run is stopped and counted as failed")
+                  "Seconds after which a run is stopped and counted as failed; with --resume, a "
+                  "larger one measures the stopped cases anew")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
   const auto is_size = [](const std::string& text) {
@@ -82,6 +102,7 @@ void add_options(CLI::App& command, BenchOptions& options) {
   CLI::Option* force = command.add_flag("--force", options.force, "Replace an existing file");
   command.add_flag("--resume", options.resume, "Go on with a file of the same experiment")
       ->excludes(force);
+  return scenes;
 }
 
 }  // namespace
@@ -93,8 +114,11 @@ void add_bench(CLI::App& program) {
   for (const Experiment& experiment : kExperiments) {
     const auto options = std::make_shared<BenchOptions>();
     CLI::App* one = command->add_subcommand(experiment.name, experiment.help);
-    add_options(*one, *options);
-    one->callback([&experiment, options] { run_bench(experiment, *options); });
+    const CLI::Option* scenes = add_options(*one, *options);
+    one->callback([&experiment, options, scenes] {
+      check_scenes(experiment, scenes->count() > 0);
+      run_bench(experiment, *options);
+    });
   }
   command->footer(
       "Every case is a `clearway run` in a process of its own; tools/charts.py draws the files.\n"

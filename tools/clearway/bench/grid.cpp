@@ -35,7 +35,7 @@ void bench_grid(Bench& bench) {
                     {"--layout", std::string("regular:") + size, "--cell-points", "4096"});
     bench.measure(std::string("regular layout/") + size,
                   {{"vary", "regular layout"}, {"value", size}}, files, engine.options, {}, {},
-                  true);
+                  Refusal::kMemory);
   }
 }
 

@@ -27,7 +27,7 @@ void bench_points(Bench& bench) {
       const bool forward = !engine.name.starts_with("sweep");
       if (forward && i % kSlowEvery != 1 && i != kSamples) continue;
       const std::string key = engine.name + "/" + std::to_string(points);
-      if (bench.has(key)) continue;
+      if (bench.find(key)) continue;
       if (!made) {
         std::filesystem::remove(files.store);
         sample_environment(hall.environment, sample, points, kSeed + static_cast<std::uint64_t>(i));

@@ -23,6 +23,51 @@ Json read(const std::filesystem::path& path) {
   return all;
 }
 
+/// Of a parameter that may differ; that of each case it has stopped is kept with it.
+constexpr const char* kLimit = "limit";
+
+std::string text_of(const Json& value) {
+  if (value.is_null()) return "nothing";
+  if (!value.is_array()) return value.is_string() ? value.get<std::string>() : value.dump();
+  std::string text;
+  for (const Json& one : value) text += (text.empty() ? "" : ",") + text_of(one);
+  return text;
+}
+
+/// The option that sets a parameter.
+std::string option_of(std::string parameter) {
+  std::replace(parameter.begin(), parameter.end(), '_', '-');
+  return "--" + parameter;
+}
+
+/// Throws UsageError with the first value of that name, or within it, that is not the same.
+void check_same(const std::filesystem::path& path, const std::string& name, const Json& earlier,
+                const Json& now) {
+  if (earlier == now) return;
+  if (!now.is_object() || !earlier.is_object()) {
+    throw UsageError(path.string() + ": differs in " + name + ": " + text_of(earlier) +
+                     " in the file, " + text_of(now) + " now; --force replaces it");
+  }
+  Json both = now;
+  both.update(earlier);
+  for (const auto& [inner, either] : both.items()) {
+    const std::string full = name == "parameters" ? option_of(inner) : name + " " + inner;
+    if (full == option_of(kLimit)) continue;
+    check_same(path, full, earlier.value(inner, Json()), now.value(inner, Json()));
+  }
+}
+
+/// Whether a smaller limit has stopped the case, or the conversion that it is. Where the limit was
+/// not kept, the case counts as if it had been what it took.
+bool stopped_earlier(const Json& one, double limit_seconds) {
+  for (const char* place : {"/failed", "/findings/failed"}) {
+    const Json::json_pointer failed(place);
+    const double after = one.value(failed / "after_seconds", limit_seconds);
+    if (one.value(failed / kLimit, after) < limit_seconds) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Record::Record(std::filesystem::path path, const Json& header, bool resume, bool force)
@@ -34,26 +79,29 @@ Record::Record(std::filesystem::path path, const Json& header, bool resume, bool
     }
     Json earlier = read(path_);
     for (const auto& [name, value] : header.items()) {
-      if (!earlier.contains(name) || earlier[name] != value) {
-        throw UsageError(path_.string() + ": its " + name + " is another; --force replaces it");
-      }
+      check_same(path_, name, earlier.value(name, Json()), value);
     }
-    all_ = std::move(earlier);
+    all_["cases"] = std::move(earlier["cases"]);
   }
   write();
 }
 
 const Json* Record::find(const std::string& key) const {
   for (const Json& one : all_["cases"]) {
-    if (one["key"] == key) return &one;
+    if (one["key"] != key) continue;
+    return stopped_earlier(one, all_["parameters"][kLimit]) ? nullptr : &one;
   }
   return nullptr;
 }
 
 Json Record::add(Json of_case) {
-  all_["cases"].push_back(std::move(of_case));
+  Json& cases = all_["cases"];
+  const auto known = std::find_if(cases.begin(), cases.end(),
+                                  [&](const Json& one) { return one["key"] == of_case["key"]; });
+  const auto at = known == cases.end() ? cases.insert(known, Json()) : known;
+  *at = std::move(of_case);
   write();
-  return all_["cases"].back();
+  return *at;
 }
 
 void Record::write() const {

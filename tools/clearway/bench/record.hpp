@@ -14,12 +14,13 @@ class Record {
  public:
   /// header: experiment, size, machine, clearway, parameters. An existing file is refused with
   /// UsageError unless `force`, which replaces it, or `resume`, which goes on with it where its
-  /// header is the same.
+  /// header is the same but for the parameter "limit" (seconds).
   Record(std::filesystem::path path, const Json& header, bool resume, bool force);
 
-  /// The case of that key, or nullptr.
+  /// The case of that key, or nullptr; that too for one that was stopped by a smaller limit than
+  /// the header's, which is to be measured anew.
   const Json* find(const std::string& key) const;
-  /// Adds and gives back a case, which has a "key" of its own. Throws ResourceError where the file
+  /// Adds and gives back a case; it replaces one of its "key". Throws ResourceError where the file
   /// cannot be written.
   Json add(Json of_case);
 

@@ -57,7 +57,7 @@ class Scaling {
     for (const EngineChoice& engine : bench_.exact_engines()) {
       bench_.measure(engine.name + "/" + vary + "/" + value.dump(),
                      {{"engine", engine.name}, {"vary", vary}, {"value", value}}, files,
-                     engine.with(more).options, {}, {}, true);
+                     engine.with(more).options, {}, {}, Refusal::kMemory);
     }
   }
 

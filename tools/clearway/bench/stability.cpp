@@ -81,7 +81,8 @@ class Stability {
       files.trajectory = bench_.work() / "stretched.txt";
       write_non_rigid_poses(hall_.trajectory, files.trajectory, stretch);
       against_kdtree("stretch of the poses", stretch, files, {"--allow-non-rigid"});
-      measure("stretch without --allow-non-rigid", stretch, fast_, files, {}, {}, 1);
+      measure("stretch without --allow-non-rigid", stretch, fast_, files, {}, {}, 1,
+              Refusal::kNonRigidPoses);
     }
   }
 
@@ -94,10 +95,19 @@ class Stability {
 
   Json measure(const std::string& vary, const Json& value, const EngineChoice& engine,
                const SceneFiles& files, const std::vector<std::string>& more,
-               const Bench::Judge& judge, std::optional<int> repetitions = {}) {
+               const Bench::Judge& judge, std::optional<int> repetitions = {},
+               Refusal expected = Refusal::kMemory) {
     return bench_.measure(vary + "/" + engine.name + "/" + value.dump(),
                           {{"vary", vary}, {"value", value}, {"engine", engine.name}}, files,
-                          engine.with(more).options, judge, repetitions, true);
+                          engine.with(more).options, judge, repetitions, expected);
+  }
+
+  /// Whether a conversion and the runs on its store are known.
+  bool has_layout(const std::string& key) const {
+    const Json* conversion = bench_.find(key);
+    if (!conversion) return false;
+    if ((*conversion)["findings"].contains("failed")) return true;
+    return bench_.find(key + "/" + fast_.name) && bench_.find(key + "/" + grid_.name);
   }
 
   /// Converts and runs the grid; the conversion's figures are a case of their own.
@@ -106,28 +116,26 @@ class Stability {
     const Json parameters{{"vary", "sparseness"}, {"value", factor}, {"layout", name}};
     const std::string key = "sparseness/" + name + "/" + value.dump();
     files.store = bench_.work() / "sparse.h5";
-    if (bench_.has(key)) return;
-    const Json converted = bench_.convert(files.environment, files.store, {"--layout", option});
+    if (has_layout(key)) return;
+    const Json converted =
+        bench_.convert(key, files.environment, files.store, {"--layout", option});
     for (const EngineChoice& engine : {fast_, grid_}) {
       Json of_run = parameters;
       of_run["engine"] = engine.name;
       if (converted.contains("failed")) continue;
-      bench_.measure(key + "/" + engine.name, of_run, files, engine.options, {}, 1, true);
+      bench_.measure(key + "/" + engine.name, of_run, files, engine.options, {}, 1,
+                     Refusal::kMemory);
     }
     bench_.keep(key, parameters, [&] { return converted; });
   }
 
+  /// Where the tree has no answer the others are not asked.
   void against_kdtree(const std::string& vary, double value, const SceneFiles& files,
                       const std::vector<std::string>& more) {
-    const std::filesystem::path reference = bench_.work() / "kdtree-result.h5";
-    measure(
-        vary, value, kdtree_, files, more,
-        [&](const std::filesystem::path& result) {
-          std::filesystem::copy_file(result, reference,
-                                     std::filesystem::copy_options::overwrite_existing);
-          return Json::object();
-        },
-        1);
+    const Json tree = measure(vary, value, kdtree_, files, more, {}, 1);
+    if (tree.contains("failed")) return;
+    const std::string name = "kdtree " + vary + " " + Json(value).dump();
+    const auto reference = bench_.answer(name, files, kdtree_.with(more).options);
     for (const EngineChoice& engine : {fast_, grid_}) {
       measure(
           vary, value, engine, files, more,
