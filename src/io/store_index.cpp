@@ -18,7 +18,6 @@ namespace clearway {
 namespace {
 
 /// As many as `convert` gives a cell at the most.
-constexpr std::uint32_t kMostCellPoints = 1U << 20;
 
 std::vector<SourceFile> read_sources(const hdf5::Id& file, const std::string& file_name,
                                      ColumnHashes& hashes_of_all) {

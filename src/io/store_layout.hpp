@@ -10,6 +10,7 @@
 namespace clearway {
 
 inline const std::string kStoreFormat = "clearway store";
+inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
 inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
 
 /// The datasets of /cells, row-major. Four chunks a cell: x, y, z, source.

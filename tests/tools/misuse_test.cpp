@@ -208,7 +208,7 @@ TEST_CASE("options that do not go together are refused before an input is looked
   CHECK(site.run("scene hall --seed -1 -o " + site.path("s")).exit_code == 2);
 }
 
-TEST_CASE("a model's faces are not read, which is said") {
+TEST_CASE("faces of a mesh are not read, which is said") {
   const Site site;
   put_bytes(site.folder / "mesh.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -219,6 +219,9 @@ TEST_CASE("a model's faces are not read, which is said") {
                " --trajectory " + site.path("path.txt") + " --radius 0.1 -o " + site.path("m.h5"));
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.err, Contains("its 1 faces are not read: the model is its 3 points"));
+  const Outcome convert =
+      site.run("convert " + site.path("mesh.ply") + " -o " + site.path("m2.h5"));
+  CHECK_THAT(convert.err, Contains("its 1 faces are not read, its vertices are"));
 }
 
 TEST_CASE("the result of floats alone says so") {

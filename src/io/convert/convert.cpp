@@ -23,6 +23,7 @@
 #include "io/pending_file.hpp"
 #include "io/point_reader.hpp"
 #include "io/store.hpp"
+#include "io/store_layout.hpp"
 #include "io/store_writer.hpp"
 #include "io/xxh64.hpp"
 
@@ -37,7 +38,6 @@ constexpr std::uint64_t kBufferBytes = 16 * kMiB;   // units' write buffers
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
 constexpr std::uint32_t kLeastCellPoints = 64;
-constexpr std::uint32_t kMostCellPoints = 1 << 20;
 
 void check_options(const ConversionOptions& options) {
   if (options.memory_bytes < kLeastConversionMemory) {

@@ -64,7 +64,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     std::for_each(files_.begin(), files_.end(), refuse_pipe);
   }
   open_inputs();
-  crs_ = common_crs(files_, infos_, options_.ignore_crs);
+  find_crs();
   if (auto kept = common_quanta(files_, infos_, options_.scale)) {
     quantisation_ = kept->quantisation;
     shifts_ = std::move(kept->shifts);
@@ -85,6 +85,16 @@ void EnvironmentSource::open_inputs() {
     } else {
       declared_points_.reset();
     }
+  }
+}
+
+void EnvironmentSource::find_crs() {
+  crs_ = common_crs(files_, infos_, options_.ignore_crs);
+  remarks_ = crs_.remarks;
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    if (infos_[i].faces == 0) continue;
+    remarks_.push_back(files_[i].string() + ": its " + std::to_string(infos_[i].faces) +
+                       " faces are not read, its vertices are");
   }
 }
 
@@ -110,9 +120,11 @@ void EnvironmentSource::choose_offset_and_scale() {
     quantisation_.offset[k] = offset;
     quantisation_.scale[k] = options_.scale.value_or(fitting);
     if (any && (hi[k] - offset) / quantisation_.scale[k] > kGreatestQuantum) {
-      throw InputError("coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
-                       " do not fit 32-bit integers at --scale " + brief(quantisation_.scale[k]) +
-                       "; --scale " + brief(fitting) + " fits");
+      const bool fits = (hi[k] - offset) / fitting <= kGreatestQuantum;
+      throw InputError(
+          "coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
+          " do not fit 32-bit integers at a scale of " + brief(quantisation_.scale[k]) + "; " +
+          (fits ? "--scale " + brief(fitting) + " fits" : "a coarser --scale is needed"));
     }
   }
 }
@@ -144,7 +156,7 @@ bool EnvironmentSource::next_batch(PointBatch& batch) {
   if (stream_ &&
       (infos_[0].crs_wkt != stream_->info().crs_wkt || infos_[0].unit != stream_->info().unit)) {
     infos_[0] = stream_->info();  // a CRS may follow the points
-    crs_ = common_crs(files_, infos_, options_.ignore_crs);
+    find_crs();
   }
   return false;
 }

@@ -36,8 +36,8 @@ class EnvironmentSource {
   const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-": stream
   /// Points that the inputs declare, where all do.
   std::optional<std::uint64_t> declared_points() const { return declared_points_; }
-  /// Remarks for the log (different CRS, feet).
-  const std::vector<std::string>& remarks() const { return crs_.remarks; }
+  /// Remarks for the log (different CRS, feet, a mesh).
+  const std::vector<std::string>& remarks() const { return remarks_; }
 
   /// The next batch in input order; false at the end.
   bool read(QuantaBatch& batch);
@@ -51,6 +51,7 @@ class EnvironmentSource {
 
  private:
   void open_inputs();
+  void find_crs();
   void choose_offset_and_scale();
   bool next_batch(PointBatch& batch);
   PointReader& reader(std::size_t file);
@@ -61,6 +62,7 @@ class EnvironmentSource {
   EnvironmentOptions options_;
   std::vector<std::filesystem::path> files_;
   std::vector<CloudInfo> infos_;  // of the files
+  std::vector<std::string> remarks_;
   Quantisation quantisation_{};
   std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
   CommonCrs crs_;

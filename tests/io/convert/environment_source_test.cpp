@@ -217,6 +217,8 @@ TEST_CASE("a scale too fine for the extent is refused with one that fits") {
   const ScratchFolder folder;
   write_ply(folder / "a.ply", std::vector<Vec3>{{0, 0, 0}, {30000, 0, 0}});
   CHECK_THAT(refusal({folder / "a.ply"}, with_scale(1e-6)), Contains("--scale 0.0001 fits"));
+  put_bytes(folder / "b.xyz", "1e300 0 0\n0 0 0\n");
+  CHECK_THAT(refusal({folder / "b.xyz"}, {}), Contains("a coarser --scale is needed"));
   write_ply(folder / "a.ply", std::vector<Vec3>{{0, 0, 0}, {1e300, 0, 0}});
   CHECK_THAT(refusal({folder / "a.ply"}), Contains("do not fit"));
 }
