@@ -58,19 +58,13 @@ void run_convert(Options& options) {
   ConversionOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
-  const std::string again = "the same command starts it again, from the beginning";
-  stop_on_signals(again);
   ConsoleProgress progress;
-  try {
-    if (options.resume && is_converted(conversion, progress)) {
-      spdlog::info("{}: is the store of these inputs already; nothing to do",
-                   conversion.output.string());
-      return;
-    }
-    log_report(conversion, convert(conversion, progress));
-  } catch (const Interrupted&) {
-    throw Interrupted(conversion.output.string() + ": interrupted; " + again);
+  if (options.resume && is_converted(conversion, progress)) {
+    spdlog::info("{}: is the store of these inputs already; nothing to do",
+                 conversion.output.string());
+    return;
   }
+  log_report(conversion, convert(conversion, progress));
 }
 
 }  // namespace
@@ -117,7 +111,11 @@ void add_convert(CLI::App& program) {
       "LAZ and other formats by piping LAS: pdal translate in.laz STDOUT --writer las | "
       "clearway convert - -o site.h5\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
-  command->callback([options] { run_convert(*options); });
+  command->callback([options] {
+    run_stoppable(options->conversion.output,
+                  "the same command starts it again, from the beginning",
+                  [&] { run_convert(*options); });
+  });
 }
 
 }  // namespace clearway::tool

@@ -31,16 +31,6 @@ void export_rows(const Options& options) {
                format_count(result.collisions()));
 }
 
-void run_export(const Options& options) {
-  const std::string again = "the same command starts it again";
-  stop_on_signals(again);
-  try {
-    export_rows(options);
-  } catch (const Interrupted&) {
-    throw Interrupted(options.output.string() + ": interrupted; " + again);
-  }
-}
-
 }  // namespace
 
 void add_export(CLI::App& program) {
@@ -71,7 +61,8 @@ void add_export(CLI::App& program) {
       "first_pose (0-based) where the result has it; source is the point's index in the order of\n"
       "the input scans. Text has as many digits as give back each coordinate exactly.\n"
       "Example: clearway export out.h5 -o colliding.las");
-  command->callback([options] { run_export(*options); });
+  command->callback(
+      [options] { run_stoppable(options->output, kStartsAgain, [&] { export_rows(*options); }); });
 }
 
 }  // namespace clearway::tool

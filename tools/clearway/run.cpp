@@ -162,7 +162,6 @@ void run(const RunOptions& options) {
   check_question(question_of(options, {}, {}), options.engine);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   PendingFile output(options.output, options.force || options.resume);
-  stop_on_signals(kHowToResume);
   RunJournal journal(output, options);
   ConsoleProgress progress;
   Seconds seconds;
@@ -212,14 +211,6 @@ void run(const RunOptions& options) {
   }
 }
 
-void run_run(const RunOptions& options) {
-  try {
-    run(options);
-  } catch (const Interrupted&) {
-    throw Interrupted(options.output.string() + ": interrupted; " + kHowToResume);
-  }
-}
-
 }  // namespace
 
 void add_run(CLI::App& program) {
@@ -236,7 +227,8 @@ void add_run(CLI::App& program) {
       "--tolerance the same for every number of threads and memory bound, of one device.\n"
       "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
       "-o out.h5");
-  command->callback([options] { run_run(*options); });
+  command->callback(
+      [options] { run_stoppable(options->output, kHowToResume, [&] { run(*options); }); });
 }
 
 }  // namespace clearway::tool

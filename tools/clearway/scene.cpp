@@ -104,16 +104,6 @@ void make_scene_files(const SceneOptions& options) {
                format_count(sizes.poses));
 }
 
-void run_scene(const SceneOptions& options) {
-  const std::string again = "the same command starts it again";
-  stop_on_signals(again);
-  try {
-    make_scene_files(options);
-  } catch (const Interrupted&) {
-    throw Interrupted(options.folder.string() + ": interrupted; " + again);
-  }
-}
-
 }  // namespace
 
 void add_scene(CLI::App& program) {
@@ -149,7 +139,9 @@ void add_scene(CLI::App& program) {
   add_threads_option(*command, options->threads);
   command->add_flag("--force", options->force, "Overwrite existing files");
   command->footer(kExamples);
-  command->callback([options] { run_scene(*options); });
+  command->callback([options] {
+    run_stoppable(options->folder, kStartsAgain, [&] { make_scene_files(*options); });
+  });
 }
 
 }  // namespace clearway::tool

@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "clearway/exit_code.hpp"
+#include "core/error.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -42,8 +43,6 @@ bool is_ignored(int signal) {
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-}  // namespace
-
 void stop_on_signals(const std::string& advice) {
   last_words = "error: interrupted before what was in flight was finished; " + advice + "\n";
   install(SIGALRM, end_now);
@@ -52,6 +51,18 @@ void stop_on_signals(const std::string& advice) {
   }
 }
 
+}  // namespace
+
 bool stop_requested() { return stop.load(std::memory_order_relaxed); }
+
+void run_stoppable(const std::filesystem::path& output, const std::string& advice,
+                   const std::function<void()>& work) {
+  stop_on_signals(advice);
+  try {
+    work();
+  } catch (const Interrupted&) {
+    throw Interrupted(output.string() + ": interrupted; " + advice);
+  }
+}
 
 }  // namespace clearway::tool

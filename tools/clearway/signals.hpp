@@ -1,16 +1,23 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
 
 namespace clearway::tool {
 
-/// From here on SIGINT and SIGTERM ask the command to stop (stop_requested()). Where it has not
-/// come to an end kGraceSeconds later, `advice` goes to standard error and the process ends with
-/// exit code 5, as if killed. A second signal ends it so at once. To be called once.
-void stop_on_signals(const std::string& advice);
-
 bool stop_requested();
 
+/// The work of a command on `output`. SIGINT and SIGTERM ask it to stop (stop_requested()); where
+/// it then throws Interrupted, the message names the output and gives `advice`. Where it has not
+/// come to an end kGraceSeconds later, the advice goes to standard error and the process ends with
+/// exit code 5, as if killed. A second signal ends it so at once. To be called once.
+void run_stoppable(const std::filesystem::path& output, const std::string& advice,
+                   const std::function<void()>& work);
+
 inline constexpr unsigned kGraceSeconds = 4;
+
+/// Advice of the commands that keep nothing of what they began.
+inline constexpr const char* kStartsAgain = "the same command starts it again";
 
 }  // namespace clearway::tool

@@ -89,16 +89,6 @@ void write_changed(const Options& options, const Change& change) {
   }
 }
 
-void run_change(const Options& options, const Change& change) {
-  const std::string again = "the same command starts it again";
-  stop_on_signals(again);
-  try {
-    write_changed(options, change);
-  } catch (const Interrupted&) {
-    throw Interrupted(options.output.string() + ": interrupted; " + again);
-  }
-}
-
 void add_change(CLI::App& command, const char* max_motion_help, const Change& change) {
   const auto options = std::make_shared<Options>();
   command
@@ -124,7 +114,9 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
   add_trajectory_options(command, options->trajectory);
   command.add_flag("--force", options->force, "Overwrite an existing output");
   command.add_flag("--json", options->json, "One JSON object on standard output");
-  command.callback([options, change] { run_change(*options, change); });
+  command.callback([options, change] {
+    run_stoppable(options->output, kStartsAgain, [&] { write_changed(*options, change); });
+  });
 }
 
 }  // namespace

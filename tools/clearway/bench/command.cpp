@@ -41,13 +41,10 @@ void check_scenes(const Experiment& experiment, bool given) {
 }
 
 void run_bench(const Experiment& experiment, const BenchOptions& options) {
-  stop_on_signals(kHowToResume);
-  try {
+  run_stoppable(options.output, kHowToResume, [&] {
     Bench bench(experiment.name, options);
     experiment.run(bench);
-  } catch (const Interrupted&) {
-    throw Interrupted(options.output.string() + ": interrupted; " + kHowToResume);
-  }
+  });
 }
 
 /// Gives back --scenes.
