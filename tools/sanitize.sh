@@ -8,6 +8,7 @@ export OMP_WAIT_POLICY=passive
 test_under_address_sanitizer() {
   cmake --preset asan
   cmake --build build/asan
+  export LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp:print_suppressions=0"
   ctest --test-dir build/asan --output-on-failure -j "$(nproc)" -LE data --timeout 1800
 }
 
