@@ -66,7 +66,9 @@ TEST_CASE("the smallest memory that a refusal names works, and a byte less is re
                   std::to_string(smallest));
     const Outcome least = hall.search(options + " --json --memory " + std::to_string(smallest));
     REQUIRE(least.exit_code == 0);
+#ifndef CLEARWAY_SANITIZED  // sanitizers take memory of their own
     CHECK(json::parse(least.out)["peak_host_bytes"] <= smallest);
+#endif
     CHECK(json::parse(least.out)["needed_host_bytes"] <= smallest);
     CHECK((hall.bytes("out.h5") == hall.bytes("expected.h5")));
   }
