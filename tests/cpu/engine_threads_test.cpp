@@ -10,7 +10,7 @@ TEST_CASE("points that are each touched by exactly one pose lose no hit") {
   // Points on a line. The model is a comb: pose i touches point i of every `teeth`, so that poses
   // searched at the same time touch points that are neighbours in memory.
 #ifdef CLEARWAY_SANITIZED
-  constexpr std::int32_t kPoints = 1 << 17;
+  constexpr std::int32_t kPoints = 1 << 14;
 #else
   constexpr std::int32_t kPoints = 1 << 20;
 #endif
