@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "core/error.hpp"
+#include "io/file_lock.hpp"
 
 namespace clearway {
 namespace {
@@ -38,19 +39,6 @@ void check_output_name(const fs::path& path, bool overwrite) {
   }
 }
 
-/// A lock of the open file, so that it holds against other opens of this process too. A file system
-/// without locks goes without.
-void lock(int descriptor, const fs::path& path) {
-  struct flock whole {};
-  whole.l_type = F_WRLCK;
-  whole.l_whence = SEEK_SET;
-  if (::fcntl(descriptor, F_OFD_SETLK, &whole) == 0) return;
-  if (errno == EAGAIN || errno == EACCES) {
-    throw ResourceError(path.string() +
-                        ": another process is writing it; wait for it, or choose another output");
-  }
-}
-
 bool is_at(int descriptor, const fs::path& path) {
   struct stat opened {
   }, named{};
@@ -75,7 +63,10 @@ File create_locked(const fs::path& path) {
     if (descriptor < 0 && (errno == EINTR || errno == ELOOP)) continue;
     if (descriptor < 0) fail(path, "create");
     File file = File::adopt(descriptor, path.string());
-    lock(descriptor, path);
+    if (!lock_whole(file)) {
+      throw ResourceError(path.string() +
+                          ": another process is writing it; wait for it, or choose another output");
+    }
     // Between opening and locking its last owner may have renamed or removed it.
     if (is_at(descriptor, path)) return file;
   }

@@ -15,7 +15,7 @@ namespace clearway::tool {
 namespace {
 
 /// A tolerance is the sweep's, and only for sets.
-void check_tolerance(const Question& question, const EngineOptions& options) {
+void check_tolerance(const Question& question, const std::string& engine) {
   const char* other = question.first_pose      ? "--first-pose"
                       : question.clearance > 0 ? "--clearance"
                       : question.between_poses ? "--between-poses"
@@ -25,9 +25,8 @@ void check_tolerance(const Question& question, const EngineOptions& options) {
                      " cannot be combined: without --tolerance, --engine sweep answers " + other +
                      " exactly");
   }
-  if (options.engine != "sweep") {
-    throw UsageError("--tolerance: engine " + options.engine +
-                     " is always exact; take --engine sweep");
+  if (engine != "sweep") {
+    throw UsageError("--tolerance: engine " + engine + " is always exact; take --engine sweep");
   }
   if (!(question.tolerance < question.radius)) {
     throw UsageError(
@@ -64,23 +63,22 @@ std::string chosen_engine(const EngineOptions& options) {
 }
 
 void check_question(const Question& question, const EngineOptions& options) {
-  EngineOptions chosen = options;
-  chosen.engine = chosen_engine(options);
-  if (question.tolerance > 0) check_tolerance(question, chosen);
+  const std::string engine = chosen_engine(options);
+  if (question.tolerance > 0) check_tolerance(question, engine);
   if (question.clearance > 0 && question.between_poses) {
     throw UsageError("--clearance and --between-poses cannot be combined: clearances are at poses");
   }
-  if (question.clearance > 0 && chosen.engine == "kdtree") {
+  if (question.clearance > 0 && engine == "kdtree") {
     throw UsageError("--clearance: engine kdtree has no clearances; take --engine sweep");
   }
-  if (chosen.engine == "grid" && (question.clearance > 0 || question.between_poses)) {
+  if (engine == "grid" && (question.clearance > 0 || question.between_poses)) {
     throw UsageError(std::string(question.clearance > 0 ? "--clearance" : "--between-poses") +
                      ": engine grid does not offer it; take --engine sweep");
   }
-  if (chosen.engine != "grid" && (options.grid_cell > 0 || options.float_precision)) {
+  if (engine != "grid" && (options.grid_cell > 0 || options.float_precision)) {
     throw UsageError("--grid-cell and --precision float are of --engine grid");
   }
-  if (chosen.engine == "kdtree" && (options.field_voxel > 0 || options.device_memory_bytes > 0)) {
+  if (engine == "kdtree" && (options.field_voxel > 0 || options.device_memory_bytes > 0)) {
     throw UsageError("--field-voxel and --device-memory are not of --engine kdtree");
   }
   if (std::set(options.gpus.begin(), options.gpus.end()).size() < options.gpus.size()) {

@@ -90,11 +90,10 @@ void EnvironmentSource::open_inputs() {
 
 void EnvironmentSource::find_crs() {
   crs_ = common_crs(files_, infos_, options_.ignore_crs);
-  remarks_ = crs_.remarks;
   for (std::size_t i = 0; i < files_.size(); ++i) {
     if (infos_[i].faces == 0) continue;
-    remarks_.push_back(files_[i].string() + ": its " + std::to_string(infos_[i].faces) +
-                       " faces are not read, its vertices are");
+    crs_.remarks.push_back(files_[i].string() + ": its " + std::to_string(infos_[i].faces) +
+                           " faces are not read, its vertices are");
   }
 }
 

@@ -37,7 +37,7 @@ class EnvironmentSource {
   /// Points that the inputs declare, where all do.
   std::optional<std::uint64_t> declared_points() const { return declared_points_; }
   /// Remarks for the log (different CRS, feet, a mesh).
-  const std::vector<std::string>& remarks() const { return remarks_; }
+  const std::vector<std::string>& remarks() const { return crs_.remarks; }
 
   /// The next batch in input order; false at the end.
   bool read(QuantaBatch& batch);
@@ -62,7 +62,6 @@ class EnvironmentSource {
   EnvironmentOptions options_;
   std::vector<std::filesystem::path> files_;
   std::vector<CloudInfo> infos_;  // of the files
-  std::vector<std::string> remarks_;
   Quantisation quantisation_{};
   std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
   CommonCrs crs_;

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/error.hpp"
+#include "io/file_lock.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -21,8 +22,7 @@ fs::path made(fs::path path) {
   return path;
 }
 
-/// The lock's file stays: removing it would let another process lock one without a name. A file
-/// system without locks goes without.
+/// The lock's file stays: removing it would let another process lock one without a name.
 File locked(const fs::path& folder) {
   const fs::path path = folder / "bench.lock";
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -30,10 +30,7 @@ File locked(const fs::path& folder) {
     throw ResourceError(path.string() + ": cannot create: " + std::strerror(errno));
   }
   File file = File::adopt(descriptor, path.string());
-  struct flock whole {};
-  whole.l_type = F_WRLCK;
-  whole.l_whence = SEEK_SET;
-  if (::fcntl(descriptor, F_OFD_SETLK, &whole) != 0 && (errno == EAGAIN || errno == EACCES)) {
+  if (!lock_whole(file)) {
     throw ResourceError(folder.string() +
                         ": another bench uses it; wait for it, or take another --work");
   }
