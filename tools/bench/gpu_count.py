@@ -2,6 +2,8 @@
 """Runs a scene on one GPU and on more and compares the results; writes one JSON file.
 
     gpu_count.py --program build/release/tools/clearway --work /tmp/gpus --out figures.json --gpus 2 [--scenes plant] [--share 1]
+
+A scene whose store lies in the work folder is not made again.
 """
 import argparse
 import filecmp
@@ -33,8 +35,9 @@ def main():
     results = {"gpus": options.gpus, "runs": []}
     for kind in options.scenes:
         folder = options.work / kind
-        call(options.program, "scene", kind, "-o", folder, "--points", round(POINTS[kind] * options.share), "--force")
-        call(options.program, "convert", folder / "environment.las", "-o", folder / "site.h5", "--memory", "32G", "--force")
+        if not (folder / "site.h5").exists():
+            call(options.program, "scene", kind, "-o", folder, "--points", round(POINTS[kind] * options.share), "--force")
+            call(options.program, "convert", folder / "environment.las", "-o", folder / "site.h5", "--memory", "32G")
         ask = [options.program, "run", "--env", folder / "site.h5", "--model", folder / "model.ply", "--trajectory",
                folder / "trajectory.txt", "--radius", "0.1", "--force", "--json", "--device-memory", "2G", "--memory", "32G"]
         for engine in ("sweep", "grid"):

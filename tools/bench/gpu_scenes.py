@@ -4,7 +4,7 @@
     gpu_scenes.py --program build/release/tools/clearway --work /tmp/scenes --out figures.json [--share 1] [--scenes hall ...]
 
 Every run is made cold once (the store's pages dropped from the page cache) and warm several times; the cells of the same
-pages are read alone too, by clearway_stage_bench beside the program.
+pages are read alone too, by clearway_stage_bench beside the program. A scene whose store lies in the work folder is not made again.
 """
 import argparse
 import json
@@ -55,14 +55,17 @@ def stages(options, folder, store, extra, cold):
 
 
 def make(options, kind, folder):
+    """The store of the scene, and what making it took; one that lies there already is used."""
     points = round(POINTS[kind] * options.share)
     folder.mkdir(parents=True, exist_ok=True)
     store = folder / "site.h5"
-    made, _, _ = timed([options.program, "scene", kind, "-o", folder, "--points", str(points)])
-    converted, _, _ = timed([options.program, "convert", folder / "environment.las", "-o", store, "--force",
-                             "--memory", options.memory, *(["--cell-points", options.cell_points] if options.cell_points else [])])
-    (folder / "environment.las").unlink()
-    return store, {"points": points, "scene_seconds": made, "convert_seconds": converted, "store_bytes": store.stat().st_size}
+    figures = {"points": points}
+    if not store.exists():
+        figures["scene_seconds"], _, _ = timed([options.program, "scene", kind, "-o", folder, "--points", str(points)])
+        figures["convert_seconds"], _, _ = timed([options.program, "convert", folder / "environment.las", "-o", store, "--memory", options.memory,
+                                                  *(["--cell-points", options.cell_points] if options.cell_points else [])])
+        (folder / "environment.las").unlink()
+    return store, figures | {"store_bytes": store.stat().st_size}
 
 
 def measure(options, kind):
