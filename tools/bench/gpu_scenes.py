@@ -101,7 +101,7 @@ def main():
     options = parser.parse_args()
     machine = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"],
                              capture_output=True, text=True).stdout.strip()
-    results = {"machine": {"gpu": machine, "cores": os.cpu_count()}, "device_memory": options.device_memory, "scenes": {}}
+    results = {"machine": {"gpu": machine, "cores": len(os.sched_getaffinity(0))}, "device_memory": options.device_memory, "scenes": {}}
     for kind in options.scenes:
         results["scenes"][kind] = measure(options, kind)
         options.out.write_text(json.dumps(results, indent=1) + "\n")
