@@ -116,6 +116,7 @@ def torment(name, command, reference, output, kills, draw):
     done = run(command([], reference))
     usual = time.monotonic() - begin
     expect(done.returncode == 0, done.stdout)
+    print(f"{name}: {usual:.2f} s undisturbed", flush=True)
     tally = Tally()
     while tally.kills < kills:
         output.unlink(missing_ok=True)
