@@ -1,10 +1,17 @@
 #!/usr/bin/env bash
 # Builds Clearway, measures all experiments of `clearway bench` and draws their charts: the whole
 # evaluation of docs/evaluation.md. Installs missing packages (Debian 12). Run again, it goes on
-# where it was stopped.
-# Usage: tools/evaluate.sh [small|full] FOLDER
+# where it was stopped; another commit needs another FOLDER, or --force, which removes the outputs
+# of before.
+# Usage: tools/evaluate.sh [--force] [small|full] FOLDER
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
 set -euo pipefail
+experiments=(table threads grid datasets points accuracy stability scaling)
+force=no
+if [ "${1:-}" = --force ]; then
+  force=yes
+  shift
+fi
 size=small
 case "${1:-}" in small | full)
   size=$1
@@ -12,7 +19,7 @@ case "${1:-}" in small | full)
   ;;
 esac
 if [ $# -ne 1 ] || [ "${1#-}" != "$1" ]; then
-  echo "usage: tools/evaluate.sh [small|full] FOLDER" >&2
+  echo "usage: tools/evaluate.sh [--force] [small|full] FOLDER" >&2
   exit 2
 fi
 mkdir -p "$1"
@@ -24,7 +31,8 @@ install_missing_packages
 cmake --preset release >/dev/null
 cmake --build build/release --target clearway
 
-for experiment in table threads grid datasets points accuracy stability scaling; do
+if [ $force = yes ]; then (cd "$folder" && rm -rf work "${experiments[@]/%/.json}"); fi
+for experiment in "${experiments[@]}"; do
   printf '\n== %s\n' "$experiment"
   build/release/tools/clearway bench "$experiment" -o "$folder/$experiment.json" \
     --work "$folder/work" --size "$size" --resume

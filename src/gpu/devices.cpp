@@ -37,10 +37,15 @@ std::string cuda_device_name(int index) {
 
 CudaDevice open_cuda_device(int index) {
   ask_for_queues();
-  check_cuda(cudaSetDevice(index));
-  std::size_t free_bytes = 0, total_bytes = 0;
-  check_cuda(cudaMemGetInfo(&free_bytes, &total_bytes));
-  return {index, cuda_device_name(index), total_bytes, free_bytes};
+  try {
+    check_cuda(cudaSetDevice(index));
+    std::size_t free_bytes = 0, total_bytes = 0;
+    check_cuda(cudaMemGetInfo(&free_bytes, &total_bytes));
+    return {index, cuda_device_name(index), total_bytes, free_bytes};
+  } catch (const ResourceError&) {
+    cudaGetLastError();  // or a check after a launch on another device finds it
+    throw;
+  }
 }
 
 }  // namespace clearway

@@ -65,6 +65,12 @@ struct Slot {
         next_task(1),
         sort_scratch(grid_sort_bytes(points)) {}
 
+  std::uint64_t device_bytes() const {
+    return page.bytes() + plan.bytes() + answer.bytes() + keys.bytes() + order.bytes() +
+           sorted_keys.bytes() + sorted_order.bytes() + grid_points.bytes() + buckets.bytes() +
+           occupancy.bytes() + group_occupancy.bytes() + done.bytes() + latest.bytes() +
+           next_task.bytes() + sort_scratch.bytes();
+  }
   std::uint64_t pinned_bytes() const {
     return host_page.bytes() + host_plan.bytes() + host_answer.bytes();
   }
@@ -89,10 +95,10 @@ class CudaGridEngine::Impl {
  public:
   Impl(int device, const GridScene& scene, const SlotLayout& options)
       : device_(on(device)), options_(options), scene_(scene), on_device_(scene), statistics_(1) {
-    device_bytes_ = cuda_grid_bytes(scene);
+    device_bytes_ = on_device_.allocated_bytes() + statistics_.bytes();
     for (std::uint32_t i = 0; i < options.slots; ++i) {
       slots_.emplace_back(scene, options);
-      device_bytes_ += cuda_grid_slot_bytes(scene, options);
+      device_bytes_ += slots_.back().device_bytes();
       pinned_bytes_ += slots_.back().pinned_bytes();
     }
     check_cuda(cudaMemset(statistics_.data(), 0, statistics_.bytes()));

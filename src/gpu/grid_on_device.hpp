@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "gpu/device_array.hpp"
@@ -22,6 +23,11 @@ class GridOnDevice {
                               bounds_.data(), nodes_.data(), runs_.data())) {}
 
   const GridSceneView& view() const { return view_; }
+
+  std::uint64_t allocated_bytes() const {
+    return points_.bytes() + groups_.bytes() + parts_.bytes() + poses_.bytes() + bounds_.bytes() +
+           nodes_.bytes() + runs_.bytes();
+  }
 
  private:
   template <typename Value>

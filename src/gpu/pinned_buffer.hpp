@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "gpu/cuda_check.hpp"
@@ -16,7 +17,13 @@ template <typename Value>
 class PinnedBuffer {
  public:
   explicit PinnedBuffer(std::size_t count) : count_(count) {
-    if (count > 0) check_cuda(cudaHostAlloc(&data_, bytes(), cudaHostAllocPortable));
+    if (count == 0) return;
+    const cudaError_t status = cudaHostAlloc(&data_, bytes(), cudaHostAllocPortable);
+    if (status == cudaErrorMemoryAllocation) {
+      throw ResourceError("no " + std::to_string(bytes()) + " bytes of page-locked host memory: " +
+                          cudaGetErrorString(status) + "; take less --memory, or --device cpu");
+    }
+    check_cuda(status);
   }
   PinnedBuffer(PinnedBuffer&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}

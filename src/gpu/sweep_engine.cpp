@@ -12,6 +12,8 @@
 namespace clearway {
 namespace {
 
+constexpr std::uint64_t kTallies = kSweepCounts * kSweepTallies;
+
 /// Words, first poses and clearances of a page, one after the other.
 struct AnswerLayout {
   std::uint64_t words, first_poses, clearances;
@@ -46,6 +48,11 @@ struct Slot {
     check_cuda(cudaMemset(answer.data(), 0, answer.bytes()));
   }
 
+  std::uint64_t device_bytes() const {
+    return page.bytes() + answer.bytes() + work.allocated_bytes();
+  }
+  std::uint64_t pinned_bytes() const { return host_page.bytes() + host_answer.bytes(); }
+
   PinnedBuffer<std::byte> host_page, host_answer;
   DeviceBuffer<std::byte> page, answer;
   SweepWorkOnDevice work;
@@ -63,14 +70,14 @@ class CudaSweepEngine::Impl {
         resident_(resident_sweep_blocks(device)),
         quantisation_(cloud.quantisation()),
         sweep_(sweep),
-        tallies_(kSweepCounts * kSweepTallies),
-        device_bytes_(cuda_sweep_bytes(sweep)),
+        tallies_(kTallies),
+        device_bytes_(sweep_.allocated_bytes() + tallies_.bytes()),
         pinned_bytes_(0) {
     slots_.reserve(layout.slots);
     for (std::uint32_t i = 0; i < layout.slots; ++i) {
       slots_.emplace_back(sweep, most_blocks(cloud, layout), page_bytes_of(layout));
-      device_bytes_ += cuda_sweep_slot_bytes(sweep, cloud, layout);
-      pinned_bytes_ += slots_.back().host_page.bytes() + slots_.back().host_answer.bytes();
+      device_bytes_ += slots_.back().device_bytes();
+      pinned_bytes_ += slots_.back().pinned_bytes();
     }
     check_cuda(cudaMemset(tallies_.data(), 0, tallies_.bytes()));
     check_cuda(cudaDeviceSynchronize());  // the slots' streams do not wait for copies and memsets
@@ -141,7 +148,7 @@ class CudaSweepEngine::Impl {
     return total;
   }
 
-  std::uint64_t device_bytes() const { return device_bytes_ + tallies_.bytes(); }
+  std::uint64_t device_bytes() const { return device_bytes_; }
   std::uint64_t pinned_bytes() const { return pinned_bytes_; }
 
  private:
@@ -188,7 +195,9 @@ SweepStatistics CudaSweepEngine::statistics() const { return impl_->statistics()
 std::uint64_t CudaSweepEngine::device_bytes() const { return impl_->device_bytes(); }
 std::uint64_t CudaSweepEngine::pinned_bytes() const { return impl_->pinned_bytes(); }
 
-std::uint64_t cuda_sweep_bytes(const SweepRef& sweep) { return SweepOnDevice::bytes(sweep); }
+std::uint64_t cuda_sweep_bytes(const SweepRef& sweep) {
+  return SweepOnDevice::bytes(sweep) + kTallies * sizeof(unsigned long long);
+}
 
 std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const PackedCloud& cloud,
                                     const SlotLayout& layout) {

@@ -38,6 +38,13 @@ class SweepOnDevice {
 
   const SweepRef& ref() const { return ref_; }
 
+  std::uint64_t allocated_bytes() const {
+    return coarse_squared_.bytes() + coarse_nearest_.bytes() + brick_of_.bytes() +
+           distances_.bytes() + nearest_.bytes() + points_.bytes() + boxes_.bytes() +
+           nodes_.bytes() + pull_backs_.bytes() + poses_.bytes();
+  }
+
+  /// That, before it is made.
   static std::uint64_t bytes(const SweepRef& sweep) {
     const std::uint64_t coarse =
         sweep.field.coarse_nodes() * (sweep.field.coarse_nearest == nullptr ? 8 : 12);

@@ -32,6 +32,11 @@ class SweepWorkOnDevice {
             .item_capacity = static_cast<std::uint32_t>(items_.size())};
   }
 
+  std::uint64_t allocated_bytes() const {
+    return nodes_.bytes() + entries_.bytes() + walks_.bytes() + items_.bytes() + counts_.bytes();
+  }
+
+  /// That, before it is made.
   static std::uint64_t bytes(const SweepRef& sweep, std::uint64_t most_blocks) {
     constexpr std::uint64_t kBlockBytes =
         kNodes * sizeof(std::uint32_t) +

@@ -27,13 +27,26 @@ int checked_open(const std::filesystem::path& path, int flags, const char* what)
   return descriptor;
 }
 
+struct stat status_of(int descriptor, const std::string& name) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) fail(name, "read the status");
+  return status;
+}
+
 }  // namespace
 
 File File::open_for_reading(const std::filesystem::path& path) {
   File file(checked_open(path, O_RDONLY, "open"), path.string());
-  struct stat status {};
-  if (::fstat(file.descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) {
+  if (S_ISDIR(status_of(file.descriptor_, file.name_).st_mode)) {
     throw ResourceError(path.string() + ": is a directory, expected a file");
+  }
+  return file;
+}
+
+File File::open_regular(const std::filesystem::path& path) {
+  File file(checked_open(path, O_RDONLY | O_NONBLOCK, "open"), path.string());
+  if (!file.is_regular()) {
+    throw ResourceError(path.string() + ": is a directory, pipe or device, expected a file");
   }
   return file;
 }
@@ -68,15 +81,19 @@ File::~File() {
 }
 
 std::uint64_t File::size_bytes() const {
-  struct stat status {};
-  if (::fstat(descriptor_, &status) != 0) fail(name_, "read the size");
-  return static_cast<std::uint64_t>(status.st_size);
+  return static_cast<std::uint64_t>(status_of(descriptor_, name_).st_size);
 }
 
-bool File::is_regular() const {
-  struct stat status {};
-  return ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
+bool File::is_regular() const { return S_ISREG(status_of(descriptor_, name_).st_mode); }
+
+bool File::is_at(const std::filesystem::path& path) const {
+  const struct stat opened = status_of(descriptor_, name_);
+  struct stat named {};
+  return ::lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
 }
+
+std::uint64_t File::names() const { return status_of(descriptor_, name_).st_nlink; }
 
 void File::read_at(std::uint64_t offset, std::span<std::byte> out) const {
   while (!out.empty()) {

@@ -13,6 +13,8 @@ namespace clearway {
 class File {
  public:
   static File open_for_reading(const std::filesystem::path& path);
+  /// Refuses what is no regular file, such as a pipe, at once instead of waiting for its bytes.
+  static File open_regular(const std::filesystem::path& path);
   /// Creates the file or empties an existing one.
   static File create(const std::filesystem::path& path);
   /// A file without a name in `folder`, gone when closed or when the process dies.
@@ -28,6 +30,10 @@ class File {
   const std::string& name() const { return name_; }
   std::uint64_t size_bytes() const;
   bool is_regular() const;
+  /// Whether this file, and no other, has that name.
+  bool is_at(const std::filesystem::path& path) const;
+  /// How many names it has.
+  std::uint64_t names() const;
 
   /// Reads exactly out.size() bytes at `offset`, which lie before the end of the file; one that
   /// shrank throws ResourceError.

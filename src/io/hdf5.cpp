@@ -159,7 +159,7 @@ Id create_file(const std::filesystem::path& path) {
 
 Id open_file(const std::filesystem::path& path) {
   silence();
-  check_superblock(File::open_for_reading(path));
+  check_superblock(File::open_regular(path));
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
     if (const auto words = system_reason()) throw ResourceError(path.string() + ": " + *words);

@@ -15,7 +15,7 @@ std::filesystem::path journal_of(const std::filesystem::path& output) {
 bool is_journal(const std::filesystem::path& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return false;
-  const File file = File::open_for_reading(path);
+  const File file = File::open_regular(path);
   std::array<std::byte, sizeof kJournalMagic> found;
   const std::size_t bytes = std::min<std::uint64_t>(file.size_bytes(), found.size());
   file.read_at(0, std::span(found).first(bytes));

@@ -88,6 +88,7 @@ class JournalReader {
   const std::string& name() const { return file_.name(); }
   /// None where not even that was written: nothing is in it.
   const std::optional<JournalIdentity>& identity() const { return identity_; }
+  const File& file() const { return file_; }
   /// Records but the identity.
   std::uint64_t records() const { return records_; }
   std::uint64_t whole_bytes() const { return whole_bytes_; }
@@ -122,6 +123,8 @@ class JournalWriter {
   /// The record is empty afterwards.
   void append(JournalRecord& record);
   void sync();
+
+  const File& file() const;
 
  private:
   struct State;

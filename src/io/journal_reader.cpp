@@ -95,8 +95,7 @@ void JournalPayload::refuse(const std::string& what) const {
   throw InputError(where_ + ": " + what);
 }
 
-JournalReader::JournalReader(const std::filesystem::path& path)
-    : file_(File::open_for_reading(path)) {
+JournalReader::JournalReader(const std::filesystem::path& path) : file_(File::open_regular(path)) {
   const std::uint64_t size = file_.size_bytes();
   if (size < kJournalHeadBytes) {
     if (size > 0 && !is_journal(path)) refuse(name(), "not a journal, expected one");

@@ -97,6 +97,8 @@ JournalWriter JournalWriter::resume(const std::filesystem::path& path, const Jou
       std::make_unique<State>(std::move(file), read.whole_bytes(), interval_seconds));
 }
 
+const File& JournalWriter::file() const { return state_->file; }
+
 void JournalWriter::append(JournalRecord& record) {
   State& s = *state_;
   const auto payload = std::span(record.bytes_).subspan(sizeof(RecordHeader));

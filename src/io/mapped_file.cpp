@@ -69,7 +69,7 @@ void on_map_fault(int, siginfo_t* info, void*) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) : file_(File::open_for_reading(path)) {
+MappedFile::MappedFile(const std::filesystem::path& path) : file_(File::open_regular(path)) {
   const std::uint64_t size = file_.size_bytes();
   if (size == 0) return;
   void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file_.descriptor(), 0);
@@ -90,7 +90,7 @@ void install_map_fault_handler(int exit_code) {
   fault_exit_code = exit_code;
   struct sigaction action {};
   action.sa_sigaction = on_map_fault;
-  action.sa_flags = SA_SIGINFO | SA_RESETHAND;
+  action.sa_flags = SA_SIGINFO;
   ::sigaction(SIGBUS, &action, nullptr);
 }
 

@@ -1,7 +1,6 @@
 #include "io/pending_file.hpp"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,21 +38,16 @@ void check_output_name(const fs::path& path, bool overwrite) {
   }
 }
 
-bool is_at(int descriptor, const fs::path& path) {
-  struct stat opened {
-  }, named{};
-  return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+[[noreturn]] void refuse_partial(const fs::path& path, const char* what) {
+  throw UsageError(path.string() + ": is in the place of this output's temporary file and " + what +
+                   "; move it away, or choose another output");
 }
 
 /// A link, a pipe or a device would lead what is written elsewhere.
 void check_partial(const fs::path& path) {
   std::error_code unknown;
   const fs::file_status found = fs::symlink_status(path, unknown);
-  if (!fs::exists(found) || fs::is_regular_file(found)) return;
-  throw UsageError(path.string() +
-                   ": is in the place of this output's temporary file and is no file; move it "
-                   "away, or choose another output");
+  if (fs::exists(found) && !fs::is_regular_file(found)) refuse_partial(path, "is no file");
 }
 
 File create_locked(const fs::path& path) {
@@ -68,7 +62,9 @@ File create_locked(const fs::path& path) {
                           ": another process is writing it; wait for it, or choose another output");
     }
     // Between opening and locking its last owner may have renamed or removed it.
-    if (is_at(descriptor, path)) return file;
+    if (!file.is_at(path)) continue;
+    if (file.names() > 1) refuse_partial(path, "has another name too");
+    return file;
   }
 }
 

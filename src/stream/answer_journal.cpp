@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <utility>
+#include <vector>
 
 namespace clearway {
 namespace {
@@ -208,6 +209,11 @@ void AnswerJournal::append(JournalRecord& record) {
   writer_->append(record);
 }
 
+bool AnswerJournal::is_in_place() const {
+  if (writer_) return writer_->file().is_at(path_);
+  return read_ != nullptr && read_->file().is_at(path_);
+}
+
 void AnswerJournal::append_page(std::span<const PlannedCell> cells, const PageAnswer& answer) {
   JournalRecord record;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -279,21 +285,32 @@ std::uint64_t AnswerJournal::most_bytes(const PackedCloud& cloud, const Question
 
 JournalledWork journalled_work(const JournalReader& journal) {
   JournalledWork work;
-  journal.for_each([&work](JournalPayload payload) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> poses;  // first and count
+  journal.for_each([&](JournalPayload payload) {
     switch (payload.take<std::uint8_t>()) {
       case kCell:
         ++work.cells;
         break;
-      case kFinishedPoses:
-        payload.take_count();
-        work.poses += payload.take_count();
+      case kFinishedPoses: {
+        const std::uint64_t first = payload.take_count();
+        poses.emplace_back(first, payload.take_count());
         break;
+      }
       case kMarks:
         break;
       default:
         payload.refuse("of an unknown kind");
     }
   });
+  // With other numbers of threads the poses were divided otherwise: some were finished twice.
+  std::sort(poses.begin(), poses.end());
+  std::uint64_t end = 0;
+  for (const auto& [first, count] : poses) {
+    const std::uint64_t past = first + std::min(count, ~first);
+    if (past <= end) continue;
+    work.poses += past - std::max(first, end);
+    end = past;
+  }
   return work;
 }
 

@@ -39,6 +39,9 @@ class AnswerJournal final : public PoseJournal {
   void append_marks(std::span<PoseMark> marks) override;
   void append_finished_poses(std::uint32_t first, std::uint32_t count) override;
 
+  /// Whether the file's name is still this journal's. Not while others append.
+  bool is_in_place() const;
+
   /// Memory at the most, while as many threads append, bytes.
   static std::uint64_t most_bytes(const PackedCloud& cloud, const Question& question, int threads);
 

@@ -25,10 +25,15 @@ Answer grid_on_cuda(const PackedCloud& cloud, const Question& question, int) {
 }
 
 Answer sweep_on_cuda(const PackedCloud& cloud, const Question& question, int threads) {
-  return run_sweep(cloud, question, threads,
-                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
-                     return std::make_unique<CudaSweepEngine>(0, filter.ref(), of, layout);
-                   });
+  return run_sweep(
+      cloud, question, threads,
+      [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
+        const SweepRef& sweep = filter.ref();
+        auto engine = std::make_unique<CudaSweepEngine>(0, sweep, of, layout);
+        CHECK(engine->device_bytes() ==
+              cuda_sweep_bytes(sweep) + layout.slots * cuda_sweep_slot_bytes(sweep, of, layout));
+        return engine;
+      });
 }
 
 bool only_lists_tests(int count, char** arguments) {

@@ -15,12 +15,13 @@ namespace {
 
 class Experiment {
  public:
-  explicit Experiment(const std::string& name) : name_(name) {}
+  explicit Experiment(const std::string& name, int repetitions = 2)
+      : name_(name), repetitions_(repetitions) {}
 
   Outcome run(const std::string& more = "") const {
-    return run_program(folder_, "bench " + name_ +
-                                    " --size smoke --device cpu --repetitions 2 -o " +
-                                    quoted(file()) + " --work " + quoted(work()) + " " + more);
+    return run_program(folder_, "bench " + name_ + " --size smoke --device cpu --repetitions " +
+                                    std::to_string(repetitions_) + " -o " + quoted(file()) +
+                                    " --work " + quoted(work()) + " " + more);
   }
   std::filesystem::path work() const { return folder_ / "work"; }
   std::filesystem::path file() const { return folder_ / "figures.json"; }
@@ -29,6 +30,7 @@ class Experiment {
 
  private:
   std::string name_;
+  int repetitions_;
   ScratchFolder folder_;
 };
 
@@ -162,6 +164,31 @@ TEST_CASE("a work folder is of one bench at a time") {
   CHECK(datasets.run("--scenes hall").exit_code == 0);
 }
 
+TEST_CASE("a work folder of another program is refused, whatever it holds") {
+  const Experiment datasets("datasets");
+  REQUIRE(datasets.run("--scenes hall").exit_code == 0);
+  const auto note = datasets.work() / "made-by.json";
+  Json program = Json::parse(bytes_of(note));
+  const Json header = datasets.figures()["clearway"];
+  for (const char* name : {"version", "commit", "build"}) CHECK(program[name] == header[name]);
+  const bool clean = !clearway::tool::may_have_changed(program);
+  const Outcome resumed = datasets.run("--scenes hall --resume");
+  CHECK(resumed.exit_code == 0);
+  const std::string changed = "but the source may have changed";
+  CHECK((resumed.err.find(changed) == std::string::npos) == clean);
+  program["commit"] = "0123456789ab";
+  std::ofstream(note) << program;
+  const Outcome refused = datasets.run("--scenes hall --force");
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("commit 0123456789ab") &&
+                              Contains(header["commit"].get<std::string>()) &&
+                              Contains("another --work or remove the folder"));
+  std::filesystem::remove(note);
+  const Outcome adopted = datasets.run("--scenes hall --force");
+  CHECK(adopted.exit_code == 0);
+  CHECK_THAT(adopted.err, Contains("scenes and stores of an unknown program are used"));
+}
+
 TEST_CASE("a failure that says nothing of the method ends the experiment") {
   const Experiment scaling("scaling");
   std::filesystem::create_directories(scaling.work() / "result.h5");
@@ -171,13 +198,28 @@ TEST_CASE("a failure that says nothing of the method ends the experiment") {
   CHECK(scaling.figures()["cases"].empty());
 }
 
+TEST_CASE("bench grid: its regular layouts say how many points a chunk has") {
+  const Experiment grid("grid", 1);
+  REQUIRE(grid.run().exit_code == 0);
+  std::set<std::string> varied;
+  const Json figures = grid.figures();
+  for (const Json& one : figures["cases"]) {
+    CAPTURE(one["key"]);
+    const Json& parameters = one["parameters"];
+    varied.insert(parameters["vary"]);
+    CHECK(one["runs"].size() == 1);
+    CHECK(parameters.contains("chunk_points") == (parameters["vary"] == "regular layout"));
+  }
+  CHECK(varied.size() == 3);
+}
+
 TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {
   const Experiment accuracy("accuracy");
   const Outcome done = accuracy.run("--limit 4");
   CAPTURE(done.err);
   REQUIRE(done.exit_code == 0);
   std::set<std::string> methods;
-  const Json figures = accuracy.figures();
+  Json figures = accuracy.figures();
   for (const Json& one : figures["cases"]) {
     CAPTURE(one["key"]);
     const std::string method = one["parameters"]["method"];
@@ -197,4 +239,10 @@ TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {
     }
   }
   CHECK(methods.size() == 8);
+  REQUIRE(figures["cases"][1]["key"] == "exact/sweep cpu/\"\"");
+  figures["cases"][1]["findings"]["misses"] = 1;
+  accuracy.write(figures);
+  const Outcome wrong = accuracy.run("--limit 4 --resume");
+  CHECK(wrong.exit_code != 0);
+  CHECK_THAT(wrong.err, Contains("engines that decide exactly are wrong: exact/sweep cpu/"));
 }

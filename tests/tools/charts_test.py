@@ -9,6 +9,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
+
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
 
@@ -74,7 +76,7 @@ def grid():
         yield case({"vary": "adaptive layout", "value": points}, 0.4 + 0.1 * abs(i - 3),
                    cells=55_000_000 // int(points))
     for i, size in enumerate(("0.7", "1", "1.5", "2", "3", "5", "8", "12", "20")):
-        yield case({"vary": "regular layout", "value": size}, 0.5 + 0.1 * i,
+        yield case({"vary": "regular layout", "value": size, "chunk_points": 4096}, 0.5 + 0.1 * i,
                    failed=REFUSED if i == 0 else None, cells=90_000 // (i + 1) ** 2)
 
 
@@ -98,10 +100,13 @@ def accuracy():
         yield case({"method": "exact", "engine": engine, "value": ""}, seconds, judged(0, 0))
     yield case({"method": "float", "engine": FLOAT, "value": ""}, 0.3, judged(3, 2e-9))
     for far, distance in (("UTM", 0.02), ("10,000 km", 0.1)):
-        yield case({"method": "exact, far origin", "engine": "sweep cuda", "value": far}, 0.05,
-                   judged(0, 0))
+        for engine in ("kdtree cpu", "sweep cuda", "grid cuda"):
+            yield case({"method": "exact, far origin", "engine": engine, "value": far},
+                       ENGINES[engine], judged(0, 0))
         yield case({"method": "float, far origin", "engine": FLOAT, "value": far}, 0.31,
                    judged(9000, distance))
+    for far, failed in (("a", {"after_seconds": 64.4}), ("b", {"after_seconds": 61, "limit": 60})):
+        yield case({"method": "float, far origin", "engine": FLOAT, "value": far}, 0, failed=failed)
     for i, tolerance in enumerate(("1e-6", "1e-5", "1e-4", "1e-3", "0.01", "0.05")):
         yield case({"method": "tolerance", "engine": "sweep cuda", "value": tolerance},
                    0.049 - 0.005 * i, judged(4 * 6**i, float(tolerance) * 0.9))
@@ -121,6 +126,10 @@ def stability():
            "findings": {"environment_points": 1_110_000,
                         "within_ulps": [int(2**i / 1e7) for i in range(41)]}}
     engines = ("kdtree cpu", "sweep cuda", "grid cuda")
+    for engine in (*engines, FLOAT):
+        wrong = [64 * (engine == FLOAT and i < 29) for i in range(31)]
+        yield case({"vary": "ulps", "value": 0.1, "engine": engine}, 1,
+                   {"false_hits": 0, "misses": sum(wrong), "points": [128] * 31, "wrong": wrong})
     for far in (0.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7):
         for engine in (*engines, FLOAT):
             wrong = int(far / 100) if engine == FLOAT else 0
@@ -129,6 +138,8 @@ def stability():
     for factor in (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0):
         for i, layout in enumerate(("adaptive", "regular, 50 cells along", "regular, 2 m")):
             whole = {"vary": "sparseness", "value": factor, "layout": layout}
+            if i:
+                whole["chunk_points"] = 256
             failed = REFUSED if layout == "regular, 2 m" and factor >= 100 else None
             yield {"key": f"sparseness/{layout}/{factor}", "parameters": whole,
                    "findings": {"failed": failed} if failed else
@@ -155,8 +166,10 @@ def stability():
         for at, engine in itertools.product(values, engines):
             yield case({"vary": vary, "value": at, "engine": engine}, ENGINES[engine],
                        {} if engine == "kdtree cpu" else compared(), runs=1)
-    refused = {"exit_code": 3, "log": "clearway run: /w/stretched.txt: line 1: not rigid: "
-               "--allow-non-rigid takes it"}
+    refused = {"exit_code": 3, "log": "error: /w/stretched.txt: line 1: the rotation has singular "
+               "values from 0.9999999999047962 to 1.0009999996438987 and determinant "
+               "1.000999999884437; expected a rigid motion: singular values within 1e-04 of 1 "
+               "and a positive determinant (--allow-non-rigid accepts any invertible matrix)"}
     for at in (0.0, 1e-6, 1e-5, 9e-5, 1e-3, 1e-2, 0.1):
         yield case({"vary": "stretch without --allow-non-rigid", "value": at,
                     "engine": "sweep cuda"}, 0.05, runs=1, failed=refused if at > 1e-4 else None)
@@ -183,7 +196,7 @@ def write_records(folder):
                   "machine": {"processor": "Some(R) Processor(TM) of a Long Name CPU @ 2.40GHz",
                               "cores": 16, "memory_bytes": 2**37, "gpus": ["NVIDIA H200"],
                               "system": "Debian GNU/Linux 12 (bookworm)"},
-                  "clearway": {"version": "0.1.0", "commit": "0123456789ab"},
+                  "clearway": {"version": "0.1.0", "commit": "0123456789ab", "build": "Release"},
                   "parameters": {"repetitions": 3, "limit": 120.0}, "cases": list(experiment())}
         (folder / f"{experiment.__name__}.json").write_text(json.dumps(record))
 
@@ -230,6 +243,55 @@ def faults_of(figure):
     return faults
 
 
+def shown_in(sheet):
+    """All its words, in a line."""
+    return " ".join(" ".join(text for text, _ in texts_of(sheet.figure)).split())
+
+
+def record_of(cases, **more):
+    from charting.record import Record
+
+    return Record(Path("x.json"), {"experiment": "x", "machine": {"cores": 16}, "cases": cases,
+                                   **more})
+
+
+def check_bars_of_the_whole():
+    """Medians of steps and of their sum differ; the bar is the sum's own spread."""
+    from charting import grid as chart
+
+    one = case({"vary": "regular layout", "value": "1"}, 1)
+    for run, (plan, search) in zip(one["runs"], ((1, 9), (2, 2), (3, 5))):
+        run["seconds"].update(plan=plan, field=0, engine=0, search=search, compute=search)
+    bars = [bars for axes in chart.draw(record_of([one])).figure.axes for bars in axes.containers
+            if getattr(bars, "has_yerr", False)]
+    assert [list(middle.get_ydata()) for middle, *_ in bars] == [[8]]
+    assert [list(bar.get_segments()[0][:, 1]) for *_, (bar,) in bars] == [[4, 10]]
+
+
+def check_missing_reference():
+    """Nothing has failed where only the number of threads to relate to was not measured."""
+    from charting import threads as chart
+
+    sheet = chart.draw(record_of([one for one in threads() if one["parameters"]["threads"] != 16]))
+    sheet.finish()
+    assert "b: no line of sweep cpu, which has no run with 16 threads" in shown_in(sheet)
+    assert "× failed" not in shown_in(sheet)
+
+
+def check_stopped_runs():
+    """They stand at the end of the time axis, with the limit; that of older files is not known."""
+    from charting import accuracy as chart
+
+    sheet = chart.draw(record_of(list(accuracy())))
+    sheet.finish()
+    for text in ("> 60 s", "> 64 s"):
+        assert shown_in(sheet).count(text) == 2, text
+    for axes in sheet.figure.axes:
+        for x in axes.__dict__.get("clearway_crosses", {}):
+            low, high = np.log(axes.get_xlim())
+            assert 0.95 < (np.log(x) - low) / (high - low) <= 1, x
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(name)
@@ -247,8 +309,13 @@ def main():
             faults = faults_of(sheet.finish())
             assert not faults, f"{name}:\n" + "\n".join(faults)
             if name in ("grid", "datasets", "stability", "scaling"):
-                shown = " ".join(text for text, _ in texts_of(sheet.figure))
-                assert "× failed: 1 " in shown, name
+                assert "× failed: 1 " in shown_in(sheet), name
+            if name == "stability":
+                assert "from 1 to 1.001 and determinant 1.001" in shown_in(sheet)
+                assert "singular values within 1e-04 of 1" in shown_in(sheet)
+        check_bars_of_the_whole()
+        check_missing_reference()
+        check_stopped_runs()
         assert (folder / "charts" / "table.md").read_text().count("| mine | 806,183,400 |") == 1
 
 

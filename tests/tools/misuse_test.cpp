@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "io/pending_file.hpp"
+#include "io/store.hpp"
 #include "program.hpp"
 
 using namespace clearway;
@@ -256,4 +257,24 @@ TEST_CASE("a resumed conversion leaves the store of the same inputs alone, and n
   put_bytes(site.folder / "scan.xyz", bytes_of(site.folder / "scan.xyz") + "0 0 0\n");
   CHECK(site.run(convert).exit_code == 2);
   CHECK((bytes_of(site.folder / "site.h5") == before));
+}
+
+TEST_CASE("a resumed conversion does not call a damaged store done") {
+  const Site site;
+  const std::string convert = "convert " + site.path("scan.xyz") + " -o " + site.path("site.h5");
+  const std::string sound = bytes_of(site.folder / "site.h5");
+  const std::vector<std::uint64_t> chunks = Store(site.folder / "site.h5").index().address;
+  REQUIRE(chunks.size() == 4);  // x, y, z and the source indices of one cell
+  for (const std::uint64_t chunk : chunks) {
+    std::string damaged = sound;
+    damaged[chunk + 20] = static_cast<char>(damaged[chunk + 20] ^ 1);
+    put_bytes(site.folder / "site.h5", damaged);
+    const Outcome refused = site.run(convert + " --resume");
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains("site.h5: cell 0: ") && Contains("is damaged") &&
+                                Contains("--force in the place of --resume overwrites it"));
+    CHECK((bytes_of(site.folder / "site.h5") == damaged));
+  }
+  CHECK(site.run(convert + " --force").exit_code == 0);
+  CHECK((bytes_of(site.folder / "site.h5") == sound));
 }

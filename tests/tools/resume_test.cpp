@@ -240,6 +240,55 @@ TEST_CASE("an existing result stays until a resumed run replaces it, and only wh
   CHECK(work.files() == Names{"out.h5"});
 }
 
+TEST_CASE("an unfinished run over an existing result is reported, and kept until one replaces it") {
+  const Work work;
+  REQUIRE(work.run("", "0.05").exit_code == 0);
+  work.start_and(SIGKILL, "--force");
+  const std::string found = bytes_of(work.journal);
+  check_refused(work.run(""), 2, "an unfinished run with engine grid on cpu");
+  std::string mistyped = work.command("--force");
+  mistyped.replace(mistyped.find("model.ply"), 9, "modle.ply");
+  check_refused(run_program(work.folder, mistyped), 4, "modle.ply");
+  CHECK((bytes_of(work.journal) == found));
+  CHECK(work.run("--resume").exit_code == 0);
+}
+
+TEST_CASE("a run does not remove the journal of the next one") {
+  const Work work;
+  work.start_and(SIGKILL);
+  Process finishing(work.command("--resume"), work.folder / "log.txt");
+  work.wait_for_records(finishing, JournalReader(work.journal).records() + 5);
+  const std::string of_another = "CLWYJRNL of another run";
+  std::filesystem::remove(work.journal);
+  put_bytes(work.journal, of_another);
+  CHECK(finishing.wait() == 0);
+  CHECK(bytes_of(work.journal) == of_another);
+}
+
+TEST_CASE("an automatic choice of the device goes on where it was") {
+  const Work work;
+  work.start_and(SIGKILL);
+  std::string command = work.command("--resume --device-memory 1G");
+  command.replace(command.find("--device cpu"), 12, "--device auto");
+  const Outcome resumed = run_program(work.folder, command);
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with") && Contains("on the CPU"));
+}
+
+TEST_CASE("poses that were divided otherwise are counted once") {
+  const Work work;
+  Process process(work.command("--threads 1", "0.1", "kdtree"), work.folder / "log.txt");
+  work.wait_for_records(process, 3);
+  process.send(SIGKILL);
+  process.wait();
+  for (const char* threads : {"3", "2"}) {
+    const Outcome resumed =
+        work.run(std::string("--resume --json --threads ") + threads, "0.1", "kdtree");
+    if (resumed.exit_code != 0 || !json::parse(resumed.out).contains("resumed_poses")) continue;
+    CHECK(json::parse(resumed.out)["resumed_poses"] <= 3000);
+  }
+}
+
 TEST_CASE("a run that is refused leaves no journal") {
   const Work work;
   check_refused(work.run("--memory 1K"), 4, "too little");
@@ -308,6 +357,7 @@ TEST_CASE("verify tells a torn tail, which resuming cuts off, from damage") {
   const Outcome empty = verify(whole.substr(0, 5));
   CHECK(empty.exit_code == 0);
   CHECK_THAT(empty.out, Contains("it ends before its first record"));
+  CHECK(verify("").exit_code == 0);
 
   std::string bytes = whole;
   bytes[100] = static_cast<char>(bytes[100] ^ 1);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every mode of the CUDA engines on small scenes and compares each result with the CPU's, byte for byte; writes one JSON file.
+"""Runs every mode of the CUDA engines on small scenes and compares each result with the CPU's, byte for byte, and the device memory taken with what was allowed; writes one JSON file.
 
     gpu_equality.py --program build/release/tools/clearway --work /tmp/equality --out figures.json [--gpus 0,1]
                     [--scenes hall ...] [--store site.h5 --model model.ply --trajectory path.txt]
@@ -13,7 +13,9 @@ import sys
 
 MODES = {"set": [], "first-pose": ["--first-pose"], "between-poses": ["--between-poses"],
          "between-poses first-pose": ["--between-poses", "--first-pose"], "clearance": ["--clearance", "0.3"],
-         "clearance first-pose": ["--clearance", "0.05", "--first-pose"]}
+         "clearance first-pose": ["--clearance", "0.05", "--first-pose"],
+         "clearance 0.3 first-pose": ["--clearance", "0.3", "--first-pose"]}
+DEVICE_MEMORY = {"256M": 256 << 20, "2G": 2 << 30}
 GRID_MODES = ["set", "first-pose"]
 SCENES = ["hall", "plant", "mine", "tunnel"]
 
@@ -51,25 +53,26 @@ def main():
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     where = ["--gpus", options.gpus] if options.gpus else ["--device", "cuda"]
-    runs, differing = [], 0
+    runs, differing, over = [], 0, 0
     for name, store, model, trajectory in scenes(options):
         ask = ["run", "--env", store, "--model", model, "--trajectory", trajectory, "--radius", "0.1", "--force", "--json"]
         for mode, extra in MODES.items():
             expected = options.work / "cpu.h5"
             report = json.loads(call(options.program, *ask, "-o", expected, "--device", "cpu", *extra))
             for engine in ["sweep"] + (["grid"] if mode in GRID_MODES else []):
-                for memory in ("256M", "2G"):
+                for memory, most_bytes in DEVICE_MEMORY.items():
                     found = options.work / "cuda.h5"
                     on_device = json.loads(call(options.program, *ask, "-o", found, "--engine", engine, *where,
                                                 "--device-memory", memory, *extra))
                     same = filecmp.cmp(expected, found, shallow=False)
                     differing += not same
+                    over += on_device["peak_device_bytes"] > most_bytes
                     runs.append({"scene": name, "mode": mode, "engine": engine, "device_memory": memory, "same": same,
                                  "colliding_points": report["colliding_points"],
                                  "peak_device_bytes": on_device["peak_device_bytes"]})
-        options.out.write_text(json.dumps({"runs": len(runs), "differing": differing, "each": runs}, indent=1) + "\n")
-    print(f"{len(runs)} runs, {differing} differ from the CPU's")
-    sys.exit(1 if differing else 0)
+        options.out.write_text(json.dumps({"runs": len(runs), "differing": differing, "over_device_memory": over, "each": runs}, indent=1) + "\n")
+    print(f"{len(runs)} runs, {differing} differ from the CPU's, {over} took more than --device-memory")
+    sys.exit(1 if differing or over else 0)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ ask=(run --env "$folder/site.h5" --model "$folder/model.ply" --trajectory "$fold
   -o "$folder/out.h5" --force --device cuda --device-memory 256M)
 for tool in memcheck racecheck initcheck; do
   for mode in "--engine sweep" "--engine sweep --first-pose" "--engine sweep --between-poses" "--engine sweep --clearance 0.3" \
+    "--engine sweep --clearance 0.3 --first-pose" "--engine sweep --between-poses --first-pose" \
     "--engine grid" "--engine grid --first-pose" "--engine grid --precision float"; do
     # shellcheck disable=SC2086
     if log=$(compute-sanitizer --tool "$tool" --error-exitcode 9 "$program" "${ask[@]}" $mode 2>&1); then

@@ -24,7 +24,7 @@ def label_of(case):
     if case["method"] in METHODS:
         name = f"{METHODS[case['method']][0]} {power(float(case['value']))}"
     else:
-        name = case["value"] or case["engine"]
+        name = f"{case['engine']} {case['value']}".strip()
     return name + (" ↑" if case.findings.get("beyond") else "")
 
 
@@ -52,10 +52,11 @@ def draw(record):
             panel.set_xlim(min(seconds) / 3, max(seconds) * 3)
         seconds_axis(panel.xaxis)
         panel.set_xlabel("answer (s)")
+        low, high = panel.get_xlim()
         for case in record.cases:
             if case.failure:
-                fail(sheet, panel, panel.get_xlim()[1] / 1.3, f"{case.key}: {case.failure}",
-                     styles[case["method"]])
+                fail(sheet, panel, high * (low / high) ** 0.03, f"{case.key}: {case.failure}",
+                     styles[case["method"]], f"> {case.limit:.0f} s" if case.limit else "")
         room_for_failures(panel)
     for panel, y_of in ((number, wrong),
                         (distance, lambda case: case.findings["largest_distance"])):
@@ -69,7 +70,7 @@ def draw(record):
     sheet.say("Wrong: false hits and misses against exact distances. Engine and parameter are "
               "written beside the markers. Grey steps: the front, no other is both faster and more "
               "accurate. ↑: some false hits are farther away than distances are known. Time "
-              "axes are logarithmic.")
+              "axes are logarithmic; what was stopped stands at their end.")
     return sheet
 
 

@@ -13,6 +13,7 @@ DEFAULT_CELL_POINTS = 65536  # of `clearway convert`
 # What follows one another; the last is what search does not spend computing.
 STEPS = (("plan and field", SKY, "...."), ("making the engine", PURPLE, "xxxx"),
          ("search: computing", BLUE, ""), ("search: only moving data", ORANGE, "////"))
+CELLS = "cells (c: chunks) read (right axis)"
 # Stages of the search, which overlap.
 STAGES = (("read", VERMILION, "v"), ("upload", GREEN, "^"), ("collect", BLACK, "x"))
 
@@ -31,32 +32,37 @@ def draw(record):
     axes, place = panels(sheet, 3, 1, legend_lines=4)
     cell, adaptive, regular = axes[:, 0]
     chosen = record.where(vary="grid cell", value="chosen")
-    draw_bars(sheet, cell, record.where(vary="grid cell"), cell_label, cell_size, cells=False)
+    draw_bars(sheet, cell, record.where(vary="grid cell"), cell_label, cell_size, cells=None)
     cell.set(title="a  by grid cell, adaptive layout", xlabel="edge of a grid cell (m)")
     draw_bars(sheet, adaptive, record.where(vary="adaptive layout"), points_label, number)
     adaptive.set(title="b  by points of a cell, adaptive layout",
                  xlabel="points of a cell, at most")
     draw_bars(sheet, regular, record.where(vary="regular layout"), lambda case: case["value"],
-              number)
-    regular.set(title="c  by edge of a cell, regular layout as the paper's",
-                xlabel="edge of a cell (m)")
+              number, cells=chunks_name(record))
+    regular.set(title="c  by edge of a cell, regular layout", xlabel="edge of a cell (m)")
     handles = [Patch(facecolor=colour, hatch=hatch, edgecolor="black", linewidth=0.5)
                for _, colour, hatch in STEPS]
     marks = adaptive.get_legend_handles_labels()
     handles += marks[0]
     names = [f"{name} (overlaps)" for name in marks[1]]
     cells = [line for panel in sheet.figure.axes for line in panel.lines
-             if line.get_label() == "cells read (right axis)"]
+             if line.get_label() == CELLS]
     legend_in(place, handles + cells[:1],
-              [name for name, *_ in STEPS] + names + ["cells read (right axis)"][:len(cells)], 2)
+              [name for name, *_ in STEPS] + names + [CELLS][:len(cells)], 2)
     if chosen and chosen[0].runs:
         sheet.say(f"a: the heuristic chose {chosen[0].runs[0]['grid_cell']:g} m.")
     sheet.say("The bars stack what follows one another. In the search the stages overlap: it is "
               "split into the time in which at least one worker computed, and the rest, when data "
               "only moved; the markers are the time in which each other stage was busy, not added. "
-              "Grid cells of a are hashed and their number is not reported; the line of b and c is "
-              "the number of the store's cells that were read.")
+              "Grid cells of a are hashed and their number is not reported; the line of b is "
+              "the number of the store's cells that were read; c cuts the regular cells, which "
+              "are of any number of points, to chunks and counts those.")
     return sheet
+
+
+def chunks_name(record):
+    most = record.names("chunk_points")
+    return "chunks read" + (f",\n{most[0]:,} points at most" if most else "")
 
 
 def number(case):
@@ -80,7 +86,7 @@ def points_label(case):
     return f"{value:,}" + ("\ndefault" if value == DEFAULT_CELL_POINTS else "")
 
 
-def draw_bars(sheet, axes, cases, label_of, order, cells=True):
+def draw_bars(sheet, axes, cases, label_of, order, cells="cells read"):
     cases = sorted(cases, key=order)
     axes.set_xticks(range(len(cases)), [label_of(case) for case in cases])
     axes.set_xlim(-0.6, len(cases) - 0.4)
@@ -95,7 +101,7 @@ def draw_bars(sheet, axes, cases, label_of, order, cells=True):
         bottom += seconds
     whole = np.array([spread(c.seconds("plan", "field", "engine", "search")) for _, c in run]).T
     if run:
-        axes.errorbar(x, bottom, whole[1:], color="black", linestyle="none", elinewidth=0.8)
+        axes.errorbar(x, whole[0], whole[1:], color="black", linestyle="none", elinewidth=0.8)
     for name, colour, marker in STAGES:
         seconds = [np.median(c.seconds(name)) for _, c in run]
         axes.plot([at + 0.38 for at in x], seconds, color=colour, marker=marker, linestyle="none",
@@ -107,18 +113,18 @@ def draw_bars(sheet, axes, cases, label_of, order, cells=True):
     axes.margins(y=0.08)
     room_for_failures(axes)
     if cells and run:
-        draw_cells(axes, x, [c.runs[-1]["cells_read"] for _, c in run])
+        draw_cells(axes, x, [c.runs[-1]["cells_read"] for _, c in run], cells)
 
 
-def draw_cells(axes, x, cells):
+def draw_cells(axes, x, cells, name):
     right = axes.twinx()
     right.spines["right"].set_visible(True)
     right.grid(False)
     right.plot(x, cells, color=GREEN, marker="D", markersize=4, linestyle="--",
-               markeredgecolor="black", markeredgewidth=0.4, label="cells read (right axis)")
+               markeredgecolor="black", markeredgewidth=0.4, label=CELLS)
     right.set_yscale("log")
     # Between powers of ten, so that at least two are named.
     right.set_ylim(10 ** np.floor(np.log10(min(cells))),
                    10 ** (np.floor(np.log10(max(cells))) + 1))
     right.yaxis.set_major_formatter(lambda value, _: short(value))
-    right.set_ylabel("cells read")
+    right.set_ylabel(name)

@@ -27,9 +27,9 @@ def line(sheet, axes, cases, x_of, y_of, style, label, **how):
             fail(sheet, axes, x_of(case), case.failure, style)
 
 
-def fail(sheet, axes, x, reason, style=None):
-    """A cross at the top at x, over the marker of its style, with the number of its reason; those
-    at one x below each other."""
+def fail(sheet, axes, x, reason, style=None, before=""):
+    """A cross at the top at x, over the marker of its style, with the number of its reason, a text
+    before it; those at one x below each other."""
     crosses = axes.__dict__.setdefault("clearway_crosses", {})
     row = crosses[x] = crosses.get(x, -1) + 1
     place = axes.get_xaxis_transform()
@@ -41,6 +41,8 @@ def fail(sheet, axes, x, reason, style=None):
               color="black" if style else VERMILION, transform=place, clip_on=False, zorder=6)
     axes.annotate(str(sheet.number_of_failure(reason)), (x, y), xycoords=place, xytext=(5, 0),
                   textcoords="offset points", va="center")
+    axes.annotate(before, (x, y), xycoords=place, xytext=(-6, 0), textcoords="offset points",
+                  va="center", ha="right")
 
 
 def room_for_failures(axes):

@@ -17,6 +17,8 @@ class Case:
         self.findings = raw.get("findings") or {}
         failed = raw.get("failed") or self.findings.get("failed")
         self.failure = failure_text(failed) if failed else None
+        # Seconds after which it was stopped; older files have only how long it took to stop.
+        self.limit = failed.get("limit", failed.get("after_seconds")) if failed else None
 
     def __getitem__(self, name):
         return self.parameters[name]
@@ -75,6 +77,7 @@ def failure_text(failed):
         return f"stopped after {failed['after_seconds']:.0f} s"
     lines = [line.strip() for line in failed.get("log", "").splitlines() if line.strip()]
     reason = re.sub(r"^(\[[^]]*\]\s*)+", "", lines[-1]) if lines else "no message"
-    reason = re.sub(r"^clearway( \w+)?: ", "", reason)
+    reason = re.sub(r"^(error: |clearway( \w+)?: )+", "", reason)
+    reason = re.sub(r"\d+\.\d{5,}", lambda number: f"{float(number[0]):.4g}", reason)
     reason = re.sub(r"(?:/[^\s/:]+)+/([^\s/:]+)", r"\1", reason)
     return f"{reason} (exit code {failed.get('exit_code')})"

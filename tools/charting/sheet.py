@@ -40,7 +40,7 @@ class Sheet:
 
     def number_of_failure(self, reason):
         """The number that a reason has in the caption, which has room for the begin of it."""
-        reason = textwrap.shorten(reason, 110, placeholder=" ...")
+        reason = textwrap.shorten(reason, 170, placeholder=" ...")
         return self._failures.setdefault(reason, len(self._failures) + 1)
 
     def finish(self):
@@ -122,7 +122,8 @@ def footer_of(record, times):
              f"{machine.get('memory_bytes', 0) / 2**30:.0f} GiB",
              ", ".join(machine.get("gpus") or []) or "no GPU used or present",
              machine.get("system", ""), f"size {record.size}",
-             f"Clearway {record.clearway.get('version', '')} {record.clearway.get('commit', '')}"]
+             " ".join(["Clearway", *(record.clearway.get(name, "")
+                                     for name in ("version", "commit", "build"))]).strip()]
     text = "; ".join(part for part in parts if part) + "."
     measured = ". ".join(TIMES[time] for time in times)
     if measured:

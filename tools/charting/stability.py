@@ -7,7 +7,7 @@ import numpy as np
 from charting.plot import (axis_with_zero, count_axis, engine_handles, fail, handle_of, legend_in,
                            line, log_axis, panels, power, room_for_failures, seconds_axis)
 from charting.sheet import Sheet
-from charting.style import BLACK, BLUE, SKY, Style, engine_style
+from charting.style import BLACK, GREY, SKY, Style, engine_style
 
 LAYOUTS = {"adaptive": Style(BLACK, "o", "-", ""),
            "regular, 50 cells along": Style(SKY, "p", "--", ""),
@@ -20,8 +20,11 @@ def draw(record):
     axes, place = panels(sheet, 4, 3, legend_lines=2)
     panel = iter(axes.flat)
     sheet.say("Hall; the tunnel in d to f. Wrong points of a and b: against exact distances. "
-              "c: points that close to the radius, to double's spacing there. "
-              "d to f: eight stray points stretch the tunnel's bounding box; full markers: grid, "
+              "c: grey dots, the hall's points that close to the radius, in ulps (double's spacing "
+              "there); lines, right axis: of points made to lie exactly so many ulps beside it, "
+              "the share that an engine decides wrongly. "
+              "d to f: eight stray points stretch the tunnel's bounding box" +
+              chunks_text(record) + "; full markers: grid, "
               "hollow: sweep (e, f: conversion, and in f hollow the most that a run held). "
               "h and i: the budget relative to the least that the program names, which "
               "it refuses to go below.")
@@ -44,6 +47,11 @@ def draw(record):
               engines + layouts, 4)
     say_differences(sheet, record)
     return sheet
+
+
+def chunks_text(record):
+    most = record.names("chunk_points")
+    return f"; regular cells are cut to chunks of {most[0]:,} points" if most else ""
 
 
 def engine_lines(sheet, axes, cases, x_of, y_of):
@@ -94,10 +102,24 @@ def draw_boundary(sheet, axes, record):
             fail(sheet, axes, 1, case.failure)
             continue
         within = np.array(case.findings["within_ulps"], float)
-        axes.plot(2.0 ** np.arange(len(within)), within, color=BLUE, marker="o", markersize=3)
+        axes.plot(2.0 ** np.arange(len(within)), within, color=GREY, marker="o", markersize=3)
         count_axis(axes, within.max(), "points")
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter(lambda x, _: power(x))
+    made = [case for case in record.where(vary="ulps") if case.findings]
+    if made:
+        right = axes.twinx()
+        right.spines["right"].set_visible(True)
+        right.grid(False)
+        for case in made:
+            style = engine_style(case["engine"])
+            wrong = 100 * np.divide(case.findings["wrong"], case.findings["points"])
+            right.plot(2.0 ** np.arange(len(wrong)), wrong, color=style.colour,
+                       linestyle=style.line, marker=style.marker, markersize=2.5)
+        right.set(ylim=(-5, 105), ylabel="made points, wrong (%)")
+    for case in record.where(vary="ulps"):
+        if case.failure:
+            fail(sheet, axes, 1, case.failure, engine_style(case["engine"]))
     axes.set(title="c  near the boundary", xlabel="|d − r|, at most (ulps of r)")
 
 

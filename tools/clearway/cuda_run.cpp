@@ -32,6 +32,8 @@ PageEngineKind cuda_kind(const Store& store, const EngineOptions& options,
   kind.page_bytes = usual_page_bytes(store);
   kind.threads = options.threads + static_cast<int>(device.gpus.size() * waiting);
   kind.most_device_bytes = device.memory_bytes;
+  kind.short_device = device.short_device;
+  kind.devices = static_cast<std::uint32_t>(device.gpus.size());
   return kind;
 }
 

@@ -3,17 +3,28 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <exception>
 #include <optional>
 
 #include "clearway/options.hpp"
 #include "core/error.hpp"
 #include "core/stopwatch.hpp"
-#ifdef CLEARWAY_CUDA
-#include "gpu/devices.hpp"
-#endif
 
 namespace clearway::tool {
 namespace {
+
+/// "auto" leaves a GPU alone that has less than this free.
+constexpr std::uint64_t kLeastRoom = std::uint64_t{256} << 20;
+
+/// What may be taken of a device: never quite all that is free, for others take some too.
+std::uint64_t allowance(const CudaDevice& device, std::uint64_t wanted_bytes) {
+  return std::min(wanted_bytes, device.free_bytes - device.free_bytes / 20);
+}
+
+std::string name_of(const CudaDevice& device) {
+  return "GPU " + std::to_string(device.index) + " (" + device.name + ", " +
+         format_size(device.free_bytes) + " free)";
+}
 
 void refuse_cuda_for_kdtree() {
   throw UsageError("--device cuda: engine kdtree runs on the CPU alone; take --engine sweep");
@@ -21,31 +32,9 @@ void refuse_cuda_for_kdtree() {
 
 #ifdef CLEARWAY_CUDA
 
-constexpr std::uint64_t kUsualBytes = std::uint64_t{2} << 30;
-/// "auto" leaves a GPU alone that has less than this free.
-constexpr std::uint64_t kLeastRoom = std::uint64_t{256} << 20;
-
-std::uint64_t wanted_bytes(const EngineOptions& options) {
+std::uint64_t wanted_bytes_of(const EngineOptions& options) {
+  constexpr std::uint64_t kUsualBytes = std::uint64_t{2} << 30;
   return options.device_memory_bytes > 0 ? options.device_memory_bytes : kUsualBytes;
-}
-
-/// What may be taken of a device: never quite all that is free, for others take some too.
-std::uint64_t allowance(const EngineOptions& options, const CudaDevice& device) {
-  return std::min(wanted_bytes(options), device.free_bytes - device.free_bytes / 20);
-}
-
-DeviceChoice choice_of(const EngineOptions& options, const std::vector<CudaDevice>& devices) {
-  DeviceChoice choice;
-  choice.name.clear();
-  choice.memory_bytes = allowance(options, devices.front());
-  for (const CudaDevice& device : devices) {
-    choice.gpus.push_back(device.index);
-    choice.name += (choice.name.empty() ? "" : " and ") + std::string("GPU ") +
-                   std::to_string(device.index) + " (" + device.name + ", " +
-                   format_size(device.free_bytes) + " free)";
-    choice.memory_bytes = std::min(choice.memory_bytes, allowance(options, device));
-  }
-  return choice;
 }
 
 std::vector<CudaDevice> open_named(const std::vector<int>& gpus) {
@@ -61,38 +50,18 @@ std::vector<CudaDevice> open_named(const std::vector<int>& gpus) {
   return devices;
 }
 
-/// The first with all that is wanted, or else the one with the most: to ask a device takes a
-/// context on it, most of a second.
-CudaDevice open_one_with_room(const EngineOptions& options) {
-  std::optional<CudaDevice> best;
-  for (int gpu = 0; gpu < cuda_device_count(); ++gpu) {
-    const CudaDevice device = open_cuda_device(gpu);
-    if (allowance(options, device) == wanted_bytes(options)) return device;
-    if (!best || device.free_bytes > best->free_bytes) best = device;
-  }
-  return open_cuda_device(best.value().index);  // the last one asked is the current one
-}
-
 DeviceChoice choose_cuda(const EngineOptions& options) {
   if (const std::string why = why_no_cuda_device(); !why.empty()) {
     throw ResourceError((options.gpus.empty() ? "--device cuda: " : "--gpus: ") + why +
                         "; take --device cpu, or run where nvidia-smi lists a GPU");
   }
-  return choice_of(options, options.gpus.empty() ? std::vector{open_one_with_room(options)}
-                                                 : open_named(options.gpus));
+  const std::uint64_t wanted = wanted_bytes_of(options);
+  if (!options.gpus.empty()) return choice_of(open_named(options.gpus), wanted);
+  return choice_of({one_with_room(cuda_device_count(), open_cuda_device, wanted)}, wanted);
 }
 
 DeviceChoice choose_automatically(const EngineOptions& options) {
-  if (cuda_device_count() == 0) return {};
-  try {
-    const CudaDevice device = open_one_with_room(options);
-    if (device.free_bytes >= kLeastRoom) return choice_of(options, {device});
-    spdlog::info("GPU {} has only {} free: the CPU is taken", device.index,
-                 format_size(device.free_bytes));
-  } catch (const ResourceError& error) {
-    spdlog::info("the CPU is taken: {}", error.what());
-  }
-  return {};
+  return automatic_choice(cuda_device_count(), open_cuda_device, wanted_bytes_of(options));
 }
 
 #else
@@ -108,6 +77,54 @@ DeviceChoice choose_automatically(const EngineOptions&) { return {}; }
 #endif
 
 }  // namespace
+
+DeviceChoice choice_of(const std::vector<CudaDevice>& devices, std::uint64_t wanted_bytes) {
+  DeviceChoice choice;
+  choice.name.clear();
+  choice.memory_bytes = wanted_bytes;
+  for (const CudaDevice& device : devices) {
+    choice.gpus.push_back(device.index);
+    choice.name += (choice.name.empty() ? "" : " and ") + name_of(device);
+    const std::uint64_t allowed = allowance(device, wanted_bytes);
+    if (allowed >= choice.memory_bytes) continue;
+    choice.memory_bytes = allowed;
+    choice.short_device = name_of(device);
+  }
+  return choice;
+}
+
+CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted_bytes) {
+  std::optional<CudaDevice> best;
+  std::exception_ptr last;
+  for (int gpu = 0; gpu < count; ++gpu) {
+    try {
+      const CudaDevice device = open(gpu);  // most of a second: no more of them than needed
+      if (allowance(device, wanted_bytes) == wanted_bytes) return device;
+      if (!best || device.free_bytes > best->free_bytes) best = device;
+    } catch (const ResourceError& error) {
+      spdlog::info("GPU {} is passed over: {}", gpu, error.what());
+      last = std::current_exception();
+    }
+  }
+  if (!best) std::rethrow_exception(last);
+  return open(best->index);  // the last one asked is the current one
+}
+
+DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t wanted_bytes) {
+  if (count == 0) return {};
+  try {
+    const CudaDevice device = one_with_room(count, open, wanted_bytes);
+    if (device.free_bytes >= kLeastRoom) {
+      DeviceChoice choice = choice_of({device}, wanted_bytes);
+      choice.may_give_way = true;
+      return choice;
+    }
+    spdlog::info("the CPU is taken: {} has too little", name_of(device));
+  } catch (const ResourceError& error) {
+    spdlog::info("the CPU is taken: {}", error.what());
+  }
+  return {};
+}
 
 DeviceChoice choose_device(const EngineOptions& options) {
   const bool cuda = options.device == "cuda" || !options.gpus.empty();

@@ -1,5 +1,6 @@
 #include "clearway/engines.hpp"
 
+#include <spdlog/spdlog.h>
 #include <tbb/task_arena.h>
 
 #include <set>
@@ -56,6 +57,31 @@ PageEngineKind page_engine(const Store& store, const Question& question,
                                   : cpu_sweep(store, question, options);
 }
 
+/// As run_engine, with the device that was chosen for the options.
+Answer run_on_pages(const Store& store, const Question& question, const EngineOptions& options,
+                    const DeviceChoice& device, const OpenJournal& open_journal, Progress& progress,
+                    EngineReport& report) {
+  AnswerJournal* journal = nullptr;
+  const auto open = [&]() -> AnswerJournal& {
+    if (journal == nullptr) journal = &open_journal(report.engine, report.device);
+    return *journal;
+  };
+  const auto run_on = [&](const DeviceChoice& chosen) {
+    report.device = chosen.is_cuda() ? "cuda" : "cpu";
+    report.device_name = chosen.name;
+    if (!chosen.may_give_way) open();  // what is refused is so before it is planned
+    return run_page_engine(store, question, options, page_engine(store, question, options, chosen),
+                           open, progress, report);
+  };
+  try {
+    return run_on(device);
+  } catch (const ResourceError& error) {
+    if (journal != nullptr || !device.may_give_way) throw;
+    spdlog::info("the CPU is taken: {}", error.what());
+  }
+  return run_on({});
+}
+
 }  // namespace
 
 std::string chosen_engine(const EngineOptions& options) {
@@ -98,16 +124,13 @@ Answer run_engine(const Store& store, const Question& question, const EngineOpti
   const DeviceChoice device = choose_device(resolved);
   if (options.threads == 0) resolved.threads = tbb::this_task_arena::max_concurrency();
   report.engine = resolved.engine;
-  report.device = device.is_cuda() ? "cuda" : "cpu";
-  report.device_name = device.name;
   report.context_seconds = device.context_seconds;
   report.searches = std::uint64_t{question.poses.size()} * question.model.size();
-  AnswerJournal& journal = open_journal(report.engine, report.device);
   if (resolved.engine == "kdtree") {
-    return run_kdtree_engine(store, question, resolved, journal, progress, report);
+    return run_kdtree_engine(store, question, resolved, open_journal(report.engine, report.device),
+                             progress, report);
   }
-  return run_page_engine(store, question, resolved, page_engine(store, question, resolved, device),
-                         journal, progress, report);
+  return run_on_pages(store, question, resolved, device, open_journal, progress, report);
 }
 
 }  // namespace clearway::tool

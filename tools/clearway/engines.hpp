@@ -66,10 +66,11 @@ std::string chosen_engine(const EngineOptions& options);
 /// question, whatever its model and poses.
 void check_question(const Question& question, const EngineOptions& options);
 
-/// Answers the question with the engine and device chosen, as far as the journal does not. Throws
-/// UsageError where that engine cannot, ResourceError where the device is not there or, before
-/// cells are read, where a memory bound is too little; InputError for a damaged cell or a journal
-/// that is refused; Interrupted when the progress asks to stop.
+/// Answers the question with the engine and device chosen, as far as the journal does not; the
+/// journal is opened once. A GPU that was not asked for and proves too small, or fails, before that
+/// gives way to the CPU. Throws UsageError where that engine cannot, ResourceError where the device
+/// is not there or, before cells are read, where a memory bound is too little; InputError for a
+/// damaged cell or a journal that is refused; Interrupted when the progress asks to stop.
 Answer run_engine(const Store& store, const Question& question, const EngineOptions& options,
                   const OpenJournal& open_journal, Progress& progress, EngineReport& report);
 

@@ -10,6 +10,7 @@
 #include "clearway/commands.hpp"
 #include "clearway/console.hpp"
 #include "clearway/exit_code.hpp"
+#include "clearway/standard_output.hpp"
 #include "core/error.hpp"
 #include "io/mapped_file.hpp"
 
@@ -64,9 +65,15 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  try {
+    clearway::tool::occupy_standard_descriptors();
+  } catch (const clearway::ResourceError&) {
+    return kResource;
+  }
   clearway::tool::start_log();
   clearway::install_map_fault_handler(kResource);
   ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error like a full disk
+  ::signal(SIGPIPE, SIG_IGN);  // and so is a pipe that nobody reads
   // Large blocks go back to the system when freed, so that --memory bounds what it sees.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {

@@ -1,7 +1,5 @@
 #include "clearway/memory_budget.hpp"
 
-#include <string>
-
 #include "clearway/options.hpp"
 #include "core/error.hpp"
 
@@ -25,16 +23,25 @@ std::uint64_t answer_bytes(const Store& store, const Question& question) {
 }
 
 void check_memory(std::uint64_t needed, std::uint64_t allowed) {
-  if (needed <= allowed) return;
+  if (needed > allowed) refuse_memory(needed, allowed);
+}
+
+void refuse_memory(std::uint64_t needed, std::uint64_t allowed) {
   throw ResourceError("--memory " + format_size(allowed) + " is too little: this run needs " +
                       format_size(needed) + " (--memory " + std::to_string(needed) +
                       ") beside the mapped store");
 }
 
-void check_device_memory(std::uint64_t needed, std::uint64_t allowed) {
-  if (needed <= allowed) return;
-  throw ResourceError("--device-memory " + format_size(allowed) +
-                      " is too little: this run needs " + format_size(needed) +
+void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
+                          const std::string& short_device) {
+  const std::string need = ": this run needs " + format_size(needed);
+  if (!short_device.empty()) {
+    throw ResourceError(short_device + " has too little" + need + ", and may take " +
+                        format_size(allowed) +
+                        " there; nvidia-smi lists what else uses it: take others with --gpus, or "
+                        "--device cpu");
+  }
+  throw ResourceError("--device-memory " + format_size(allowed) + " is too little" + need +
                       " (--device-memory " + std::to_string(needed) + ") on each device");
 }
 

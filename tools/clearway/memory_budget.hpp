@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "core/question.hpp"
 #include "io/store.hpp"
@@ -19,6 +20,11 @@ std::uint64_t answer_bytes(const Store& store, const Question& question);
 
 /// Throws ResourceError naming what is needed where that is more than `allowed`.
 void check_memory(std::uint64_t needed, std::uint64_t allowed);
-void check_device_memory(std::uint64_t needed, std::uint64_t allowed);
+
+/// Throws ResourceError that says what to do.
+[[noreturn]] void refuse_memory(std::uint64_t needed, std::uint64_t allowed);
+/// short_device: the device whose free memory, not --device-memory, is the bound; empty: none.
+[[noreturn]] void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
+                                       const std::string& short_device);
 
 }  // namespace clearway::tool

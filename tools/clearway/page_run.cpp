@@ -75,14 +75,14 @@ class Budget {
   Budget(const Store& store, const Question& asked, const SearchedQuestion& searched,
          const EngineOptions& options, const PageEngineKind& kind)
       : store_(store),
+        asked_(asked),
         question_(searched.get()),
         options_(options),
         kind_(kind),
         trees_(question_),
         building_bytes_(tree_building_bytes(asked)),
-        kept_bytes_(program_bytes(options.threads) + input_bytes(store, asked) +
-                    searched.allocated_bytes() + answer_bytes(store, asked) +
-                    AnswerJournal::most_bytes(store, asked, kind.threads)) {}
+        kept_bytes_(program_bytes(kind.threads) + input_bytes(store, asked) +
+                    searched.allocated_bytes() + answer_bytes(store, asked)) {}
 
   void find() {
     // With a tolerance the answer depends on the field, which memory must not decide.
@@ -96,8 +96,8 @@ class Budget {
         if (fits_with(field_bytes, while_built, field_bytes == least)) return;
       }
     }
-    check_memory(smallest_bytes_, options_.memory_bytes);
-    check_device_memory(smallest_device_bytes_, kind_.most_device_bytes);
+    if (smallest_bytes_) refuse_memory(*smallest_bytes_, options_.memory_bytes);
+    refuse_device_memory(smallest_device_bytes_, kind_.most_device_bytes, kind_.short_device);
   }
 
   SearchPlan& plan() { return *plan_; }
@@ -105,9 +105,17 @@ class Budget {
   double field_seconds() const { return trees_.model_seconds + field_seconds_; }
   double plan_seconds() const { return trees_.motion_seconds + plan_seconds_; }
   std::uint64_t needed_bytes() const { return needed_bytes_; }
-  std::uint64_t write_bytes() const { return options_.memory_bytes - kept_bytes_; }
+  std::uint64_t write_bytes() const { return options_.memory_bytes - kept_bytes(layout_); }
 
  private:
+  /// From here to the end of the run. A page under way has one record of the journal at a time.
+  std::uint64_t kept_bytes(const SlotLayout& layout) const {
+    const std::uint64_t pages = std::uint64_t{kind_.devices} * layout.slots;
+    const auto threads = static_cast<std::uint64_t>(kind_.threads);
+    return kept_bytes_ +
+           AnswerJournal::most_bytes(store_, asked_, static_cast<int>(std::min(pages, threads)));
+  }
+
   /// Whether there is a plan with such a field, and a layout, or the best of them only, that fit.
   bool fits_with(std::uint64_t field_bytes, std::uint64_t while_built, bool any_layout) {
     const std::uint64_t building =
@@ -126,12 +134,14 @@ class Budget {
         trees_.allocated_bytes() + plan_->allocated_bytes() + run_pages_bytes(plan_->cells.size());
     for (const SlotLayout& layout : layouts(kind_, plan_->least_page_bytes())) {
       const std::uint64_t searching = planned + kind_.host_bytes(*plan_, layout);
-      needed_bytes_ = kept_bytes_ + std::max(searching, least_write_bytes());
+      const std::uint64_t kept = kept_bytes(layout);
+      needed_bytes_ = kept + std::max(searching, least_write_bytes());
       layout_ = layout;
-      const std::uint64_t budget = std::max(needed_bytes_, kept_bytes_ + building);
+      const std::uint64_t budget = std::max(needed_bytes_, kept + building);
       const std::uint64_t on_device = kind_.device_bytes ? kind_.device_bytes(*plan_, layout) : 0;
-      if (budget <= options_.memory_bytes && on_device <= kind_.most_device_bytes) return true;
-      smallest_bytes_ = std::min(smallest_bytes_, budget);
+      const bool device_fits = on_device <= kind_.most_device_bytes;
+      if (device_fits && budget <= options_.memory_bytes) return true;
+      if (device_fits) smallest_bytes_ = std::min(smallest_bytes_.value_or(budget), budget);
       smallest_device_bytes_ = std::min(smallest_device_bytes_, on_device);
       if (!any_layout && !kind_.device_bytes) break;  // for a device fewer slots are cheaper
     }
@@ -139,25 +149,26 @@ class Budget {
   }
 
   const Store& store_;
+  const Question& asked_;
   const Question& question_;
   const EngineOptions& options_;
   const PageEngineKind& kind_;
   const QuestionTrees trees_;
   const std::uint64_t building_bytes_;  ///< of the trees
-  const std::uint64_t kept_bytes_;      ///< from here to the end of the run
+  const std::uint64_t kept_bytes_;      ///< to the end of the run, but for the journal
   std::optional<SearchPlan> plan_;
   SlotLayout layout_;
   double field_seconds_ = 0, plan_seconds_ = 0;  ///< of all plans tried
   std::uint64_t needed_bytes_ = 0;
-  std::uint64_t smallest_bytes_ = std::numeric_limits<std::uint64_t>::max();
+  std::optional<std::uint64_t> smallest_bytes_;  ///< of what fits the device
   std::uint64_t smallest_device_bytes_ = std::numeric_limits<std::uint64_t>::max();
 };
 
 }  // namespace
 
 Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
-                       const PageEngineKind& kind, AnswerJournal& journal, Progress& progress,
-                       EngineReport& report) {
+                       const PageEngineKind& kind, const std::function<AnswerJournal&()>& open,
+                       Progress& progress, EngineReport& report) {
   const SearchedQuestion searched(question, report);
   throw_if_stopped(progress);
   Budget budget(store, question, searched, options, kind);
@@ -171,12 +182,13 @@ Answer run_page_engine(const Store& store, const Question& question, const Engin
   spdlog::info("model field: voxel {:.4g} m, {} bricks, {}", plan.field.voxel(),
                format_count(plan.field.bricks()), format_size(plan.field.allocated_bytes()));
 
-  std::erase_if(plan.cells,
-                [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
   throw_if_stopped(progress);
   const Stopwatch making;
   const PageEngines engines = kind.make(plan, budget.layout());
   report.engine_seconds = making.seconds();
+  AnswerJournal& journal = open();
+  std::erase_if(plan.cells,
+                [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
   const std::vector<PlannedPage> pages =
       paginate(store, plan.cells, budget.layout().page_bytes, budget.layout().cells);
   report.pages = pages.size();

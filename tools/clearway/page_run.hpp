@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "clearway/engines.hpp"
 #include "clearway/search_plan.hpp"
@@ -27,18 +29,21 @@ struct PageEngineKind {
   /// Memory on a device likewise; none for an engine on the CPU.
   std::function<std::uint64_t(const SearchPlan&, const SlotLayout&)> device_bytes = {};
   std::uint64_t most_device_bytes = 0;
+  std::string short_device = {};  ///< as refuse_device_memory takes it
+  std::uint32_t devices = 1;      ///< engines that `make` makes
   /// Slots of the layout are those of each device.
   std::function<PageEngines(const SearchPlan&, const SlotLayout&)> make;
   /// Called once after the last page: for the log, and for what only the engine can report.
   std::function<void(const SearchPlan&, const PageEngines&, EngineReport&)> finished;
 };
 
-/// Plans the question within options.memory_bytes, makes the engine and runs it. Where memory is
-/// short, first the model field gets coarser (not with a tolerance: the answer depends on it), then
-/// slots fewer, then pages smaller. Throws ResourceError, before cells are read, naming the
-/// smallest budget that works.
+/// Plans the question within options.memory_bytes, makes the engine and, with the journal that is
+/// then asked for, runs it. Where memory is short, first the model field gets coarser (not with a
+/// tolerance: the answer depends on it), then slots fewer, then pages smaller; with device_bytes,
+/// slots get fewer and pages smaller, down to one cell, before the field gets coarser.
+/// Throws ResourceError, before the journal is asked for, naming the smallest budget that works.
 Answer run_page_engine(const Store& store, const Question& question, const EngineOptions& options,
-                       const PageEngineKind& kind, AnswerJournal& journal, Progress& progress,
-                       EngineReport& report);
+                       const PageEngineKind& kind, const std::function<AnswerJournal&()>& open,
+                       Progress& progress, EngineReport& report);
 
 }  // namespace clearway::tool

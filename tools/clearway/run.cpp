@@ -12,6 +12,7 @@
 #include "clearway/run_options.hpp"
 #include "clearway/signals.hpp"
 #include "clearway/standard_output.hpp"
+#include "clearway/threads.hpp"
 #include "core/stopwatch.hpp"
 #include "io/content_hash.hpp"
 #include "io/model.hpp"
@@ -156,13 +157,24 @@ void warn_of(const Inputs& inputs, const RunOptions& options) {
   }
 }
 
+/// "auto" goes on where the run that is resumed was.
+EngineOptions engine_options(const RunOptions& options, const RunJournal& journal) {
+  EngineOptions engine = options.engine;
+  const std::string earlier = journal.earlier_device();
+  if (engine.device != "auto" || !engine.gpus.empty() || earlier.empty()) return engine;
+  engine.device = earlier;
+  if (earlier == "cpu") engine.device_memory_bytes = 0;
+  return engine;
+}
+
 void run(const RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
   check_question(question_of(options, {}, {}), options.engine);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
-  PendingFile output(options.output, options.force || options.resume);
+  PendingFile output(options.output, true);
   RunJournal journal(output, options);
+  if (!options.force && !options.resume) output.refuse_existing();
   ConsoleProgress progress;
   Seconds seconds;
   const Inputs inputs(options);
@@ -177,12 +189,13 @@ void run(const RunOptions& options) {
   seconds.inputs = total.seconds();
   EngineReport engine;
   throw_if_stopped(progress);
+  check_threads(options.engine.threads);
   const auto open_journal = [&](const std::string& name,
                                 const std::string& device) -> AnswerJournal& {
     return journal.open(inputs.store, question, header, name, device);
   };
-  const Answer answer =
-      run_engine(inputs.store, question, options.engine, open_journal, progress, engine);
+  const Answer answer = run_engine(inputs.store, question, engine_options(options, journal),
+                                   open_journal, progress, engine);
 
   engine.resumed_cells = journal.earlier().cells;
   engine.resumed_poses = journal.earlier().poses;
@@ -194,7 +207,7 @@ void run(const RunOptions& options) {
   } catch (const ResourceError& error) {
     throw ResourceError(std::string(error.what()) + "; " + kHowToResume);
   }
-  journal.remove();
+  journal.remove_after_publication();
   seconds.write = write.seconds();
   seconds.total = total.seconds();
   spdlog::info("{}: {} of {} environment points collide; engine {} on {}, {:.2f} s",

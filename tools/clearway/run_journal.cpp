@@ -82,21 +82,19 @@ RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
     }
     return;
   }
-  if (!fs::is_regular_file(fs::symlink_status(path_)) ||
+  if (!fs::is_regular_file(fs::symlink_status(path_)) || fs::hard_link_count(path_) > 1 ||
       (fs::file_size(path_) > 0 && !is_journal(path_))) {
     throw UsageError(path_.string() +
                      ": is in the place of this output's journal and is none; move it away, or "
                      "choose another output");
   }
   if (options.force) {
-    spdlog::info("{}: journal of an unfinished run removed, starts afresh", path_.string());
-    remove();
+    unwanted_ = "journal of an unfinished run removed, starts afresh";
     return;
   }
   JournalReader read(path_);
   if (!read.identity() || read.records() == 0) {
-    spdlog::info("{}: nothing in it yet, starts afresh", path_.string());
-    remove();
+    unwanted_ = "nothing in it yet, starts afresh";
     return;
   }
   earlier_ = journalled_work(read);
@@ -119,7 +117,7 @@ bool RunJournal::already_answered(const Store& store, const ResultHeader& header
   if (replaces_) return false;
   if (options_.resume && fs::exists(options_.output) && is_of(store, header) &&
       answers(options_.output, header, progress)) {
-    if (read_) remove();
+    if (read_) remove_file(path_);
     return true;
   }
   output_.refuse_existing();
@@ -149,10 +147,25 @@ AnswerJournal& RunJournal::open(const Store& store, const Question& question,
     }
     spdlog::info("{}: resumes with {}", path_.string(), work_text(earlier_));
   }
+  if (!unwanted_.empty()) {
+    spdlog::info("{}: {}", path_.string(), unwanted_);
+    remove_file(path_);
+  }
   return answers_.emplace(path_, identity, read_ ? &*read_ : nullptr, store, question,
                           options_.journal_interval_seconds);
 }
 
-void RunJournal::remove() { remove_file(path_); }
+std::string RunJournal::earlier_device() const {
+  return read_ ? value_of(*read_->identity(), "device") : "";
+}
+
+void RunJournal::remove_after_publication() {
+  if (!answers_->is_in_place()) return;
+  try {
+    remove_file(path_);
+  } catch (const ResourceError& error) {
+    spdlog::warn("{}; the result is complete", error.what());
+  }
+}
 
 }  // namespace clearway::tool

@@ -17,8 +17,8 @@ namespace clearway::tool {
 /// one keeps.
 class RunJournal {
  public:
-  /// Looks for an earlier journal, and removes it where options.force or nothing is in it. Throws
-  /// UsageError, saying what was found and what to do, where there is one and not options.resume.
+  /// Looks for an earlier journal. Throws UsageError, saying what was found and what to do, where
+  /// there is one and neither options.resume nor options.force.
   /// The output is this process's alone; output and options outlive it.
   RunJournal(PendingFile& output, const RunOptions& options);
 
@@ -27,13 +27,18 @@ class RunJournal {
   /// then. Throws UsageError where another output is there that this run may not overwrite.
   bool already_answered(const Store& store, const ResultHeader& header, Progress& progress);
 
-  /// The journal of this question, engine and device to keep the answer in. Throws UsageError,
-  /// naming what differs, where the earlier one is of others.
+  /// "cpu" or "cuda", as the run to resume was started with; empty where there is none.
+  std::string earlier_device() const;
+
+  /// The journal of this question, engine and device to keep the answer in. An earlier one is
+  /// removed where options.force or nothing is in it. Throws UsageError, naming what differs, where
+  /// it is of others.
   AnswerJournal& open(const Store& store, const Question& question, const ResultHeader& header,
                       const std::string& engine, const std::string& device);
 
-  /// After the result was published.
-  void remove();
+  /// The output's lock ended with its publication, and another process may have begun: its journal
+  /// is left alone.
+  void remove_after_publication();
 
   /// Of the earlier run.
   const JournalledWork& earlier() const { return earlier_; }
@@ -46,7 +51,8 @@ class RunJournal {
   std::filesystem::path path_;
   std::optional<JournalReader> read_;
   JournalledWork earlier_;
-  bool replaces_;  ///< an existing output is to be overwritten
+  std::string unwanted_;  ///< why the journal that is there is removed; empty where it is not
+  bool replaces_;         ///< an existing output is to be overwritten
   std::optional<AnswerJournal> answers_;
 };
 

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -51,7 +50,6 @@ void write_to_stdout(const scene::Scene& made, const SceneOptions& options, Prog
   if (::isatty(STDOUT_FILENO) == 1) {
     throw UsageError("--environment - writes LAS, which is binary: pipe or redirect it");
   }
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error to report, not a silent end
   const int descriptor = ::dup(STDOUT_FILENO);
   if (descriptor < 0) throw ResourceError("standard output: cannot open: it is closed");
   const File out = File::adopt(descriptor, "standard output");
@@ -69,7 +67,7 @@ void check_disk_space(const std::filesystem::path& folder, std::uint64_t points)
   }
 }
 
-/// All files are written under temporary names and appear together at the end.
+/// All files are whole under temporary names before the first gets its own.
 void make_scene_files(const SceneOptions& options) {
   const auto sizes = sizes_of(options);
   const bool to_stdout = options.environment == "-";

@@ -22,6 +22,13 @@ struct Findings {
   std::string remark{};  ///< of what is no fault
 };
 
+/// As a run leaves it that was killed before the first byte.
+bool is_empty_journal(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return file.extension() == ".journal" && std::filesystem::is_regular_file(file, unknown) &&
+         std::filesystem::is_empty(file, unknown);
+}
+
 /// A torn tail is what a run that was killed leaves: the next one cuts it off.
 Findings verify_journal(const std::filesystem::path& file) {
   const JournalReader journal(file);
@@ -35,7 +42,7 @@ Findings verify_journal(const std::filesystem::path& file) {
 Findings findings_of(const std::filesystem::path& file) {
   ConsoleProgress progress;
   try {
-    if (is_journal(file)) return verify_journal(file);
+    if (is_journal(file) || is_empty_journal(file)) return verify_journal(file);
     if (hdf5::holds(file, "collisions")) {
       if (const auto fault = verify_result(ResultReader(file), progress)) return {{*fault}};
       return {};

@@ -25,6 +25,7 @@
 #include "io/store.hpp"
 #include "io/store_layout.hpp"
 #include "io/store_writer.hpp"
+#include "io/verify_store.hpp"
 #include "io/xxh64.hpp"
 
 namespace clearway {
@@ -213,8 +214,9 @@ class Conversion {
     check_cells(top, counted.points);
     report_.count_seconds = watch_.lap();
 
-    const Distribution distribution =
-        distribute(environment, lattice, tree, folder_, kBufferBytes, threads_, progress_);
+    const Distribution distribution = distribute(environment, counted.points_hash, lattice, tree,
+                                                 folder_, kBufferBytes, threads_, progress_);
+    environment.refuse_changed();  // the sources' hashes too are of what was converted
     report_.largest_change = environment.largest_change();
     report_.temporary_bytes = counted.points * sizeof(DistributedPoint);
     report_.distribute_seconds = watch_.lap();
@@ -285,28 +287,41 @@ class Conversion {
   Stopwatch watch_;
 };
 
-/// None where there is no sound store.
-std::optional<StoreMetadata> metadata_of(const std::filesystem::path& store) {
-  if (!std::filesystem::is_regular_file(store)) return std::nullopt;
+/// None where there is no store with a sound index.
+std::optional<Store> store_at(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) return std::nullopt;
   try {
-    return Store(store).metadata();
+    return std::optional<Store>(std::in_place, path);
   } catch (const InputError&) {
     return std::nullopt;
   }
 }
 
-}  // namespace
-
-bool is_converted(const ConversionOptions& options, const Progress& progress) {
-  if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
-  const std::optional<StoreMetadata> found = metadata_of(options.output);
+/// Whether these options would make such a store, as far as it tells with which it was made.
+bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
   const auto wanted = [&options](double scale) {
     return !options.scale || scale == *options.scale;
   };
-  return found && found->cell_points == options.cell_points &&
-         found->layout == layout_name(options.regular_size) &&
-         std::all_of(found->quantisation.scale, found->quantisation.scale + 3, wanted) &&
-         SourceDescription(list_point_files(options.inputs), progress).get() == found->sources;
+  return found.cell_points == options.cell_points &&
+         found.layout == layout_name(options.regular_size) &&
+         std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
+         (!options.strict || found.point_count == found.input_points) &&
+         (options.ignore_crs || found.unit != LengthUnit::kDegree);
+}
+
+}  // namespace
+
+bool is_converted(const ConversionOptions& options, Progress& progress) {
+  if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
+  const std::optional<Store> store = store_at(options.output);
+  if (!store || !would_make(options, store->metadata())) return false;
+  SourceDescription sources(list_point_files(options.inputs), progress);
+  if (sources.get() != store->metadata().sources) return false;
+  const std::vector<std::string> faults = verify_store(*store, progress, 1);
+  if (faults.empty()) return true;
+  throw UsageError(faults[0] +
+                   "; the store of these inputs is damaged: --force in the place of --resume "
+                   "overwrites it");
 }
 
 ConversionReport convert(const ConversionOptions& options, Progress& progress) {

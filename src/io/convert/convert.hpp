@@ -44,8 +44,8 @@ struct ConversionReport {
 ConversionReport convert(const ConversionOptions& options, Progress& progress);
 
 /// Whether the output is there already and is the store of these inputs, by names and contents,
-/// with these options. Never of a stream. Throws ResourceError where an input is missing;
-/// Interrupted.
-bool is_converted(const ConversionOptions& options, const Progress& progress);
+/// with these options; all of it is verified. Never of a stream. Throws UsageError where that store
+/// is damaged; ResourceError where an input is missing; Interrupted.
+bool is_converted(const ConversionOptions& options, Progress& progress);
 
 }  // namespace clearway

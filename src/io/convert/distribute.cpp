@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/hand_over.hpp"
+#include "io/convert/points_hash.hpp"
 
 namespace clearway {
 namespace {
@@ -56,11 +57,17 @@ class Grouper {
   const SplitTree& tree_;
 };
 
+[[noreturn]] void refuse_change(const EnvironmentSource& environment) {
+  environment.refuse_changed();
+  throw InputError("the input changed between two passes over it, expected the same points");
+}
+
 /// Appends each unit's points to its region of the file through a buffer a unit.
 class RegionWriter {
  public:
-  RegionWriter(Distribution& out, std::uint64_t buffer_points)
-      : out_(out),
+  RegionWriter(const EnvironmentSource& environment, Distribution& out, std::uint64_t buffer_points)
+      : environment_(environment),
+        out_(out),
         next_(out.first.begin(), out.first.end() - 1),
         buffers_(next_.size()),
         buffer_points_(buffer_points) {}
@@ -74,7 +81,7 @@ class RegionWriter {
   void finish() {
     for (std::uint32_t unit = 0; unit < next_.size(); ++unit) {
       flush(unit);
-      if (next_[unit] != out_.first[unit + 1]) changed();
+      if (next_[unit] != out_.first[unit + 1]) refuse_change(environment_);
     }
   }
 
@@ -87,26 +94,23 @@ class RegionWriter {
 
   void flush(std::uint32_t unit) {
     auto& buffer = buffers_[unit];
-    if (buffer.size() > out_.first[unit + 1] - next_[unit]) changed();
+    if (buffer.size() > out_.first[unit + 1] - next_[unit]) refuse_change(environment_);
     out_.file.write_at(next_[unit] * sizeof(DistributedPoint), std::as_bytes(std::span(buffer)));
     next_[unit] += buffer.size();
     buffer.clear();
     if (buffer.capacity() > 2 * buffer_points_) buffer.shrink_to_fit();
   }
 
-  [[noreturn]] static void changed() {
-    throw InputError("the input changed between two passes over it, expected the same points");
-  }
-
+  const EnvironmentSource& environment_;
   Distribution& out_;
   std::vector<std::uint64_t> next_;
   std::vector<std::vector<DistributedPoint>> buffers_;
   std::uint64_t buffer_points_;
 };
 
-/// Reads batches, groups several at a time, and writes them in their order.
-void run_stages(EnvironmentSource& environment, const Grouper& group, RegionWriter& writer,
-                int threads, Progress& progress) {
+/// Reads batches into the hash, groups several at a time, and writes them in their order.
+void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper& group,
+                RegionWriter& writer, int threads, Progress& progress) {
   using Batch = std::shared_ptr<QuantaBatch>;
   using Grouped = std::shared_ptr<GroupedBatch>;
   const ParallelScope scope;
@@ -114,7 +118,11 @@ void run_stages(EnvironmentSource& environment, const Grouper& group, RegionWrit
   const auto read = piece_of(scope, input, [&](tbb::flow_control& flow) {
     throw_if_stopped(progress);
     auto batch = std::make_shared<QuantaBatch>();
-    if (!environment.read(*batch)) flow.stop();
+    if (environment.read(*batch)) {
+      hash.add(*batch);
+    } else {
+      flow.stop();
+    }
     return batch;
   });
   const auto grouped = piece_of(
@@ -134,9 +142,10 @@ void run_stages(EnvironmentSource& environment, const Grouper& group, RegionWrit
 
 }  // namespace
 
-Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
-                        const SplitTree& tree, const std::filesystem::path& temporary_folder,
-                        std::uint64_t buffer_bytes, int threads, Progress& progress) {
+Distribution distribute(EnvironmentSource& environment, std::uint64_t points_hash,
+                        const Lattice& lattice, const SplitTree& tree,
+                        const std::filesystem::path& temporary_folder, std::uint64_t buffer_bytes,
+                        int threads, Progress& progress) {
   Distribution out{File::create_temporary(temporary_folder), {0}};
   for (const std::uint32_t node : tree.units()) {
     out.first.push_back(out.first.back() + tree.nodes()[node].count);
@@ -144,14 +153,17 @@ Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
   const std::uint64_t points = out.first.back();
   out.file.reserve(points * sizeof(DistributedPoint));
   const std::uint64_t units = std::max<std::uint64_t>(1, tree.units().size());
-  RegionWriter writer(out, std::clamp<std::uint64_t>(
-                               buffer_bytes / units / (2 * sizeof(DistributedPoint)), 64, 1 << 15));
+  RegionWriter writer(environment, out,
+                      std::clamp<std::uint64_t>(
+                          buffer_bytes / units / (2 * sizeof(DistributedPoint)), 64, 1 << 15));
   const Grouper group(lattice, tree);
+  PointsHash hash(environment.quantisation());
 
   progress.begin("distribute", points, "points");
   environment.rewind();
-  run_stages(environment, group, writer, threads, progress);
+  run_stages(environment, hash, group, writer, threads, progress);
   writer.finish();
+  if (hash.digest(environment.input_points()) != points_hash) refuse_change(environment);
   progress.end();
   return out;
 }

@@ -27,9 +27,11 @@ struct Distribution {
 };
 
 /// The distribution pass. Throws InputError when the input is not what was counted, ResourceError
-/// when the disk is full. buffer_bytes: memory for the units' write buffers.
-Distribution distribute(EnvironmentSource& environment, const Lattice& lattice,
-                        const SplitTree& tree, const std::filesystem::path& temporary_folder,
-                        std::uint64_t buffer_bytes, int threads, Progress& progress);
+/// when the disk is full. points_hash: of what was counted. buffer_bytes: memory for the units'
+/// write buffers.
+Distribution distribute(EnvironmentSource& environment, std::uint64_t points_hash,
+                        const Lattice& lattice, const SplitTree& tree,
+                        const std::filesystem::path& temporary_folder, std::uint64_t buffer_bytes,
+                        int threads, Progress& progress);
 
 }  // namespace clearway

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -62,6 +63,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
   } else {
     files_ = list_point_files(inputs);
     std::for_each(files_.begin(), files_.end(), refuse_pipe);
+    std::transform(files_.begin(), files_.end(), std::back_inserter(states_), state_of);
   }
   open_inputs();
   find_crs();
@@ -144,6 +146,14 @@ void EnvironmentSource::rewind() {
   largest_change_ = 0;
   if (stream_) stream_->rewind();
   current_.reset();
+}
+
+void EnvironmentSource::refuse_changed() const {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (state_of(files_[i]) == states_[i]) continue;
+    refuse(files_[i].string(),
+           "changed during its conversion, expected the same file in every pass over it");
+  }
 }
 
 bool EnvironmentSource::next_batch(PointBatch& batch) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/convert/file_state.hpp"
 #include "io/convert/input_agreement.hpp"
 #include "io/convert/quanta_batch.hpp"
 #include "io/point_reader.hpp"
@@ -43,6 +44,9 @@ class EnvironmentSource {
   bool read(QuantaBatch& batch);
   void rewind();
 
+  /// Throws InputError, naming it, where a file is not as it was before the first of it was read.
+  void refuse_changed() const;
+
   // Of what has been read since the last rewind:
   std::uint64_t input_points() const { return input_points_; }
   std::uint64_t non_finite_points() const { return non_finite_points_; }
@@ -61,7 +65,8 @@ class EnvironmentSource {
 
   EnvironmentOptions options_;
   std::vector<std::filesystem::path> files_;
-  std::vector<CloudInfo> infos_;  // of the files
+  std::vector<FileState> states_;  // of the files at first; none of a stream
+  std::vector<CloudInfo> infos_;   // of the files
   Quantisation quantisation_{};
   std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
   CommonCrs crs_;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "io/hdf5.hpp"
+#include "io/las_bytes.hpp"
 #include "support/clouds.hpp"
 #include "support/store_order.hpp"
 
@@ -234,4 +235,36 @@ TEST_CASE("a failing conversion leaves nothing behind") {
   put_bytes(scan.options.output, "mine");
   CHECK_FALSE(conversion_refusal<InputError>(scan.options).empty());
   CHECK(bytes_of(scan.options.output) == "mine");
+}
+
+TEST_CASE("a store with points left out is not what a strict conversion makes") {
+  const ScratchFolder folder;
+  NoProgress progress;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  write_ply(folder / "a.ply", std::vector<Vec3>{{1, 2, 3}, {nan, 0, 0}});
+  ConversionOptions options = conversion_of({folder / "a.ply"}, folder / "a.h5");
+  convert_quietly(options);
+  CHECK(is_converted(options, progress));
+  options.strict = true;
+  CHECK_FALSE(is_converted(options, progress));
+  write_ply(folder / "a.ply", std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
+  convert_quietly(options);
+  CHECK(is_converted(options, progress));
+}
+
+TEST_CASE("a store in degrees is what a conversion makes that ignores the reference system") {
+  const ScratchFolder folder;
+  NoProgress progress;
+  LasBytes las;
+  las.minor = 4;
+  las.format = 6;
+  las.global_encoding = 16;
+  las.vlrs = {{"LASF_Projection", 2112, R"(GEOGCS["WGS 84",UNIT["degree",0.0174532925199433]])"}};
+  put_bytes(folder / "a.las", las.build());
+  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
+  options.ignore_crs = true;
+  convert_quietly(options);
+  CHECK(is_converted(options, progress));
+  options.ignore_crs = false;
+  CHECK_FALSE(is_converted(options, progress));
 }

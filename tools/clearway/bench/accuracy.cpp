@@ -18,18 +18,23 @@ class Accuracy {
       : bench_(bench),
         hall_(bench.scene("hall")),
         fast_(bench.engine_here("sweep")),
+        grid_(bench.engine_here("grid")),
         float_(bench.engine_here("grid float")),
         truth_(bench.truth("hall", hall_)) {}
 
   void engines() {
-    for (const EngineChoice& engine : bench_.exact_engines()) measure("exact", engine, hall_, "");
+    for (const EngineChoice& engine : bench_.exact_engines()) {
+      wrong_.look_at(measure("exact", engine, hall_, ""));
+    }
     measure("float", float_, hall_, "");
   }
 
   void far_origins() {
     for (const auto& [name, shift] : {std::pair{"UTM", kUtm}, {"10,000 km", kFar}}) {
       const SceneFiles files = bench_.shifted("hall", hall_, shift);
-      measure("exact, far origin", fast_, files, name);
+      for (const EngineChoice& engine : {bench_.engine("kdtree cpu"), fast_, grid_}) {
+        measure("exact, far origin", engine, files, name);
+      }
       measure("float, far origin", float_, files, name);
     }
   }
@@ -67,11 +72,14 @@ class Accuracy {
     }
   }
 
+  /// Throws Error where an exact engine decided points wrongly on the files as they are.
+  void finish() const { wrong_.refuse(); }
+
  private:
-  void measure(const std::string& method, const EngineChoice& engine, const SceneFiles& files,
+  Json measure(const std::string& method, const EngineChoice& engine, const SceneFiles& files,
                const Json& value) {
     const std::string key = method + "/" + engine.name + "/" + value.dump();
-    bench_.measure(
+    return bench_.measure(
         key, {{"method", method}, {"engine", engine.name}, {"value", value}}, files, engine.options,
         [&](const std::filesystem::path& result) { return judged(result, truth_); }, {},
         engine.exact ? Refusal::kNone : Refusal::kMemory);
@@ -79,8 +87,9 @@ class Accuracy {
 
   Bench& bench_;
   SceneFiles hall_;
-  EngineChoice fast_, float_;
+  EngineChoice fast_, grid_, float_;
   std::filesystem::path truth_;
+  WrongCases wrong_;
 };
 
 }  // namespace
@@ -93,6 +102,7 @@ void bench_accuracy(Bench& bench) {
   accuracy.thinned_models();
   accuracy.thinned_trajectories();
   accuracy.coarser_environments();
+  accuracy.finish();
 }
 
 }  // namespace clearway::tool

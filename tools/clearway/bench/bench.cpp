@@ -46,6 +46,17 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
   return a;
 }
 
+/// Locked, and noted as of this program.
+WorkFolder work_folder_at(const std::filesystem::path& path) {
+  WorkFolder folder(path);
+  const Json program = program_description();
+  const auto remark = folder.note_program({{"version", program["version"]},
+                                           {"commit", program["commit"]},
+                                           {"build", program["build"]}});
+  if (remark) spdlog::warn("{}", *remark);
+  return folder;
+}
+
 /// A case that has taken so long is not repeated.
 constexpr double kEnoughSeconds = 30;
 
@@ -72,10 +83,15 @@ EngineChoice EngineChoice::with(const std::vector<std::string>& more) const {
 
 Bench::Bench(const std::string& experiment, const BenchOptions& options)
     : options_(options),
-      work_(options.work),
+      work_(work_folder_at(options.work)),
       cuda_(use_cuda(options.device)),
       record_(options_.output, header_of(experiment, options, cuda_), options.resume,
-              options.force) {}
+              options.force) {
+  const Json program = program_description();
+  if (record_.empty() || !may_have_changed(program)) return;
+  spdlog::warn("{}: its cases are of commit {} too, but the source may have changed since",
+               options_.output.string(), program["commit"].get<std::string>());
+}
 
 SceneFiles Bench::scene(const std::string& name) { return scene(name, options_.size); }
 
@@ -112,7 +128,8 @@ std::filesystem::path Bench::store(const std::string& name,
 
 std::filesystem::path Bench::answer(const std::string& name, const SceneFiles& files,
                                     const std::vector<std::string>& run_options) {
-  std::filesystem::path path = work() / (name + "-" + options_.size + ".h5");
+  std::filesystem::path path = work_.answers() / (name + "-" + options_.size + ".h5");
+  std::filesystem::create_directories(work_.answers());
   if (!std::filesystem::exists(path)) output_of_program(command(files, path, run_options));
   return path;
 }

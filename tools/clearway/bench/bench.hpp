@@ -49,7 +49,8 @@ struct EngineChoice {
 /// as it lives.
 class Bench {
  public:
-  /// Throws as WorkFolder and Record do, and ResourceError for a GPU that is not there.
+  /// Throws as WorkFolder and Record do, and ResourceError for a GPU that is not there. Warns of
+  /// what they say of the program.
   Bench(const std::string& experiment, const BenchOptions& options);
 
   const BenchOptions& options() const { return options_; }

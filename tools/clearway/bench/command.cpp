@@ -55,7 +55,8 @@ CLI::Option* add_options(CLI::App& command, BenchOptions& options) {
   command
       .add_option(
           "--work", options.work,
-          "Folder for scenes, stores and results, which are kept there; of one bench at a time")
+          "Folder for scenes, stores and results, which are kept there; of one bench at a time, "
+          "and of one build of clearway")
       ->type_name("DIR")
       ->required();
   command

@@ -8,6 +8,8 @@ constexpr const char* kGridCells[] = {"0.04", "0.05", "0.07", "0.1", "0.14", "0.
 constexpr const char* kCellPoints[] = {"1024", "4096", "16384", "65536", "262144"};
 /// Edge of a regular cell, metres.
 constexpr const char* kCellSizes[] = {"0.7", "1", "1.5", "2", "3", "5", "8", "12", "20"};
+/// Points of a chunk of the regular layout: a cell has as many as it needs, the last one padded.
+constexpr int kRegularChunk = 4096;
 
 }  // namespace
 
@@ -30,12 +32,12 @@ void bench_grid(Bench& bench) {
   }
   for (const char* size : kCellSizes) {
     SceneFiles files = hall;
-    files.store =
-        bench.store(name + "-regular-" + size, hall.environment,
-                    {"--layout", std::string("regular:") + size, "--cell-points", "4096"});
+    files.store = bench.store(name + "-regular-" + size, hall.environment,
+                              {"--layout", std::string("regular:") + size, "--cell-points",
+                               std::to_string(kRegularChunk)});
     bench.measure(std::string("regular layout/") + size,
-                  {{"vary", "regular layout"}, {"value", size}}, files, engine.options, {}, {},
-                  Refusal::kMemory);
+                  {{"vary", "regular layout"}, {"value", size}, {"chunk_points", kRegularChunk}},
+                  files, engine.options, {}, {}, Refusal::kMemory);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "clearway/bench/judges.hpp"
 
 #include "clearway/bench/misclassified.hpp"
+#include "core/error.hpp"
 #include "io/compare_results.hpp"
 
 namespace clearway::tool {
@@ -22,6 +23,17 @@ Json judged(const std::filesystem::path& result, const std::filesystem::path& tr
           {"beyond", wrong.beyond},
           {"largest_distance", wrong.largest_distance},
           {"histogram", wrong.histogram}};
+}
+
+void WrongCases::look_at(const Json& of_case) {
+  const Json found = of_case.value("findings", Json::object());
+  const bool right = found.value("equal", true) && found.value("false_hits", 0) == 0 &&
+                     found.value("misses", 0) == 0;
+  if (!right) keys_ += (keys_.empty() ? "" : ", ") + of_case["key"].get<std::string>();
+}
+
+void WrongCases::refuse() const {
+  if (!keys_.empty()) throw Error("engines that decide exactly are wrong: " + keys_);
 }
 
 Json near_boundary(const std::filesystem::path& truth) {

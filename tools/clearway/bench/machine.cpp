@@ -66,6 +66,7 @@ nlohmann::ordered_json program_description() {
 #endif
   return {{"version", CLEARWAY_VERSION},
           {"commit", kCommit},
+          {"build", CLEARWAY_BUILD},
           {"compiler", __VERSION__},
           {"libraries", libraries}};
 }

@@ -17,6 +17,8 @@ class Record {
   /// header is the same but for the parameter "limit" (seconds).
   Record(std::filesystem::path path, const Json& header, bool resume, bool force);
 
+  bool empty() const { return all_["cases"].empty(); }
+
   /// The case of that key, or nullptr; that too for one that was stopped by a smaller limit than
   /// the header's, which is to be measured anew.
   const Json* find(const std::string& key) const;

@@ -1,7 +1,6 @@
 // Every engine on the four scenes: Table 1 (colliding points) and Fig. 3 (time).
 #include "clearway/bench/bench.hpp"
 #include "clearway/bench/judges.hpp"
-#include "core/error.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -16,7 +15,7 @@ std::vector<EngineChoice> engines_of_table(const Bench& bench) {
 }  // namespace
 
 void bench_table(Bench& bench) {
-  std::string differing;
+  WrongCases wrong;
   for (const std::string& scene : bench.options().scenes) {
     const SceneFiles files = bench.scene(scene);
     const auto reference =
@@ -27,12 +26,10 @@ void bench_table(Bench& bench) {
           {{"scene", scene}, {"engine", engine.name}, {"exact", engine.exact}}, files,
           engine.options,
           [&](const std::filesystem::path& result) { return compared(result, reference); }, 1);
-      const bool answered = found.contains("findings");
-      if (engine.exact && answered && !found["findings"].value("equal", false))
-        differing += " " + scene + "/" + engine.name;
+      if (engine.exact) wrong.look_at(found);
     }
   }
-  if (!differing.empty()) throw Error("engines that are exact differ:" + differing);
+  wrong.refuse();
 }
 
 void bench_datasets(Bench& bench) {

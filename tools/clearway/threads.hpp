@@ -1,0 +1,9 @@
+#pragma once
+
+namespace clearway::tool {
+
+/// Throws ResourceError where this process may not have that many threads, 0: one a core. OpenMP
+/// would end the program instead.
+void check_threads(int threads);
+
+}  // namespace clearway::tool
