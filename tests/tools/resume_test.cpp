@@ -202,7 +202,13 @@ TEST_CASE("a resumed run leaves a result alone that answers its question, and no
   const Outcome again = work.run("--resume --json", "0.1", "sweep");
   CHECK(again.exit_code == 0);
   CHECK_THAT(again.err, Contains("is the answer already"));
-  CHECK(json::parse(again.out)["colliding_points"] == json::parse(first.out)["colliding_points"]);
+  const json found = json::parse(first.out), kept = json::parse(again.out);
+  for (const char* same : {"environment_points", "colliding_points", "cells_total"}) {
+    CHECK(kept[same] == found[same]);
+  }
+  CHECK(kept["engine"].is_null());
+  CHECK(kept["cells_read"] == 0);
+  CHECK(kept["seconds"].size() == found["seconds"].size());
   check_refused(work.run("--resume", "0.2"), 2, "exists already");
   check_refused(work.run(""), 2, "exists already");
   CHECK((bytes_of(work.output) == bytes));

@@ -132,14 +132,23 @@ nlohmann::ordered_json report_of(const Inputs& inputs, const RunOptions& options
           {"seconds", seconds_of(engine, seconds)}};
 }
 
-/// Of an answer that was there already: without what a search would tell.
-nlohmann::ordered_json report_of(const ResultReader& result) {
+/// Of an answer that was there already: no engine searched.
+nlohmann::ordered_json report_of(const ResultReader& result, const Inputs& inputs,
+                                 std::uint64_t peak_host_bytes, const Seconds& seconds) {
   const ResultHeader& header = result.header();
   return {{"environment_points", header.environment_points},
           {"model_points", header.model_points},
           {"poses", header.poses},
           {"colliding_points", result.collisions()},
-          {"clearance_points", result.clearances()}};
+          {"clearance_points", result.clearances()},
+          {"engine", nullptr},
+          {"device", nullptr},
+          {"cells_total", inputs.store.cells().size()},
+          {"cells_read", 0},
+          {"bytes_read", 0},
+          {"peak_host_bytes", peak_host_bytes},
+          {"peak_device_bytes", 0},
+          {"seconds", seconds_of(EngineReport(), seconds)}};
 }
 
 void warn_of(const Inputs& inputs, const RunOptions& options) {
@@ -182,7 +191,11 @@ void run(const RunOptions& options) {
   const ResultHeader header = header_of(inputs, options);
   if (journal.already_answered(inputs.store, header, progress)) {
     spdlog::info("{}: is the answer already; nothing to do", options.output.string());
-    if (options.json) print(report_of(ResultReader(options.output)).dump(2) + "\n");
+    seconds.inputs = seconds.total = total.seconds();
+    if (options.json) {
+      const ResultReader result(options.output);
+      print(report_of(result, inputs, memory.peak_bytes(), seconds).dump(2) + "\n");
+    }
     return;
   }
   const Question question = question_of(options, inputs.model, inputs.poses);
