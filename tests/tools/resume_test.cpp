@@ -207,6 +207,9 @@ TEST_CASE("a resumed run leaves a result alone that answers its question, and no
     CHECK(kept[same] == found[same]);
   }
   CHECK(kept["engine"].is_null());
+  put_bytes(work.journal, "CLWYJ");  // nothing in it yet
+  CHECK(work.run("--resume").exit_code == 0);
+  CHECK(work.files() == Names{"out.h5"});
   CHECK(kept["cells_read"] == 0);
   CHECK(kept["seconds"].size() == found["seconds"].size());
   check_refused(work.run("--resume", "0.2"), 2, "exists already");

@@ -10,6 +10,7 @@
 #include "clearway/grid_run.hpp"
 #include "clearway/kdtree_run.hpp"
 #include "clearway/sweep_run.hpp"
+#include "clearway/threads.hpp"
 #include "core/error.hpp"
 
 namespace clearway::tool {
@@ -123,6 +124,7 @@ Answer run_engine(const Store& store, const Question& question, const EngineOpti
   check_poses(question);
   const DeviceChoice device = choose_device(resolved);
   if (options.threads == 0) resolved.threads = tbb::this_task_arena::max_concurrency();
+  check_threads(resolved.threads);
   report.engine = resolved.engine;
   report.context_seconds = device.context_seconds;
   report.searches = std::uint64_t{question.poses.size()} * question.model.size();

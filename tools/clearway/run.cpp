@@ -12,7 +12,6 @@
 #include "clearway/run_options.hpp"
 #include "clearway/signals.hpp"
 #include "clearway/standard_output.hpp"
-#include "clearway/threads.hpp"
 #include "core/stopwatch.hpp"
 #include "io/content_hash.hpp"
 #include "io/model.hpp"
@@ -202,7 +201,6 @@ void run(const RunOptions& options) {
   seconds.inputs = total.seconds();
   EngineReport engine;
   throw_if_stopped(progress);
-  check_threads(options.engine.threads);
   const auto open_journal = [&](const std::string& name,
                                 const std::string& device) -> AnswerJournal& {
     return journal.open(inputs.store, question, header, name, device);

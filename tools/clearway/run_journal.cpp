@@ -117,7 +117,7 @@ bool RunJournal::already_answered(const Store& store, const ResultHeader& header
   if (replaces_) return false;
   if (options_.resume && fs::exists(options_.output) && is_of(store, header) &&
       answers(options_.output, header, progress)) {
-    if (read_) remove_file(path_);
+    if (read_ || !unwanted_.empty()) remove_file(path_);
     return true;
   }
   output_.refuse_existing();

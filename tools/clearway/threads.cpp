@@ -1,7 +1,5 @@
 #include "clearway/threads.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <latch>
 #include <string>
 #include <system_error>
@@ -13,7 +11,6 @@
 namespace clearway::tool {
 
 void check_threads(int threads) {
-  if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   std::latch all_started(1);
   std::vector<std::jthread> started;
   try {

@@ -2,8 +2,8 @@
 
 namespace clearway::tool {
 
-/// Throws ResourceError where this process may not have that many threads, 0: one a core. OpenMP
-/// would end the program instead.
+/// Throws ResourceError where this process may not have that many threads. OpenMP would end the
+/// program instead.
 void check_threads(int threads);
 
 }  // namespace clearway::tool
