@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/packed_cloud.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "cpu/range_kernels.hpp"
 
 namespace clearway {

@@ -2,18 +2,18 @@
 
 #include <algorithm>
 
-#include "core/hit_set.hpp"
-#include "core/predicate.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/query/hit_set.hpp"
 
 namespace clearway {
 namespace {
 
 constexpr std::size_t kPairsWorthThreads = 1'000'000;
 
-std::vector<Vec3> moved_model(const Question& question, std::size_t pose) {
+std::vector<Vec3> moved_model(const Query& query, std::size_t pose) {
   std::vector<Vec3> moved;
-  moved.reserve(question.model.size());
-  for (const Vec3& m : question.model) moved.push_back(transform(question.poses[pose], m));
+  moved.reserve(query.model.size());
+  for (const Vec3& m : query.model) moved.push_back(transform(query.poses[pose], m));
   return moved;
 }
 
@@ -37,17 +37,17 @@ std::uint32_t touching_pose(const Vec3& e, std::uint32_t i, const std::vector<Ve
 }  // namespace
 
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
-                                                   const Question& question) {
+                                                   const Query& query) {
   std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
-  const bool worth_threads = environment.size() * question.model.size() > kPairsWorthThreads;
-  for (std::uint32_t i = 0; i < question.poses.size(); ++i) {
-    const bool moves_on = question.between_poses && i + 1 < question.poses.size();
-    const std::vector<Vec3> from = moved_model(question, i);
-    const std::vector<Vec3> to = moves_on ? moved_model(question, i + 1) : std::vector<Vec3>();
+  const bool worth_threads = environment.size() * query.model.size() > kPairsWorthThreads;
+  for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
+    const bool moves_on = query.between_poses && i + 1 < query.poses.size();
+    const std::vector<Vec3> from = moved_model(query, i);
+    const std::vector<Vec3> to = moves_on ? moved_model(query, i + 1) : std::vector<Vec3>();
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
       if (first[e] <= i) continue;
-      const std::uint32_t pose = touching_pose(environment[e], i, from, to, question.radius);
+      const std::uint32_t pose = touching_pose(environment[e], i, from, to, query.radius);
       first[e] = std::min(first[e], pose);
     }
   }
@@ -55,11 +55,11 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
 }
 
 std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
-                                              const Question& question) {
+                                              const Query& query) {
   std::vector<Clearance> least(environment.size());
-  for (std::uint32_t i = 0; i < question.poses.size(); ++i) {
-    for (const Vec3& model_point : question.model) {
-      const Vec3 m = transform(question.poses[i], model_point);
+  for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
+    for (const Vec3& model_point : query.model) {
+      const Vec3 m = transform(query.poses[i], model_point);
       for (std::size_t e = 0; e < environment.size(); ++e) {
         const double squared = squared_distance(environment[e], m);
         if (squared < least[e].squared) least[e] = {squared, i};

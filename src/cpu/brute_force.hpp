@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/clearance_set.hpp"
-#include "core/question.hpp"
-#include "core/vec3.hpp"
+#include "clearway/query.hpp"
+#include "clearway/vec3.hpp"
+#include "core/query/clearance_set.hpp"
 
 namespace clearway {
 
@@ -14,11 +14,11 @@ namespace clearway {
 /// oracle of all tests: every pair is put to the predicate, and nothing but the predicate is shared
 /// with the engines. O(|E| |M| |T|), on all cores.
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
-                                                   const Question& question);
+                                                   const Query& query);
 
 /// For every environment point the least d2 over every pair, however large, and the lowest pose
 /// that has it; not found where no d2 is finite. Likewise an oracle.
 std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
-                                              const Question& question);
+                                              const Query& query);
 
 }  // namespace clearway

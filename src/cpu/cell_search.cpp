@@ -4,10 +4,10 @@
 #include <bit>
 #include <utility>
 
-#include "core/hit_set.hpp"
-#include "core/kd_order.hpp"
-#include "core/page_chunk.hpp"
-#include "core/predicate.hpp"
+#include "core/cloud/kd_order.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/page/page_chunk.hpp"
+#include "core/query/hit_set.hpp"
 
 namespace clearway {
 
@@ -29,11 +29,11 @@ void CellSearch::run(const PageRef& page, std::uint32_t index, const Output& out
 
 SweepStatistics CellSearch::take_statistics() { return std::exchange(statistics_, {}); }
 
-std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Question& question,
+std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Query& query,
                                      std::uint64_t most_poses) {
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
   // A clearance search notes a bound a node, in a list that may have grown to twice its need.
-  const std::uint64_t of_clearance = question.clearance > 0 ? 48 * most_poses + (1U << 15) : 0;
+  const std::uint64_t of_clearance = query.clearance > 0 ? 48 * most_poses + (1U << 15) : 0;
   return sizeof(CellSearch) + depths * (sizeof(lists_[0]) + most_poses * sizeof(std::uint32_t)) +
          of_clearance;
 }
@@ -83,9 +83,9 @@ void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_
 /// Whether the point collides.
 bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
                             std::span<const std::uint32_t> nodes) {
-  const Question& question = filter_.question();
+  const Query& query = filter_.query();
   bool hit = false;
-  if (question.first_pose) {
+  if (query.first_pose) {
     const std::uint32_t pose = filter_.first_pose(e, nodes, statistics_);
     output_.first_poses[index] = pose;
     hit = pose != HitSet::kNever;
@@ -93,7 +93,7 @@ bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
     hit = filter_.touches(e, nodes, statistics_);
   }
   // No point is within a clearance of at most the radius that does not collide.
-  if (clearance_search_ && (hit || question.clearance > question.radius)) {
+  if (clearance_search_ && (hit || query.clearance > query.radius)) {
     search_clearance(e, index, nodes);
   }
   return hit;
@@ -104,7 +104,7 @@ bool CellSearch::search_clearance(const Vec3& e, std::uint32_t index,
                                   std::span<const std::uint32_t> nodes) {
   const Clearance clearance = clearance_search_->nearest(e, nodes, statistics_);
   output_.clearances[index] = clearance;
-  const double radius = filter_.question().radius;
+  const double radius = filter_.query().radius;
   return clearance.squared < rounded_product(radius, radius);
 }
 

@@ -6,17 +6,17 @@
 #include <span>
 #include <vector>
 
-#include "core/clearance_search.hpp"
-#include "core/packed_cloud.hpp"
-#include "core/page.hpp"
-#include "core/sweep_filter.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/page/page.hpp"
+#include "core/sweep/clearance_search.hpp"
+#include "core/sweep/sweep_filter.hpp"
 
 namespace clearway {
 
 /// The sweep engine's descent within one cell of a page after the other.
 class CellSearch {
  public:
-  /// Where the answer of a cell goes: see PageAnswer. Poses and clearances only where asked for.
+  /// Where the answer of a cell goes: see PageResult. Poses and clearances only where asked for.
   struct Output {
     std::span<std::uint64_t> hits;
     std::span<std::uint32_t> first_poses;
@@ -33,7 +33,7 @@ class CellSearch {
   SweepStatistics take_statistics();
 
   /// The most that it allocates, bytes; most_poses: of the nodes of any cell.
-  static std::uint64_t most_bytes(const PackedCloud& cloud, const Question& question,
+  static std::uint64_t most_bytes(const PackedCloud& cloud, const Query& query,
                                   std::uint64_t most_poses);
 
  private:

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/box.hpp"
-#include "core/packed_cloud.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/box.hpp"
 
 namespace clearway {
 
@@ -41,7 +41,7 @@ class EnvironmentTree {
   /// Points of the node, or a little more for a node of several cells.
   std::uint64_t most_points(const EnvironmentNode& node) const {
     if (node.top == EnvironmentNode::kInCell) return std::uint64_t{node.block_count} * kBlockPoints;
-    return std::uint64_t{cloud_.tree()[node.top].cell_count} * cloud_.cell_slots();
+    return std::uint64_t{cloud_.tree()[node.top].cell_count} * cloud_.cell_entries();
   }
 
   /// A number below node_slots() that no other inner node of the cells has.

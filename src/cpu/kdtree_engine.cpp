@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/predicate.hpp"
+#include "clearway/error.hpp"
+#include "core/geometry/predicate.hpp"
 #include "cpu/range_search.hpp"
 
 namespace clearway {
@@ -40,11 +40,11 @@ class FirstFailure {
   std::atomic<bool> happened_ = false;
 };
 
-/// The question cut into tasks: a run of poses and a part of the model, in the order of the poses.
+/// The query cut into tasks: a run of poses and a part of the model, in the order of the poses.
 class Tasks {
  public:
-  Tasks(const Question& question, const ModelSpheres& model, int threads)
-      : pose_count_(static_cast<std::uint32_t>(question.poses.size())) {
+  Tasks(const Query& query, const ModelSpheres& model, int threads)
+      : pose_count_(static_cast<std::uint32_t>(query.poses.size())) {
     // Few poses are spread over the threads by cutting the model.
     const auto wanted = static_cast<std::uint64_t>(threads) * kTasksPerThread;
     run_poses_ = static_cast<std::uint32_t>(
@@ -87,19 +87,19 @@ class Tasks {
   std::vector<std::atomic<std::uint32_t>> parts_left_;
 };
 
-void check(const Question& question) {
-  if (question.poses.size() >= HitSet::kNever) {
-    throw InputError("a trajectory of " + std::to_string(question.poses.size()) +
+void check(const Query& query) {
+  if (query.poses.size() >= HitSet::kNever) {
+    throw InputError("a trajectory of " + std::to_string(query.poses.size()) +
                      " poses, expected fewer than " + std::to_string(HitSet::kNever));
   }
 }
 
 /// What the threads of one run share.
 struct Shared {
-  const Question& question;
+  const Query& query;
   const ModelSpheres& model;
   const EnvironmentTree& environment;
-  SettledPoints& settled;
+  ResolvedPoints& resolved;
   Tasks& tasks;
   Progress& progress;
   KdTreeStatistics& statistics;
@@ -112,7 +112,7 @@ struct Shared {
 /// Takes tasks until none is left, a thread has failed or the run shall stop.
 void search_tasks(Shared& shared) {
   PoseMarkLog marks(shared.journal);
-  RangeSearch search(shared.environment, shared.settled, shared.model, shared.question, marks);
+  RangeSearch search(shared.environment, shared.resolved, shared.model, shared.query, marks);
   while (!shared.failure.happened() && !shared.progress.stop_requested()) {
     const std::uint64_t task = shared.next_task++;
     if (task >= shared.tasks.count()) break;
@@ -120,8 +120,8 @@ void search_tasks(Shared& shared) {
     const std::uint32_t count = shared.tasks.poses(task);
     const bool known = shared.journal != nullptr && shared.journal->poses_finished(first, count);
     if (!known) {
-      const PoseTree poses(shared.question.poses, first, count, shared.model.box(),
-                           shared.question.between_poses);
+      const PoseTree poses(shared.query.poses, first, count, shared.model.box(),
+                           shared.query.between_poses);
       search.search(poses, shared.model.node(shared.tasks.sphere(task)));
       marks.flush();
     }
@@ -136,34 +136,34 @@ void search_tasks(Shared& shared) {
 
 }  // namespace
 
-std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Question& question, int threads) {
+std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Query& query, int threads) {
   constexpr std::uint64_t kThreadBytes = std::uint64_t{4} << 20;
   constexpr std::uint64_t kModelPointBytes = 96;  // ordered columns and spheres
-  const std::uint64_t blocks = cloud.slot_count() / kBlockPoints;
+  const std::uint64_t blocks = cloud.entry_count() / kBlockPoints;
   const std::uint64_t block_bytes =
       sizeof(std::uint64_t) + sizeof(BlockBox) +
-      (question.first_pose ? (kBlockPoints + 2) * sizeof(std::uint32_t) : 1);
+      (query.first_pose ? (kBlockPoints + 2) * sizeof(std::uint32_t) : 1);
   return blocks * block_bytes + cloud.tree().size() * sizeof(std::uint32_t) +
-         question.model.size() * kModelPointBytes + static_cast<unsigned>(threads) * kThreadBytes;
+         query.model.size() * kModelPointBytes + static_cast<unsigned>(threads) * kThreadBytes;
 }
 
-HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTreeOptions& options,
+HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOptions& options,
                   Progress& progress, KdTreeStatistics* statistics) {
-  check(question);
+  check(query);
   KdTreeStatistics counted;
-  counted.searches = std::uint64_t{question.poses.size()} * question.model.size();
-  HitSet hits(cloud.slot_count(), question.first_pose);
-  progress.begin("search", question.poses.size(), "poses");
+  counted.searches = std::uint64_t{query.poses.size()} * query.model.size();
+  HitSet hits(cloud.entry_count(), query.first_pose);
+  progress.begin("search", query.poses.size(), "poses");
   const bool nothing = counted.searches == 0 || cloud.tree().empty() ||
-                       !(rounded_product(question.radius, question.radius) > 0);
+                       !(rounded_product(query.radius, query.radius) > 0);
   if (!nothing) {
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-    const ModelSpheres model(question.model, kLeafRadii * question.radius);
+    const ModelSpheres model(query.model, kLeafRadii * query.radius);
     const EnvironmentTree environment(cloud, threads);
-    SettledPoints settled(environment, hits);
-    Tasks tasks(question, model, threads);
+    ResolvedPoints resolved(environment, hits);
+    Tasks tasks(query, model, threads);
     if (options.journal != nullptr) options.journal->restore(hits);
-    Shared shared{question, model, environment, settled, tasks, progress, counted, options.journal};
+    Shared shared{query, model, environment, resolved, tasks, progress, counted, options.journal};
 #pragma omp parallel num_threads(threads)
     {
       try {
@@ -175,7 +175,7 @@ HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTr
     shared.failure.rethrow();
     if (shared.next_task < tasks.count()) throw Interrupted("interrupted");
     counted.allocated_bytes =
-        hits.allocated_bytes() + environment.allocated_bytes() + settled.allocated_bytes();
+        hits.allocated_bytes() + environment.allocated_bytes() + resolved.allocated_bytes();
   }
   progress.end();
   if (statistics != nullptr) *statistics = counted;

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
-#include "core/hit_set.hpp"
-#include "core/packed_cloud.hpp"
-#include "core/pose_journal.hpp"
-#include "core/progress.hpp"
-#include "core/question.hpp"
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/query/hit_set.hpp"
+#include "core/query/pose_journal.hpp"
+#include "core/util/progress.hpp"
 
 namespace clearway {
 
@@ -23,14 +23,14 @@ struct KdTreeStatistics {
 };
 
 /// An upper bound of the memory that run_kdtree takes beside the cloud's own, bytes.
-std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Question& question, int threads);
+std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Query& query, int threads);
 
-/// Every point of `cloud` that the question's model touches: for every pose and model point a
+/// Every point of `cloud` that the query's model touches: for every pose and model point a
 /// fixed-range search in the cloud's k-d tree, over the packed points. Poses are searched in
 /// parallel. Progress counts poses; where it asks to stop, the poses begun are finished and
 /// Interrupted is thrown. Throws InputError for a damaged cell.
 /// Source: Schauer et al. (the paper), section 3.1 (kd-CD-simple).
-HitSet run_kdtree(const PackedCloud& cloud, const Question& question, const KdTreeOptions& options,
+HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOptions& options,
                   Progress& progress, KdTreeStatistics* statistics = nullptr);
 
 }  // namespace clearway

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 
 namespace clearway {
 

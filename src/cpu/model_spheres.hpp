@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/box.hpp"
-#include "core/vec3.hpp"
+#include "clearway/vec3.hpp"
+#include "core/geometry/box.hpp"
 #include "cpu/range_kernels.hpp"
 
 namespace clearway {

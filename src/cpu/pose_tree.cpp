@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/rigid.hpp"
+#include "core/geometry/rigid.hpp"
 
 namespace clearway {
 

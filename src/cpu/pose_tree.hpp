@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/box.hpp"
-#include "core/pose.hpp"
+#include "clearway/pose.hpp"
+#include "core/geometry/box.hpp"
 
 namespace clearway {
 

@@ -1,7 +1,7 @@
 #include "cpu/range_kernels.hpp"
 
-#include "core/macros.hpp"
-#include "core/predicate.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/util/macros.hpp"
 
 namespace clearway {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/pose.hpp"
-#include "core/vec3.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/vec3.hpp"
 
 /// The inner loops of range searches, compiled for several vector widths. All of them round as the
 /// predicate does: they are the predicate, over columns.

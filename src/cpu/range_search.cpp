@@ -4,7 +4,7 @@
 #include <bit>
 #include <limits>
 
-#include "core/predicate.hpp"
+#include "core/geometry/predicate.hpp"
 
 namespace clearway {
 namespace {
@@ -26,14 +26,14 @@ double longest_side(const Box& box) {
 
 }  // namespace
 
-RangeSearch::RangeSearch(const EnvironmentTree& environment, SettledPoints& settled,
-                         const ModelSpheres& model, const Question& question, PoseMarkLog& marks)
+RangeSearch::RangeSearch(const EnvironmentTree& environment, ResolvedPoints& resolved,
+                         const ModelSpheres& model, const Query& query, PoseMarkLog& marks)
     : environment_(environment),
-      settled_(settled),
+      resolved_(resolved),
       model_(model),
-      question_(question),
+      query_(query),
       marks_(marks),
-      radius_squared_(rounded_product(question.radius, question.radius)),
+      radius_squared_(rounded_product(query.radius, query.radius)),
       cache_(environment.cloud()),
       x_(kDeepest * kBatchPoints),
       y_(x_.size()),
@@ -44,7 +44,7 @@ RangeSearch::RangeSearch(const EnvironmentTree& environment, SettledPoints& sett
       moved_x_(model.largest_leaf()),
       moved_y_(model.largest_leaf()),
       moved_z_(model.largest_leaf()) {
-  if (!question.between_poses) return;
+  if (!query.between_poses) return;
   next_x_.resize(model.largest_leaf());
   next_y_.resize(model.largest_leaf());
   next_z_.resize(model.largest_leaf());
@@ -57,30 +57,30 @@ std::uint64_t RangeSearch::allocated_bytes() const {
          candidates_.capacity() * sizeof(Candidate);
 }
 
-RangeSearch::Query RangeSearch::make_query(const PoseNode& poses, const ModelSphere& sphere) const {
+RangeSearch::SearchTask RangeSearch::make_task(const PoseNode& poses,
+                                               const ModelSphere& sphere) const {
   const double reach =
-      (question_.radius + poses.stretch * sphere.radius + poses.spread) * (1 + 16 * kEpsilon) +
-      1e-150;
-  return {poses, sphere, transform(question_.poses[poses.reference], sphere.centre),
+      (query_.radius + poses.stretch * sphere.radius + poses.spread) * (1 + 16 * kEpsilon) + 1e-150;
+  return {poses, sphere, transform(query_.poses[poses.reference], sphere.centre),
           reach * reach * (1 + 4 * kEpsilon),
-          !settled_.first_pose() || poses.reference == poses.first};
+          !resolved_.first_pose() || poses.reference == poses.first};
 }
 
-/// Calls visit(query) for the parts of the query: the halves of its poses where they move more than
+/// Calls visit(task) for the parts of the task: the halves of its poses where they move more than
 /// the sphere is wide, else its smaller spheres.
 template <typename Visit>
-void RangeSearch::for_each_half(const Query& query, Visit visit) {
-  const PoseNode& poses = query.poses;
-  const ModelSphere& sphere = query.sphere;
+void RangeSearch::for_each_half(const SearchTask& task, Visit visit) {
+  const PoseNode& poses = task.poses;
+  const ModelSphere& sphere = task.sphere;
   const bool split_poses =
       poses.count > 1 && (sphere.children == 0 || !(poses.spread <= poses.stretch * sphere.radius));
   if (split_poses) {
-    visit(make_query(pose_tree_->node(poses.earlier), sphere));
-    visit(make_query(pose_tree_->node(poses.later), sphere));
+    visit(make_task(pose_tree_->node(poses.earlier), sphere));
+    visit(make_task(pose_tree_->node(poses.later), sphere));
     return;
   }
   for (std::uint32_t i = 0; i < sphere.children; ++i) {
-    visit(make_query(poses, model_.node(sphere.first_child + i)));
+    visit(make_task(poses, model_.node(sphere.first_child + i)));
   }
 }
 
@@ -90,138 +90,138 @@ void RangeSearch::search(const PoseTree& poses, const ModelSphere& sphere) {
   gathered_ = 0;
   const EnvironmentNode root = environment_.root();
   candidates_.push_back({root, environment_.box(root)});
-  search_nodes(make_query(poses.node(0), sphere), 0, 1);
+  search_nodes(make_task(poses.node(0), sphere), 0, 1);
 }
 
-/// Candidates begin .. end are those of the parent query.
-void RangeSearch::search_nodes(const Query& query, std::size_t begin, std::size_t end) {
+/// Candidates begin .. end are those of the parent task.
+void RangeSearch::search_nodes(const SearchTask& task, std::size_t begin, std::size_t end) {
   const std::size_t first = candidates_.size();
   const std::uint64_t points_before = candidate_points_;
   candidate_points_ = 0;
-  for (std::size_t i = begin; i < end; ++i) add_candidate(query, Candidate(candidates_[i]));
+  for (std::size_t i = begin; i < end; ++i) add_candidate(task, Candidate(candidates_[i]));
   const std::size_t last = candidates_.size();
   if (first < last) {
-    if (candidate_points_ <= kGatherPoints || query.at_leaves()) {
-      gather(query, first, last);
+    if (candidate_points_ <= kGatherPoints || task.at_leaves()) {
+      gather(task, first, last);
     } else {
-      for_each_half(query, [&](const Query& part) { search_nodes(part, first, last); });
+      for_each_half(task, [&](const SearchTask& part) { search_nodes(part, first, last); });
     }
   }
   candidates_.resize(first);
   candidate_points_ = points_before;
 }
 
-/// True when the node holds nothing that this query is still to decide.
-bool RangeSearch::dismiss_or_take(const Query& query, const Candidate& candidate) {
-  if (settled_.node_settled(candidate.node, query.poses.first)) return true;
-  if (least_squared_distance(candidate.box, query.centre) > query.reach_squared) return true;
-  if (query.hit_is_final &&
-      greatest_squared_distance(candidate.box, query.centre) < radius_squared_) {
-    mark_node(candidate.node, query.poses.reference);
+/// True when the node holds nothing that this task is still to decide.
+bool RangeSearch::dismiss_or_take(const SearchTask& task, const Candidate& candidate) {
+  if (resolved_.node_resolved(candidate.node, task.poses.first)) return true;
+  if (least_squared_distance(candidate.box, task.centre) > task.reach_squared) return true;
+  if (task.hit_is_final &&
+      greatest_squared_distance(candidate.box, task.centre) < radius_squared_) {
+    mark_node(candidate.node, task.poses.reference);
     return true;
   }
   return false;
 }
 
-void RangeSearch::add_candidate(const Query& query, const Candidate& candidate) {
-  if (dismiss_or_take(query, candidate)) return;
+void RangeSearch::add_candidate(const SearchTask& task, const Candidate& candidate) {
+  if (dismiss_or_take(task, candidate)) return;
   const double extent = longest_side(candidate.box);
   if (candidate.node.is_block() ||
-      extent * extent <= kNodeExtent * kNodeExtent * query.reach_squared) {
+      extent * extent <= kNodeExtent * kNodeExtent * task.reach_squared) {
     candidates_.push_back(candidate);
     candidate_points_ += environment_.most_points(candidate.node);
     return;
   }
-  bool settled = true;
+  bool resolved = true;
   for (const EnvironmentNode& child : environment_.children(candidate.node)) {
-    add_candidate(query, {child, environment_.box(child)});
-    settled = settled && settled_.node_settled(child, query.poses.first);
+    add_candidate(task, {child, environment_.box(child)});
+    resolved = resolved && resolved_.node_resolved(child, task.poses.first);
   }
-  if (settled) settled_.settle_node(candidate.node, query.poses.first);
+  if (resolved) resolved_.resolve_node(candidate.node, task.poses.first);
 }
 
 /// Takes candidates begin .. end apart into points, batch by batch.
-void RangeSearch::gather(const Query& query, std::size_t begin, std::size_t end) {
-  for (std::size_t i = begin; i < end; ++i) gather_node(query, Candidate(candidates_[i]));
-  flush(query);
+void RangeSearch::gather(const SearchTask& task, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) gather_node(task, Candidate(candidates_[i]));
+  flush(task);
 }
 
-void RangeSearch::gather_node(const Query& query, const Candidate& candidate) {
-  if (candidate.node.is_block()) return gather_block(query, candidate.node);
-  bool settled = true;
+void RangeSearch::gather_node(const SearchTask& task, const Candidate& candidate) {
+  if (candidate.node.is_block()) return gather_block(task, candidate.node);
+  bool resolved = true;
   for (const EnvironmentNode& child : environment_.children(candidate.node)) {
     const Candidate part{child, environment_.box(child)};
-    if (!dismiss_or_take(query, part)) gather_node(query, part);
-    settled = settled && settled_.node_settled(child, query.poses.first);
+    if (!dismiss_or_take(task, part)) gather_node(task, part);
+    resolved = resolved && resolved_.node_resolved(child, task.poses.first);
   }
-  if (settled) settled_.settle_node(candidate.node, query.poses.first);
+  if (resolved) resolved_.resolve_node(candidate.node, task.poses.first);
 }
 
-void RangeSearch::gather_block(const Query& query, const EnvironmentNode& node) {
+void RangeSearch::gather_block(const SearchTask& task, const EnvironmentNode& node) {
   const std::uint32_t block = node.first_block;
-  const std::uint64_t open = settled_.open_points(node.cell, block, query.poses.first);
-  if (open == 0) return settled_.settle_node(node, query.poses.first);
-  if (gathered_ + kBlockPoints > kBatchPoints) flush(query);
+  const std::uint64_t open = resolved_.open_points(node.cell, block, task.poses.first);
+  if (open == 0) return resolved_.resolve_node(node, task.poses.first);
+  if (gathered_ + kBlockPoints > kBatchPoints) flush(task);
 
   const std::uint32_t count = environment_.points_in_block(node.cell, block);
   const Columns from = cache_.block(node.cell, block, count);
-  squared_distances(from, count, query.centre, squared_.data());
-  const std::uint64_t first_slot = environment_.block_index(node.cell, block) * kBlockPoints;
+  squared_distances(from, count, task.centre, squared_.data());
+  const std::uint64_t first_entry = environment_.block_index(node.cell, block) * kBlockPoints;
   for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
     if (squared_[i] < radius_squared_) {
-      mark(first_slot + i, query.poses.reference);
-      if (query.hit_is_final) continue;
+      mark(first_entry + i, task.poses.reference);
+      if (task.hit_is_final) continue;
     }
-    put_point(gathered_, from, i, first_slot + i);
-    gathered_ += squared_[i] > query.reach_squared ? 0 : 1;
+    put_point(gathered_, from, i, first_entry + i);
+    gathered_ += squared_[i] > task.reach_squared ? 0 : 1;
   }
 }
 
-void RangeSearch::flush(const Query& query) {
-  if (gathered_ > 0) refine_points(query, {0, gathered_});
+void RangeSearch::flush(const SearchTask& task) {
+  if (gathered_ > 0) refine_points(task, {0, gathered_});
   gathered_ = 0;
 }
 
-/// `points` are those of the parent query.
-void RangeSearch::search_points(const Query& query, Points points) {
+/// `points` are those of the parent task.
+void RangeSearch::search_points(const SearchTask& task, Points points) {
   const Columns from = columns(points);
-  squared_distances(from, points.count, query.centre, squared_.data());
+  squared_distances(from, points.count, task.centre, squared_.data());
   const std::size_t begin = points.begin + points.count;
   std::size_t to = begin;
   for (std::size_t i = 0; i < points.count; ++i) {
     const std::uint64_t slot = slots_[points.begin + i];
-    if (squared_[i] > query.reach_squared) continue;
-    if (settled_.point_settled(slot, query.poses.first)) continue;
+    if (squared_[i] > task.reach_squared) continue;
+    if (resolved_.point_resolved(slot, task.poses.first)) continue;
     if (squared_[i] < radius_squared_) {
-      mark(slot, query.poses.reference);
-      if (query.hit_is_final) continue;
+      mark(slot, task.poses.reference);
+      if (task.hit_is_final) continue;
     }
     put_point(to++, from, i, slot);
   }
-  if (to > begin) refine_points(query, {begin, to - begin});
+  if (to > begin) refine_points(task, {begin, to - begin});
 }
 
-/// `points` are within the query's reach.
-void RangeSearch::refine_points(const Query& query, Points points) {
-  if (query.at_leaves()) return test_points(query, points);
-  for_each_half(query, [&](const Query& part) { search_points(part, points); });
+/// `points` are within the task's reach.
+void RangeSearch::refine_points(const SearchTask& task, Points points) {
+  if (task.at_leaves()) return test_points(task, points);
+  for_each_half(task, [&](const SearchTask& part) { search_points(part, points); });
 }
 
 /// Puts every pair of a point and a model point of the leaf, or its segment to the next pose, to
 /// the predicate.
-void RangeSearch::test_points(const Query& query, Points points) {
-  const ModelSphere& leaf = query.sphere;
+void RangeSearch::test_points(const SearchTask& task, Points points) {
+  const ModelSphere& leaf = task.sphere;
   const MutableColumns moved{moved_x_.data(), moved_y_.data(), moved_z_.data()};
-  const std::uint32_t pose = query.poses.first;
-  transform_points(question_.poses[pose], model_.columns(leaf), leaf.padded, moved);
-  if (question_.between_poses && pose + 1 < question_.poses.size()) {
+  const std::uint32_t pose = task.poses.first;
+  transform_points(query_.poses[pose], model_.columns(leaf), leaf.padded, moved);
+  if (query_.between_poses && pose + 1 < query_.poses.size()) {
     const MutableColumns next{next_x_.data(), next_y_.data(), next_z_.data()};
-    transform_points(question_.poses[pose + 1], model_.columns(leaf), leaf.padded, next);
-    collide_any_on_step(columns(points), points.count, moved, next, leaf.padded, question_.radius,
+    transform_points(query_.poses[pose + 1], model_.columns(leaf), leaf.padded, next);
+    collide_any_on_step(columns(points), points.count, moved, next, leaf.padded, query_.radius,
                         hit_.data());
   } else {
-    collide_any(columns(points), points.count, moved, leaf.padded, question_.radius, hit_.data());
+    collide_any(columns(points), points.count, moved, leaf.padded, query_.radius, hit_.data());
   }
   for (std::size_t i = 0; i < points.count; ++i) {
     if (hit_[i] != 0) mark(slots_[points.begin + i], pose);

@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pose_journal.hpp"
-#include "core/question.hpp"
+#include "clearway/query.hpp"
+#include "core/query/pose_journal.hpp"
 #include "cpu/block_cache.hpp"
 #include "cpu/environment_tree.hpp"
 #include "cpu/model_spheres.hpp"
 #include "cpu/pose_tree.hpp"
-#include "cpu/settled_points.hpp"
+#include "cpu/resolved_points.hpp"
 
 namespace clearway {
 
@@ -21,8 +21,8 @@ class RangeSearch {
  public:
   /// All arguments must outlive it. Allocates its caches: about 3 MiB, and a little for the largest
   /// leaf of the model. marks: gets what is marked.
-  RangeSearch(const EnvironmentTree& environment, SettledPoints& settled, const ModelSpheres& model,
-              const Question& question, PoseMarkLog& marks);
+  RangeSearch(const EnvironmentTree& environment, ResolvedPoints& resolved,
+              const ModelSpheres& model, const Query& query, PoseMarkLog& marks);
 
   /// Searches for every model point below `sphere` at every pose of `poses`. Throws InputError for
   /// a damaged cell.
@@ -45,7 +45,7 @@ class RangeSearch {
   };
 
   /// One sphere of the model over a range of poses.
-  struct Query {
+  struct SearchTask {
     const PoseNode& poses;
     const ModelSphere& sphere;
     Vec3 centre;           ///< the sphere's centre at the reference pose
@@ -54,27 +54,27 @@ class RangeSearch {
     bool at_leaves() const { return poses.count == 1 && sphere.children == 0; }
   };
 
-  Query make_query(const PoseNode& poses, const ModelSphere& sphere) const;
+  SearchTask make_task(const PoseNode& poses, const ModelSphere& sphere) const;
   template <typename Visit>
-  void for_each_half(const Query& query, Visit visit);
+  void for_each_half(const SearchTask& task, Visit visit);
 
-  void search_nodes(const Query& query, std::size_t begin, std::size_t end);
-  void add_candidate(const Query& query, const Candidate& candidate);
-  bool dismiss_or_take(const Query& query, const Candidate& candidate);
-  void gather(const Query& query, std::size_t begin, std::size_t end);
-  void gather_node(const Query& query, const Candidate& candidate);
-  void gather_block(const Query& query, const EnvironmentNode& block);
-  void flush(const Query& query);
+  void search_nodes(const SearchTask& task, std::size_t begin, std::size_t end);
+  void add_candidate(const SearchTask& task, const Candidate& candidate);
+  bool dismiss_or_take(const SearchTask& task, const Candidate& candidate);
+  void gather(const SearchTask& task, std::size_t begin, std::size_t end);
+  void gather_node(const SearchTask& task, const Candidate& candidate);
+  void gather_block(const SearchTask& task, const EnvironmentNode& block);
+  void flush(const SearchTask& task);
 
-  void search_points(const Query& query, Points points);
-  void refine_points(const Query& query, Points points);
-  void test_points(const Query& query, Points points);
+  void search_points(const SearchTask& task, Points points);
+  void refine_points(const SearchTask& task, Points points);
+  void test_points(const SearchTask& task, Points points);
   void mark(std::uint64_t slot, std::uint32_t pose) {
-    settled_.mark(slot, pose);
+    resolved_.mark(slot, pose);
     marks_.add(slot / kBlockPoints, std::uint64_t{1} << slot % kBlockPoints, pose);
   }
   void mark_node(const EnvironmentNode& node, std::uint32_t pose) {
-    settled_.mark_node(
+    resolved_.mark_node(
         node, pose, [&](std::uint64_t word, std::uint64_t bits) { marks_.add(word, bits, pose); });
   }
   void put_point(std::size_t to, Columns from, std::size_t i, std::uint64_t slot) {
@@ -89,9 +89,9 @@ class RangeSearch {
   }
 
   const EnvironmentTree& environment_;
-  SettledPoints& settled_;
+  ResolvedPoints& resolved_;
   const ModelSpheres& model_;
-  const Question& question_;
+  const Query& query_;
   PoseMarkLog& marks_;
   double radius_squared_;
   const PoseTree* pose_tree_ = nullptr;

@@ -1,19 +1,19 @@
 #include "cpu/sweep_engine.hpp"
 
-#include "core/kd_order.hpp"
+#include "core/cloud/kd_order.hpp"
 
 namespace clearway {
 SweepEngine::SweepEngine(const PackedCloud& cloud, const SweepFilter& filter,
                          const SlotLayout& layout)
     : cloud_(cloud),
       filter_(filter),
-      pool_(cloud, filter.question(), layout),
-      answers_(layout.slots) {}
+      pool_(cloud, filter.query(), layout),
+      results_(layout.slots) {}
 
 void SweepEngine::start(std::uint32_t slot, const PageShape& shape) {
   const Clock::time_point begin = Clock::now();
   const PageRef page{pool_.page(slot).data(), shape};
-  const std::size_t blocks = cloud_.blocks_per_cell(), slots = cloud_.cell_slots();
+  const std::size_t blocks = cloud_.blocks_per_cell(), slots = cloud_.cell_entries();
   std::unique_ptr<CellSearch> search = take_search();
   for (std::uint32_t i = 0; i < shape.cells; ++i) {
     search->run(
@@ -23,12 +23,10 @@ void SweepEngine::start(std::uint32_t slot, const PageShape& shape) {
   }
   give_back(std::move(search));
   const std::size_t cells = shape.cells;
-  answers_[slot] = {
+  results_[slot] = {
       .hits = pool_.hits(slot).first(cells * blocks),
-      .first_poses =
-          pool_.first_poses(slot).first(filter_.question().first_pose ? cells * slots : 0),
-      .clearances =
-          pool_.clearances(slot).first(filter_.question().clearance > 0 ? cells * slots : 0),
+      .first_poses = pool_.first_poses(slot).first(filter_.query().first_pose ? cells * slots : 0),
+      .clearances = pool_.clearances(slot).first(filter_.query().clearance > 0 ? cells * slots : 0),
       .upload = {},
       .compute = {begin, Clock::now()}};
 }

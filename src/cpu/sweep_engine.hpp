@@ -4,8 +4,8 @@
 #include <mutex>
 #include <vector>
 
-#include "core/page_engine.hpp"
-#include "core/page_pool.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/page/page_pool.hpp"
 #include "cpu/cell_search.hpp"
 
 namespace clearway {
@@ -21,7 +21,7 @@ class SweepEngine final : public PageEngine {
   std::uint32_t slots() const override { return pool_.layout().slots; }
   std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
   void start(std::uint32_t slot, const PageShape& shape) override;
-  PageAnswer finish(std::uint32_t slot) override { return answers_[slot]; }
+  PageResult finish(std::uint32_t slot) override { return results_[slot]; }
 
   /// Of all searches so far. Not during one.
   const SweepStatistics& statistics() const { return statistics_; }
@@ -33,7 +33,7 @@ class SweepEngine final : public PageEngine {
   const PackedCloud& cloud_;
   const SweepFilter& filter_;
   PagePool pool_;
-  std::vector<PageAnswer> answers_;  ///< by slot
+  std::vector<PageResult> results_;  ///< by slot
   std::mutex mutex_;
   std::vector<std::unique_ptr<CellSearch>> idle_;  ///< no more than threads were ever in start
   SweepStatistics statistics_;

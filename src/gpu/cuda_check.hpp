@@ -5,7 +5,7 @@
 #include <source_location>
 #include <string>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 
 namespace clearway {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/page_engine.hpp"
+#include "core/page/page_engine.hpp"
 #include "gpu/cuda_event.hpp"
 
 namespace clearway {

@@ -3,13 +3,13 @@
 #include <cassert>
 #include <deque>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
+#include "core/grid/grid_cell.hpp"
 #include "gpu/cuda_stream.hpp"
 #include "gpu/device_clock.hpp"
 #include "gpu/grid_kernels.hpp"
 #include "gpu/grid_on_device.hpp"
 #include "gpu/pinned_buffer.hpp"
-#include "grid/grid_cell.hpp"
 
 namespace clearway {
 namespace {
@@ -23,11 +23,11 @@ struct Layout {
         plan_bytes(entry_runs_at + PageShape::aligned(nodes * sizeof(std::uint32_t))),
         points(cells * scene.view().slots),
         first_poses_at(PageShape::aligned(points / 8)),
-        answer_bytes(first_poses_at + (scene.first_pose() ? points * sizeof(std::uint32_t) : 0)) {}
+        result_bytes(first_poses_at + (scene.first_pose() ? points * sizeof(std::uint32_t) : 0)) {}
 
   std::uint64_t cell_runs_at, entry_runs_at, plan_bytes;
   std::uint64_t points;
-  std::uint64_t first_poses_at, answer_bytes;
+  std::uint64_t first_poses_at, result_bytes;
 };
 
 /// The most that a page of these options may have.
@@ -48,10 +48,10 @@ struct Slot {
        std::uint32_t points, bool first_pose)
       : host_page(options.page_bytes),
         host_plan(layout.plan_bytes),
-        host_answer(layout.answer_bytes),
+        host_result(layout.result_bytes),
         page(options.page_bytes),
         plan(layout.plan_bytes),
-        answer(layout.answer_bytes),
+        answer(layout.result_bytes),
         keys(points),
         order(points),
         sorted_keys(points),
@@ -72,10 +72,10 @@ struct Slot {
            next_task.bytes() + sort_scratch.bytes();
   }
   std::uint64_t pinned_bytes() const {
-    return host_page.bytes() + host_plan.bytes() + host_answer.bytes();
+    return host_page.bytes() + host_plan.bytes() + host_result.bytes();
   }
 
-  PinnedBuffer<std::byte> host_page, host_plan, host_answer;
+  PinnedBuffer<std::byte> host_page, host_plan, host_result;
   DeviceBuffer<std::byte> page, plan, answer;
   DeviceBuffer<std::uint32_t> keys, order, sorted_keys, sorted_order;
   DeviceBuffer<GridPoint> grid_points;
@@ -128,12 +128,12 @@ class CudaGridEngine::Impl {
     }
   }
 
-  PageAnswer finish(std::uint32_t index) {
+  PageResult finish(std::uint32_t index) {
     on(device_);
     const Slot& slot = slots_[index];
     slot.finished.synchronise();
     const Layout layout(scene_, slot.shape.cells, slot.shape.nodes);
-    const std::byte* answer = slot.host_answer.data();
+    const std::byte* answer = slot.host_result.data();
     return {.hits = {reinterpret_cast<const std::uint64_t*>(answer), layout.points / kBlockPoints},
             .first_poses = {reinterpret_cast<const std::uint32_t*>(answer + layout.first_poses_at),
                             scene_.first_pose() ? layout.points : 0},
@@ -183,7 +183,7 @@ class CudaGridEngine::Impl {
     build_grids(on_device_.view(), view, sort, stream);
     search_grids(on_device_.view(), view, tasks, slot.next_task.data(), statistics_.data(), stream);
     slot.searched.record(stream);
-    check_cuda(cudaMemcpyAsync(slot.host_answer.data(), slot.answer.data(), layout.answer_bytes,
+    check_cuda(cudaMemcpyAsync(slot.host_result.data(), slot.answer.data(), layout.result_bytes,
                                cudaMemcpyDeviceToHost, stream));
     slot.finished.record(stream);
   }
@@ -224,7 +224,7 @@ std::span<std::byte> CudaGridEngine::page(std::uint32_t slot) { return impl_->pa
 void CudaGridEngine::start(std::uint32_t slot, const PageShape& shape) {
   impl_->start(slot, shape);
 }
-PageAnswer CudaGridEngine::finish(std::uint32_t slot) { return impl_->finish(slot); }
+PageResult CudaGridEngine::finish(std::uint32_t slot) { return impl_->finish(slot); }
 GridStatistics CudaGridEngine::statistics() const { return impl_->statistics(); }
 std::uint64_t CudaGridEngine::device_bytes() const { return impl_->device_bytes(); }
 std::uint64_t CudaGridEngine::pinned_bytes() const { return impl_->pinned_bytes(); }
@@ -240,14 +240,14 @@ std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const SlotLayout& opt
   const std::uint64_t a_cell =
       view.bucket_count * sizeof(BucketRange) + 2 * view.word_count * sizeof(std::uint64_t) +
       (scene.first_pose() ? view.bucket_count * sizeof(std::uint32_t) : view.slots / 8);
-  return options.page_bytes + layout.plan_bytes + layout.answer_bytes + layout.points * a_point +
+  return options.page_bytes + layout.plan_bytes + layout.result_bytes + layout.points * a_point +
          options.cells * a_cell + sizeof(std::uint64_t) +
          grid_sort_bytes(sorted_slots(scene, options));
 }
 
 std::uint64_t cuda_grid_pinned_bytes(const GridScene& scene, const SlotLayout& layout) {
   const Layout sections = largest_layout(scene, layout);
-  return layout.page_bytes + sections.plan_bytes + sections.answer_bytes;
+  return layout.page_bytes + sections.plan_bytes + sections.result_bytes;
 }
 
 }  // namespace clearway

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/page_engine.hpp"
-#include "core/page_pool.hpp"
-#include "grid/grid_scene.hpp"
+#include "core/grid/grid_scene.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/page/page_pool.hpp"
 
 namespace clearway {
 
@@ -22,7 +22,7 @@ class CudaGridEngine final : public PageEngine {
   bool pages_alike() const override { return false; }
   std::span<std::byte> page(std::uint32_t slot) override;
   void start(std::uint32_t slot, const PageShape& shape) override;
-  PageAnswer finish(std::uint32_t slot) override;
+  PageResult finish(std::uint32_t slot) override;
 
   /// Of all pages finished. Not during a search.
   GridStatistics statistics() const;

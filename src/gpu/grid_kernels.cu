@@ -1,9 +1,9 @@
 #include <bit>
 #include <cub/device/device_radix_sort.cuh>
 
+#include "core/grid/grid_search.hpp"
 #include "gpu/cuda_check.hpp"
 #include "gpu/grid_kernels.hpp"
-#include "grid/grid_search.hpp"
 
 namespace clearway {
 namespace {
@@ -132,7 +132,7 @@ unsigned resident_blocks() {
   return static_cast<unsigned>(processors * blocks);
 }
 
-std::uint32_t slot_count(const GridSceneView& scene, const GridPageView& page) {
+std::uint32_t entry_count(const GridSceneView& scene, const GridPageView& page) {
   return page.page.shape.cells * scene.slots;
 }
 
@@ -148,7 +148,7 @@ std::size_t grid_sort_bytes(std::uint32_t count) {
 
 void build_grids(const GridSceneView& scene, const GridPageView& page, const GridSortRef& sort,
                  cudaStream_t stream) {
-  const std::uint32_t count = slot_count(scene, page);
+  const std::uint32_t count = entry_count(scene, page);
   const std::size_t cells = page.page.shape.cells;
   if (count == 0) return;
   const auto clear = [&](void* data, std::size_t bytes) {
@@ -173,7 +173,7 @@ void build_grids(const GridSceneView& scene, const GridPageView& page, const Gri
 
 void search_grids(const GridSceneView& scene, const GridPageView& page, std::uint64_t tasks,
                   std::uint64_t* next_task, GridStatistics* statistics, cudaStream_t stream) {
-  const std::size_t count = slot_count(scene, page);
+  const std::size_t count = entry_count(scene, page);
   check_cuda(cudaMemsetAsync(page.hits, 0, count / 8, stream));
   if (page.done != nullptr) check_cuda(cudaMemsetAsync(page.done, 0, count / 8, stream));
   if (page.first_poses != nullptr) {

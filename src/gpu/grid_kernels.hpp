@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "grid/grid_view.hpp"
+#include "core/grid/grid_view.hpp"
 
 namespace clearway {
 

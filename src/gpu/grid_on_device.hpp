@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "core/grid/grid_scene.hpp"
 #include "gpu/device_array.hpp"
-#include "grid/grid_scene.hpp"
 
 namespace clearway {
 

@@ -15,10 +15,10 @@ namespace {
 constexpr std::uint64_t kTallies = kSweepCounts * kSweepTallies;
 
 /// Words, first poses and clearances of a page, one after the other.
-struct AnswerLayout {
+struct PageResultLayout {
   std::uint64_t words, first_poses, clearances;
 
-  AnswerLayout(const SweepRef& sweep, std::uint64_t blocks)
+  PageResultLayout(const SweepRef& sweep, std::uint64_t blocks)
       : words(blocks),
         first_poses(sweep.first_pose ? blocks * kBlockPoints : 0),
         clearances(sweep.clearance > 0 ? blocks * kBlockPoints : 0) {}
@@ -40,9 +40,9 @@ std::uint64_t most_blocks(const PackedCloud& cloud, const SlotLayout& layout) {
 struct Slot {
   Slot(const SweepRef& sweep, std::uint64_t most_blocks, std::uint64_t page_bytes)
       : host_page(page_bytes),
-        host_answer(AnswerLayout(sweep, most_blocks).bytes()),
+        host_result(PageResultLayout(sweep, most_blocks).bytes()),
         page(page_bytes),
-        answer(host_answer.size()),
+        answer(host_result.size()),
         work(sweep, most_blocks) {
     // A Clearance has padding, which is copied too.
     check_cuda(cudaMemset(answer.data(), 0, answer.bytes()));
@@ -51,9 +51,9 @@ struct Slot {
   std::uint64_t device_bytes() const {
     return page.bytes() + answer.bytes() + work.allocated_bytes();
   }
-  std::uint64_t pinned_bytes() const { return host_page.bytes() + host_answer.bytes(); }
+  std::uint64_t pinned_bytes() const { return host_page.bytes() + host_result.bytes(); }
 
-  PinnedBuffer<std::byte> host_page, host_answer;
+  PinnedBuffer<std::byte> host_page, host_result;
   DeviceBuffer<std::byte> page, answer;
   SweepWorkOnDevice work;
   CudaStream stream;
@@ -97,7 +97,7 @@ class CudaSweepEngine::Impl {
     slot.shape = shape;
     const cudaStream_t stream = slot.stream.get();
     const std::uint64_t blocks = std::uint64_t{shape.cells} * shape.blocks_per_cell;
-    const AnswerLayout layout(sweep_.ref(), blocks);
+    const PageResultLayout layout(sweep_.ref(), blocks);
     std::byte* answer = slot.answer.data();
     const SweepPage job{
         .sweep = sweep_.ref(),
@@ -119,13 +119,13 @@ class CudaSweepEngine::Impl {
     }
   }
 
-  PageAnswer finish(std::uint32_t index) {
+  PageResult finish(std::uint32_t index) {
     on(device_);
     const Slot& slot = slots_[index];
     slot.finished.synchronise();
-    const AnswerLayout layout(sweep_.ref(),
-                              std::uint64_t{slot.shape.cells} * slot.shape.blocks_per_cell);
-    const std::byte* answer = slot.host_answer.data();
+    const PageResultLayout layout(sweep_.ref(),
+                                  std::uint64_t{slot.shape.cells} * slot.shape.blocks_per_cell);
+    const std::byte* answer = slot.host_result.data();
     return {
         .hits = {reinterpret_cast<const std::uint64_t*>(answer), layout.words},
         .first_poses = {reinterpret_cast<const std::uint32_t*>(answer + layout.first_poses_at()),
@@ -153,7 +153,7 @@ class CudaSweepEngine::Impl {
 
  private:
   /// Not synchronised.
-  void enqueue(const Slot& slot, const SweepPage& job, std::uint64_t answer_bytes) const {
+  void enqueue(const Slot& slot, const SweepPage& job, std::uint64_t result_bytes) const {
     const cudaStream_t stream = slot.stream.get();
     slot.begun.record(stream);
     check_cuda(cudaMemcpyAsync(slot.page.data(), slot.host_page.data(), slot.shape.bytes(),
@@ -161,7 +161,7 @@ class CudaSweepEngine::Impl {
     slot.uploaded.record(stream);
     search_sweep(job, tallies_.data(), resident_, stream);
     slot.searched.record(stream);
-    check_cuda(cudaMemcpyAsync(slot.host_answer.data(), slot.answer.data(), answer_bytes,
+    check_cuda(cudaMemcpyAsync(slot.host_result.data(), slot.answer.data(), result_bytes,
                                cudaMemcpyDeviceToHost, stream));
     slot.finished.record(stream);
   }
@@ -190,7 +190,7 @@ std::span<std::byte> CudaSweepEngine::page(std::uint32_t slot) { return impl_->p
 void CudaSweepEngine::start(std::uint32_t slot, const PageShape& shape) {
   impl_->start(slot, shape);
 }
-PageAnswer CudaSweepEngine::finish(std::uint32_t slot) { return impl_->finish(slot); }
+PageResult CudaSweepEngine::finish(std::uint32_t slot) { return impl_->finish(slot); }
 SweepStatistics CudaSweepEngine::statistics() const { return impl_->statistics(); }
 std::uint64_t CudaSweepEngine::device_bytes() const { return impl_->device_bytes(); }
 std::uint64_t CudaSweepEngine::pinned_bytes() const { return impl_->pinned_bytes(); }
@@ -202,13 +202,13 @@ std::uint64_t cuda_sweep_bytes(const SweepRef& sweep) {
 std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const PackedCloud& cloud,
                                     const SlotLayout& layout) {
   const std::uint64_t blocks = most_blocks(cloud, layout);
-  return page_bytes_of(layout) + AnswerLayout(sweep, blocks).bytes() +
+  return page_bytes_of(layout) + PageResultLayout(sweep, blocks).bytes() +
          SweepWorkOnDevice::bytes(sweep, blocks);
 }
 
 std::uint64_t cuda_sweep_pinned_bytes(const SweepRef& sweep, const PackedCloud& cloud,
                                       const SlotLayout& layout) {
-  return page_bytes_of(layout) + AnswerLayout(sweep, most_blocks(cloud, layout)).bytes();
+  return page_bytes_of(layout) + PageResultLayout(sweep, most_blocks(cloud, layout)).bytes();
 }
 
 }  // namespace clearway

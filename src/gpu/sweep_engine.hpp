@@ -3,15 +3,15 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/packed_cloud.hpp"
-#include "core/page_engine.hpp"
-#include "core/page_pool.hpp"
-#include "core/sweep_ref.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/sweep/sweep_ref.hpp"
 
 namespace clearway {
 
 /// The sweep engine on one CUDA device: model field, model and motion tree stay there; a warp
-/// searches a block of points (gpu/sweep_block.hpp). All memory is taken when it is made.
+/// searches a block of points (core/sweep/sweep_block.hpp). All memory is taken when it is made.
 class CudaSweepEngine final : public PageEngine {
  public:
   /// Uploads what `sweep` refers to; nothing of the arguments is needed afterwards. Throws
@@ -23,7 +23,7 @@ class CudaSweepEngine final : public PageEngine {
   std::uint32_t slots() const override;
   std::span<std::byte> page(std::uint32_t slot) override;
   void start(std::uint32_t slot, const PageShape& shape) override;
-  PageAnswer finish(std::uint32_t slot) override;
+  PageResult finish(std::uint32_t slot) override;
 
   /// Of all pages finished. Not during a search.
   SweepStatistics statistics() const;

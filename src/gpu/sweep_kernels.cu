@@ -1,5 +1,5 @@
+#include "core/sweep/sweep_block.hpp"
 #include "gpu/cuda_check.hpp"
-#include "gpu/sweep_block.hpp"
 #include "gpu/sweep_kernels.hpp"
 
 namespace clearway {
@@ -24,7 +24,7 @@ __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lan
   tally(total + 1, of_lane.point_tests);
   tally(total + 2, of_lane.exact_tests);
   tally(total + 3, of_lane.points_tested);
-  tally(total + 4, of_lane.settled_tests);
+  tally(total + 4, of_lane.resolved_tests);
 }
 
 /// A warp a block of the page's cells.

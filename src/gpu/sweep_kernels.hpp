@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "gpu/sweep_page.hpp"
+#include "core/sweep/sweep_page.hpp"
 
 namespace clearway {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/sweep_ref.hpp"
+#include "core/sweep/sweep_ref.hpp"
 #include "gpu/device_array.hpp"
 
 namespace clearway {
@@ -22,7 +22,7 @@ class SweepOnDevice {
         points_(copied_to_device(sweep.model.points, sweep.model.size)),
         boxes_(copied_to_device(sweep.model.boxes, sweep.model.box_count)),
         nodes_(copied_to_device(sweep.motion.nodes, motion_nodes(sweep))),
-        pull_backs_(copied_to_device(sweep.motion.pull_backs, sweep.motion.pose_count)),
+        inverse_poses_(copied_to_device(sweep.motion.inverse_poses, sweep.motion.pose_count)),
         poses_(copied_to_device(sweep.motion.poses, sweep.motion.pose_count)) {
     ref_.field.coarse_squared = coarse_squared_.data();
     ref_.field.coarse_nearest = coarse_nearest_.data();
@@ -32,7 +32,7 @@ class SweepOnDevice {
     ref_.model.points = points_.data();
     ref_.model.boxes = boxes_.data();
     ref_.motion.nodes = nodes_.data();
-    ref_.motion.pull_backs = pull_backs_.data();
+    ref_.motion.inverse_poses = inverse_poses_.data();
     ref_.motion.poses = poses_.data();
   }
 
@@ -41,7 +41,7 @@ class SweepOnDevice {
   std::uint64_t allocated_bytes() const {
     return coarse_squared_.bytes() + coarse_nearest_.bytes() + brick_of_.bytes() +
            distances_.bytes() + nearest_.bytes() + points_.bytes() + boxes_.bytes() +
-           nodes_.bytes() + pull_backs_.bytes() + poses_.bytes();
+           nodes_.bytes() + inverse_poses_.bytes() + poses_.bytes();
   }
 
   /// That, before it is made.
@@ -50,7 +50,7 @@ class SweepOnDevice {
         sweep.field.coarse_nodes() * (sweep.field.coarse_nearest == nullptr ? 8 : 12);
     return coarse + brick_nodes(sweep) * 8 + sweep.model.size * sizeof(Vec3) +
            sweep.model.box_count * sizeof(Box) + motion_nodes(sweep) * sizeof(MotionNode) +
-           sweep.motion.pose_count * (sizeof(PullBack) + sizeof(Pose));
+           sweep.motion.pose_count * (sizeof(InversePose) + sizeof(Pose));
   }
 
  private:
@@ -70,7 +70,7 @@ class SweepOnDevice {
   DeviceBuffer<Vec3> points_;
   DeviceBuffer<Box> boxes_;
   DeviceBuffer<MotionNode> nodes_;
-  DeviceBuffer<PullBack> pull_backs_;
+  DeviceBuffer<InversePose> inverse_poses_;
   DeviceBuffer<Pose> poses_;
 };
 

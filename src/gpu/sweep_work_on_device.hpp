@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "core/sweep_ref.hpp"
+#include "core/sweep/sweep_page.hpp"
+#include "core/sweep/sweep_ref.hpp"
 #include "gpu/device_buffer.hpp"
-#include "gpu/sweep_page.hpp"
 
 namespace clearway {
 

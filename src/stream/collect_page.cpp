@@ -4,7 +4,7 @@
 
 namespace clearway {
 void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                  const PageAnswer& answer, Answer& all) {
+                  const PageResult& answer, SearchResult& all) {
   assert(answer.hits.size() == cells.size() * cloud.blocks_per_cell());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto hits = part_of_cell(answer.hits, i, cloud.blocks_per_cell());
@@ -12,14 +12,14 @@ void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
     for (std::size_t block = 0; block < hits.size(); ++block) {
       if (hits[block] != 0) all.hits.mark_word(first_word + block, hits[block]);
     }
-    const std::uint64_t first_slot = std::uint64_t{cells[i].cell} * cloud.cell_slots();
-    const auto poses = part_of_cell(answer.first_poses, i, cloud.cell_slots());
+    const std::uint64_t first_entry = std::uint64_t{cells[i].cell} * cloud.cell_entries();
+    const auto poses = part_of_cell(answer.first_poses, i, cloud.cell_entries());
     for (std::size_t slot = 0; slot < poses.size(); ++slot) {
-      if (poses[slot] != HitSet::kNever) all.hits.mark(first_slot + slot, poses[slot]);
+      if (poses[slot] != HitSet::kNever) all.hits.mark(first_entry + slot, poses[slot]);
     }
-    const auto clearances = part_of_cell(answer.clearances, i, cloud.cell_slots());
+    const auto clearances = part_of_cell(answer.clearances, i, cloud.cell_entries());
     for (std::size_t slot = 0; slot < clearances.size(); ++slot) {
-      if (clearances[slot].found()) all.clearances.set(first_slot + slot, clearances[slot]);
+      if (clearances[slot].found()) all.clearances.set(first_entry + slot, clearances[slot]);
     }
   }
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 
 namespace clearway {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/packed_cloud.hpp"
-#include "core/page_engine.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/page/page_engine.hpp"
 
 namespace clearway {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/packed_cloud.hpp"
-#include "core/page_engine.hpp"
-#include "core/sweep_filter.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/sweep/sweep_filter.hpp"
 
 namespace clearway {
 

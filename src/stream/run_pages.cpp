@@ -10,7 +10,7 @@
 #include <mutex>
 #include <vector>
 
-#include "core/hand_over.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "stream/collect_page.hpp"
 #include "stream/stage_page.hpp"
 
@@ -52,8 +52,8 @@ struct Pages {
   const std::span<const PlannedCell> cells;
   const std::span<const PlannedPage> pages;
   Progress& progress;
-  Answer& answer;
-  AnswerJournal* const journal;
+  SearchResult& answer;
+  SearchJournal* const journal;
   std::vector<PageTimes> times = std::vector<PageTimes>(pages.size());
   std::atomic<std::size_t> next = 0;
 
@@ -67,7 +67,7 @@ struct PageInFlight {
 
 struct SearchedPage {
   PageInFlight page;
-  PageAnswer found;
+  PageResult found;
 };
 
 /// The way of pages through one engine.
@@ -142,7 +142,7 @@ class Lane {
 
   void collect(const SearchedPage& searched) {
     const auto [page, slot] = searched.page;
-    const PageAnswer& found = searched.found;
+    const PageResult& found = searched.found;
     const auto cells = pages_.cells_of(page);
     PageTimes& times = pages_.times[page];
     times.upload = found.upload;
@@ -175,12 +175,12 @@ void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {
 
 }  // namespace
 
-Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                 std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
-                 const Question& question, int threads, Progress& progress, StageTimes& times,
-                 AnswerJournal* journal) {
-  Answer answer{HitSet(cloud.slot_count(), question.first_pose),
-                ClearanceSet(question.clearance > 0 ? cloud.slot_count() : 0)};
+SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                       std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
+                       const Query& query, int threads, Progress& progress, StageTimes& times,
+                       SearchJournal* journal) {
+  SearchResult answer{HitSet(cloud.entry_count(), query.first_pose),
+                      ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0)};
   if (journal != nullptr) journal->restore(answer);
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,

@@ -2,13 +2,13 @@
 
 #include <span>
 
-#include "core/answer.hpp"
-#include "core/packed_cloud.hpp"
-#include "core/page_engine.hpp"
-#include "core/progress.hpp"
-#include "core/question.hpp"
-#include "stream/answer_journal.hpp"
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/query/search_result.hpp"
+#include "core/util/progress.hpp"
 #include "stream/paginate.hpp"
+#include "stream/search_journal.hpp"
 #include "stream/stage_times.hpp"
 
 namespace clearway {
@@ -20,10 +20,10 @@ namespace clearway {
 /// thrown on; likewise, with Interrupted, when the progress asks to stop. The pages fit the slots
 /// of every engine. The journal, where there is one, keeps the answer of every page; what it held
 /// before is part of the answer.
-Answer run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                 std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
-                 const Question& question, int threads, Progress& progress, StageTimes& times,
-                 AnswerJournal* journal = nullptr);
+SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                       std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
+                       const Query& query, int threads, Progress& progress, StageTimes& times,
+                       SearchJournal* journal = nullptr);
 
 /// Memory that run_pages takes beside the engine and the answer, bytes.
 std::uint64_t run_pages_bytes(std::size_t pages);

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <span>
 
-#include "core/packed_cloud.hpp"
-#include "core/page_engine.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/page/page_engine.hpp"
 
 namespace clearway {
 

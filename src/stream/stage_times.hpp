@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/page_engine.hpp"
+#include "core/page/page_engine.hpp"
 
 namespace clearway {
 

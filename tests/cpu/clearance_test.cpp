@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/predicate.hpp"
+#include "core/geometry/predicate.hpp"
 #include "support/engines.hpp"
 #include "support/scenes.hpp"
 
@@ -25,9 +25,9 @@ struct Scene {
   std::uint64_t check(double clearance) const {
     std::uint64_t found = 0;
     for (const bool first_pose : {false, true}) {
-      Question question{model, poses, radius, first_pose};
-      question.clearance = clearance;
-      found = check_clearances(points, quantisation, question);
+      Query query{model, poses, {radius, first_pose}};
+      query.clearance = clearance;
+      found = check_clearances(points, quantisation, query);
     }
     return found;
   }

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/predicate.hpp"
+#include "core/geometry/predicate.hpp"
 #include "cpu/brute_force.hpp"
 #include "support/engines.hpp"
 #include "support/scenes.hpp"
@@ -21,7 +21,7 @@ const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
 std::vector<std::uint32_t> first_poses(const std::vector<Vec3>& points,
                                        const std::vector<Vec3>& model,
                                        const std::vector<Pose>& poses, double radius) {
-  return check_between_poses(quantise(points, kBinary), kBinary, {model, poses, radius});
+  return check_between_poses(quantise(points, kBinary), kBinary, {model, poses, {radius}});
 }
 
 std::uint64_t hits_of(const std::vector<std::uint32_t>& poses) {
@@ -38,9 +38,9 @@ struct Scene {
 
   /// Points that collide between poses but at none.
   std::uint64_t check(const std::vector<Pose>& poses, double radius) const {
-    const Question question{model, poses, radius};
-    const auto discrete = brute_force_first_poses(positions_of(points, quantisation), question);
-    return hits_of(check_between_poses(points, quantisation, question)) - hits_of(discrete);
+    const Query query{model, poses, {radius}};
+    const auto discrete = brute_force_first_poses(positions_of(points, quantisation), query);
+    return hits_of(check_between_poses(points, quantisation, query)) - hits_of(discrete);
   }
 };
 
@@ -180,7 +180,7 @@ std::uint64_t check_grazed(Random& random, const Grazed& g, std::uint64_t& total
     points.push_back(q);
   }
   total += points.size();
-  return hits_of(check_between_poses(points, quantisation, {model, poses, radius}));
+  return hits_of(check_between_poses(points, quantisation, {model, poses, {radius}}));
 }
 
 }  // namespace

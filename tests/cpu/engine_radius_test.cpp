@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/predicate.hpp"
+#include "core/geometry/predicate.hpp"
 #include "support/engines.hpp"
 #include "support/scenes.hpp"
 
@@ -15,13 +15,13 @@ TEST_CASE("a point exactly at the radius and one unit to either side") {
   const std::vector<Quantum> points{{half, 0, 0}, {0, -half, 0}, {0, 0, half}};
   const std::vector<Vec3> model{{0, 0, 0}};
   const std::vector<Pose> poses{translation({0, 0, 0})};
-  CHECK(check_engines(points, quantisation, {model, poses, 0.5}) == 0);
-  CHECK(check_engines(points, quantisation, {model, poses, std::nextafter(0.5, 1)}) == 3);
-  CHECK(check_engines(points, quantisation, {model, poses, std::nextafter(0.5, 0)}) == 0);
+  CHECK(check_engines(points, quantisation, {model, poses, {0.5}}) == 0);
+  CHECK(check_engines(points, quantisation, {model, poses, {std::nextafter(0.5, 1)}}) == 3);
+  CHECK(check_engines(points, quantisation, {model, poses, {std::nextafter(0.5, 0)}}) == 0);
 
   for (const double sign : {-1.0, 1.0}) {
     const std::vector<Pose> nudged{translation({sign * 0x1p-54, 0, 0})};
-    check_engines(points, quantisation, {model, nudged, 0.5});
+    check_engines(points, quantisation, {model, nudged, {0.5}});
   }
 }
 
@@ -30,8 +30,8 @@ TEST_CASE("whole nodes exactly at the radius") {
   const std::vector<Quantum> points(500, Quantum{6, 8, 0});  // 5 m from the origin
   const std::vector<Vec3> model{{0, 0, 0}};
   const std::vector<Pose> poses{translation({0, 0, 0})};
-  CHECK(check_engines(points, quantisation, {model, poses, 5.0}) == 0);
-  CHECK(check_engines(points, quantisation, {model, poses, std::nextafter(5.0, 6)}) == 500);
+  CHECK(check_engines(points, quantisation, {model, poses, {5.0}}) == 0);
+  CHECK(check_engines(points, quantisation, {model, poses, {std::nextafter(5.0, 6)}}) == 500);
 }
 
 namespace {
@@ -80,7 +80,7 @@ std::uint64_t check_boundary(Random& random, const Boundary& boundary, std::uint
     points.push_back(q);
   }
   total += points.size();
-  return check_engines(points, quantisation, {model, poses, radius}, {128, 0});
+  return check_engines(points, quantisation, {model, poses, {radius}}, {128, 0});
 }
 
 void check_boundaries(const Boundary& boundary) {
@@ -143,7 +143,7 @@ TEST_CASE("random pairs whose distance straddles the radius") {
     double radius = std::sqrt(least);
     for (int step = 0; step < 3; ++step) radius = std::nextafter(radius, 0);
     for (int step = 0; step < 7; ++step) {
-      check_engines(points, quantisation, {model, poses, radius}, {64, 0});
+      check_engines(points, quantisation, {model, poses, {radius}}, {64, 0});
       radius = std::nextafter(radius, 10);
     }
   }

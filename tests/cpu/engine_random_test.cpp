@@ -71,7 +71,7 @@ std::uint64_t check_random_scene(std::uint64_t seed) {
   }
   const double radius = size * std::exp(uniform(random, -5, 0));
   const std::uint32_t cell_points = std::uint32_t{64} << below(random, 6);
-  return check_engines(quanta, quantisation, {model, poses, radius},
+  return check_engines(quanta, quantisation, {model, poses, {radius}},
                        {cell_points, below(random, 2) * 300});
 }
 

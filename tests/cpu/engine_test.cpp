@@ -23,7 +23,7 @@ struct Scene {
   double radius = 0.3;
 
   std::uint64_t check() const {
-    return check_engines(points, quantisation, {model, poses, radius});
+    return check_engines(points, quantisation, {model, poses, {radius}});
   }
 };
 

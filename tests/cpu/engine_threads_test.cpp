@@ -26,7 +26,7 @@ TEST_CASE("points that are each touched by exactly one pose lose no hit") {
     for (std::int32_t i = 0; i < pitch; ++i) poses.push_back(translation({1.0 * i, 0.1, 0}));
     for (const Engine& engine : engines()) {
       CAPTURE(engine.name, teeth);
-      CHECK(engine.run(cloud, {model, poses, 0.25}, 8).hits.count() == kPoints);
+      CHECK(engine.run(cloud, {model, poses, {0.25}}, 8).hits.count() == kPoints);
     }
   }
 }
@@ -40,14 +40,14 @@ TEST_CASE("the answer does not depend on the number of threads") {
   const auto model = random_points(random, {{-1, -1, -1}, {1, 1, 1}}, 300);
   const auto poses = smooth_path(random, room, 200);
   for (const Engine& engine : engines()) {
-    const Question question{model, poses, 0.1, true};
-    const HitSet expected = engine.run(cloud, question, 1).hits;
+    const Query query{model, poses, {0.1, true}};
+    const HitSet expected = engine.run(cloud, query, 1).hits;
     CHECK(expected.count() > 1000);
     for (const int threads : {0, 2, 5, 16}) {
-      const HitSet hits = engine.run(cloud, question, threads).hits;
+      const HitSet hits = engine.run(cloud, query, threads).hits;
       CAPTURE(engine.name, threads);
       std::uint64_t differing = 0;
-      for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
+      for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
         differing += hits.contains(slot) != expected.contains(slot);
         differing += hits.first_pose(slot) != expected.first_pose(slot);
       }

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 
@@ -32,7 +32,7 @@ struct Scene {
   MemoryCloud cloud{quantise(random_points(random, room, 200'000), quantisation), quantisation};
   std::vector<Vec3> model = random_points(random, {{-1, -1, -1}, {1, 1, 1}}, 500);
   std::vector<Pose> poses = smooth_path(random, room, 100);
-  Question question{model, poses, 0.1};
+  Query query{model, poses, {0.1}};
 };
 
 }  // namespace
@@ -41,7 +41,7 @@ TEST_CASE("memory beyond the packed points is less than a byte a point") {
   const Scene scene;
   NoProgress progress;
   KdTreeStatistics statistics;
-  run_kdtree(scene.cloud, scene.question, {2}, progress, &statistics);
+  run_kdtree(scene.cloud, scene.query, {2}, progress, &statistics);
   const std::uint64_t block_boxes = scene.cloud.blocks().size() * sizeof(BlockBox);
   CHECK(statistics.allocated_bytes + block_boxes < scene.cloud.point_count());
   CHECK(statistics.cache_bytes < 2 * (std::uint64_t{4} << 20));
@@ -51,7 +51,7 @@ TEST_CASE("searches are counted, and far parts dismissed") {
   const Scene scene;
   NoProgress progress;
   KdTreeStatistics statistics;
-  run_kdtree(scene.cloud, scene.question, {2}, progress, &statistics);
+  run_kdtree(scene.cloud, scene.query, {2}, progress, &statistics);
   CHECK(statistics.searches == scene.poses.size() * scene.model.size());
   CHECK(statistics.tested_searches > 0);
   CHECK(statistics.tested_searches <= statistics.searches);
@@ -61,29 +61,27 @@ TEST_CASE("progress counts every pose once") {
   Scene scene;
   CountedProgress progress;
   SECTION("many poses") {}
-  SECTION("one pose, its model shared out") {
-    scene.question.poses = std::span(scene.poses).first(1);
-  }
-  SECTION("no model") { scene.question.model = {}; }
-  const std::uint64_t searches = scene.question.model.size() * scene.question.poses.size();
-  run_kdtree(scene.cloud, scene.question, {3}, progress);
+  SECTION("one pose, its model shared out") { scene.query.poses.resize(1); }
+  SECTION("no model") { scene.query.model = {}; }
+  const std::uint64_t searches = scene.query.model.size() * scene.query.poses.size();
+  run_kdtree(scene.cloud, scene.query, {3}, progress);
   CHECK(progress.begun == 1);
   CHECK(progress.ended == 1);
-  CHECK(progress.total == scene.question.poses.size());
+  CHECK(progress.total == scene.query.poses.size());
   CHECK(progress.done == (searches == 0 ? 0 : progress.total));
 }
 
 TEST_CASE("a damaged cell ends the run with its error") {
   Scene scene;
   const std::vector<Pose> poses(500, translation({20, 10, 2}));
-  scene.question.poses = poses;
-  scene.question.radius = 0.3;
+  scene.query.poses = poses;
+  scene.query.radius = 0.3;
   NoProgress progress;
   bool met = false;
   for (std::uint32_t cell = 0; cell < scene.cloud.cells().size(); ++cell) {
     scene.cloud.damage(cell);
     try {
-      run_kdtree(scene.cloud, scene.question, {4}, progress);
+      run_kdtree(scene.cloud, scene.query, {4}, progress);
     } catch (const InputError& error) {
       met = true;
       CHECK(std::string(error.what()) == "memory: cell " + std::to_string(cell) + " is damaged");

@@ -27,11 +27,11 @@ Quantisation quantisation_of(const std::vector<Vec3>& points) {
   return quantisation;
 }
 
-ToleratedAnswers check(const std::vector<Vec3>& environment, const std::vector<Vec3>& model,
+ToleratedResults check(const std::vector<Vec3>& environment, const std::vector<Vec3>& model,
                        const std::vector<Pose>& poses, double radius, double tolerance) {
   const Quantisation quantisation = quantisation_of(environment);
-  Question question{.model = model, .poses = poses, .radius = radius, .tolerance = tolerance};
-  return check_tolerance(quantise(environment, quantisation), quantisation, question);
+  Query query{model, poses, {.radius = radius, .tolerance = tolerance}};
+  return check_tolerance(quantise(environment, quantisation), quantisation, query);
 }
 
 /// Points at about the radius from random model points at random poses, out to twice the tolerance
@@ -53,7 +53,7 @@ std::vector<Vec3> points_at_radius(Random& random, const std::vector<Vec3>& mode
   return points;
 }
 
-ToleratedAnswers check_at_radius(Random& random, const std::vector<Vec3>& model,
+ToleratedResults check_at_radius(Random& random, const std::vector<Vec3>& model,
                                  const std::vector<Pose>& poses, double radius, double tolerance,
                                  std::size_t count = 300) {
   return check(points_at_radius(random, model, poses, radius, tolerance, count), model, poses,
@@ -166,7 +166,7 @@ TEST_CASE("a tolerance in scenes of many kinds") {
         pose.translation[1] -= 5e6;
       }
     }
-    const ToleratedAnswers answers = check_at_radius(random, model, poses, radius, tolerance);
+    const ToleratedResults answers = check_at_radius(random, model, poses, radius, tolerance);
     differing += answers.differing;
     colliding += answers.colliding;
   }
@@ -192,7 +192,7 @@ TEST_CASE("a tolerance to the last digits") {
         points.push_back(q);
       }
       check_tolerance(points, quantisation,
-                      {.model = model, .poses = poses, .radius = radius, .tolerance = tolerance});
+                      {model, poses, {.radius = radius, .tolerance = tolerance}});
     }
   }
 }
@@ -207,7 +207,7 @@ TEST_CASE("a tolerance where model and environment are lattices") {
   std::vector<Pose> poses;
   for (int i = 0; i < 40; ++i) poses.push_back(translation({0.03125 * i, 0, 0.015625 * i}));
   for (const double tolerance : {0.03125, 0.0625, 0.125, 0.2}) {
-    const ToleratedAnswers answers = check(environment, model, poses, 0.25, tolerance);
+    const ToleratedResults answers = check(environment, model, poses, 0.25, tolerance);
     CHECK(answers.colliding > 100);
   }
 }
@@ -218,7 +218,7 @@ TEST_CASE("a tolerance below every rounding changes nothing") {
     const std::vector<Vec3> model = random_points(random, {{0, 0, 0}, {1, 1, 1}}, 50);
     std::vector<Pose> poses = smooth_path(random, {{-2, -2, -2}, {2, 2, 2}}, 50);
     for (Pose& pose : poses) pose.translation[0] += far;
-    const ToleratedAnswers answers = check_at_radius(random, model, poses, 0.2, 1e-19);
+    const ToleratedResults answers = check_at_radius(random, model, poses, 0.2, 1e-19);
     CHECK(answers.colliding > 10);
     CHECK(answers.differing == 0);
   }

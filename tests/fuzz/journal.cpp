@@ -1,13 +1,13 @@
-// Any bytes as a journal: refused, or what it says is of the cloud and the question, and it can be
-// gone on with. The first byte chooses question and kind: the bytes of a file, or payloads (their
+// Any bytes as a journal: refused, or what it says is of the cloud and the query, and it can be
+// gone on with. The first byte chooses query and kind: the bytes of a file, or payloads (their
 // size in two bytes before each) of records whose hashes are right.
-#include "io/journal.hpp"
+#include "io/journal/journal.hpp"
 
 #include <cstring>
 #include <optional>
 
 #include "memory_file.hpp"
-#include "stream/answer_journal.hpp"
+#include "stream/search_journal.hpp"
 #include "support/clouds.hpp"
 #include "support/memory_cloud.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 enum Kind : std::uint8_t { kFirstPose = 1, kClearance = 2, kPayloads = 4 };
 
 constexpr double kNever = 1e9;  // seconds
-const JournalIdentity kIdentity{{"question", "any"}};
+const JournalIdentity kIdentity{{"query", "any"}};
 
 /// Three cells, the last of 22 points.
 const MemoryCloud& cloud() {
@@ -27,13 +27,13 @@ const MemoryCloud& cloud() {
   return cloud;
 }
 
-Question question_of(std::uint8_t kind) {
+Query query_of(std::uint8_t kind) {
   static const std::vector<Pose> poses(300);
-  Question question;
-  question.poses = poses;
-  question.first_pose = (kind & kFirstPose) != 0;
-  question.clearance = (kind & kClearance) != 0 ? 0.3 : 0;
-  return question;
+  Query query;
+  query.poses = poses;
+  query.first_pose = (kind & kFirstPose) != 0;
+  query.clearance = (kind & kClearance) != 0 ? 0.3 : 0;
+  return query;
 }
 
 void write_payloads(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
@@ -56,48 +56,48 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-void check_answer(const Answer& answer, const Question& question) {
-  for (std::uint64_t slot = 0; slot < cloud().slot_count(); ++slot) {
+void check_result(const SearchResult& answer, const Query& query) {
+  for (std::uint64_t slot = 0; slot < cloud().entry_count(); ++slot) {
     if (answer.hits.contains(slot)) {
       require(cloud().is_used(slot));
-      if (question.first_pose) require(answer.hits.first_pose(slot) < question.poses.size());
+      if (query.first_pose) require(answer.hits.first_pose(slot) < query.poses.size());
     }
-    if (question.clearance > 0 && answer.clearances.at(slot).found()) {
+    if (query.clearance > 0 && answer.clearances.at(slot).found()) {
       require(cloud().is_used(slot) && answer.clearances.at(slot).squared >= 0);
-      require(answer.clearances.at(slot).pose < question.poses.size());
+      require(answer.clearances.at(slot).pose < query.poses.size());
     }
   }
 }
 
-bool same(const Answer& a, const Answer& b, const Question& question) {
-  for (std::uint64_t slot = 0; slot < cloud().slot_count(); ++slot) {
+bool same(const SearchResult& a, const SearchResult& b, const Query& query) {
+  for (std::uint64_t slot = 0; slot < cloud().entry_count(); ++slot) {
     if (a.hits.contains(slot) != b.hits.contains(slot)) return false;
-    if (question.first_pose && a.hits.first_pose(slot) != b.hits.first_pose(slot)) return false;
-    if (question.clearance > 0 && a.clearances.at(slot) != b.clearances.at(slot)) return false;
+    if (query.first_pose && a.hits.first_pose(slot) != b.hits.first_pose(slot)) return false;
+    if (query.clearance > 0 && a.clearances.at(slot) != b.clearances.at(slot)) return false;
   }
   return true;
 }
 
-Answer restored(const AnswerJournal& journal, const Question& question) {
-  Answer answer{HitSet(cloud().slot_count(), question.first_pose),
-                ClearanceSet(question.clearance > 0 ? cloud().slot_count() : 0)};
+SearchResult restored(const SearchJournal& journal, const Query& query) {
+  SearchResult answer{HitSet(cloud().entry_count(), query.first_pose),
+                      ClearanceSet(query.clearance > 0 ? cloud().entry_count() : 0)};
   journal.restore(answer);
   return answer;
 }
 
 /// What could be opened is restored and gone on with; nothing of that may be refused.
-void go_on(const std::filesystem::path& path, const JournalReader& read, AnswerJournal& journal,
-           const Question& question) {
-  const Answer before = restored(journal, question);
-  check_answer(before, question);
+void go_on(const std::filesystem::path& path, const JournalReader& read, SearchJournal& journal,
+           const Query& query) {
+  const SearchResult before = restored(journal, query);
+  check_result(before, query);
   for (std::uint32_t cell = 0; cell < cloud().cells().size(); ++cell) journal.cell_finished(cell);
   journal.append_finished_poses(7, 2);
   const JournalReader again(path);
   require(again.torn().empty() && again.records() == read.records() + 1);
   require(again.identity() == read.identity());
-  const AnswerJournal longer(path, kIdentity, &again, cloud(), question, kNever);
+  const SearchJournal longer(path, kIdentity, &again, cloud(), query, kNever);
   require(longer.poses_finished(7, 2));
-  require(same(restored(longer, question), before, question));
+  require(same(restored(longer, query), before, query));
 }
 
 }  // namespace
@@ -106,19 +106,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::uint8_t kind = data[0];
   const std::span<const std::uint8_t> bytes(data + 1, size - 1);
-  const Question question = question_of(kind);
+  const Query query = query_of(kind);
   const MemoryFile file(bytes);
   if ((kind & kPayloads) != 0) write_payloads(file.path(), bytes);
   std::optional<JournalReader> read;
-  std::optional<AnswerJournal> journal;
+  std::optional<SearchJournal> journal;
   may_refuse([&] {
     is_journal(file.path());
     read.emplace(file.path());
     if (!read->identity()) return;
     difference(*read->identity(), kIdentity);
     may_refuse([&] { journalled_work(*read); });
-    journal.emplace(file.path(), kIdentity, &*read, cloud(), question, kNever);
+    journal.emplace(file.path(), kIdentity, &*read, cloud(), query, kNever);
   });
-  if (journal) go_on(file.path(), *read, *journal, question);
+  if (journal) go_on(file.path(), *read, *journal, query);
   return 0;
 }

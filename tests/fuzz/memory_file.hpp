@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "core/error.hpp"
-#include "io/file.hpp"
+#include "clearway/error.hpp"
+#include "io/system/file.hpp"
 
 namespace clearway::test {
 

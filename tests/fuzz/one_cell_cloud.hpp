@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/packed_cloud.hpp"
+#include "core/cloud/packed_cloud.hpp"
 
 namespace clearway::test {
 

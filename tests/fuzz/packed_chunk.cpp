@@ -1,6 +1,6 @@
 // Any bytes as a packed chunk: refused, or every way to decode it gives the same values. The first
 // two bytes are the number of values.
-#include "core/packed_chunk.hpp"
+#include "core/cloud/packed_chunk.hpp"
 
 #include <cstdlib>
 #include <memory>

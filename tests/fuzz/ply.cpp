@@ -1,5 +1,5 @@
 // Any bytes, read as PLY.
-#include "io/ply_reader.hpp"
+#include "io/formats/ply/ply_reader.hpp"
 #include "read_points.hpp"
 
 using namespace clearway;

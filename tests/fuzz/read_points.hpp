@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "io/input_buffer.hpp"
-#include "io/point_reader.hpp"
+#include "io/formats/input_buffer.hpp"
+#include "io/formats/point_reader.hpp"
 #include "memory_file.hpp"
 
 namespace clearway::test {

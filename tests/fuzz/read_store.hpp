@@ -1,14 +1,14 @@
 #pragma once
 
-#include "io/store.hpp"
-#include "io/verify_store.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/store/verify_store.hpp"
 #include "staged_values.hpp"
 
 namespace clearway::test {
 
 /// Opens a store and reads everything in it, as `verify`, `run` and the search of cells do.
 inline void read_store(const std::filesystem::path& path) {
-  const Store store(path);
+  const StoreReader store(path);
   NoProgress progress;
   verify_store(store, progress);
   store.fingerprint();

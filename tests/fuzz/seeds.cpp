@@ -2,10 +2,10 @@
 #include <fstream>
 #include <iostream>
 
-#include "core/packed_chunk.hpp"
-#include "io/journal.hpp"
-#include "io/las_bytes.hpp"
+#include "core/cloud/packed_chunk.hpp"
+#include "io/journal/journal.hpp"
 #include "support/clouds.hpp"
+#include "support/las_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

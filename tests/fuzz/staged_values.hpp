@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-#include "core/page.hpp"
+#include "core/page/page.hpp"
 #include "memory_file.hpp"
 #include "stream/paginate.hpp"
 #include "stream/stage_page.hpp"

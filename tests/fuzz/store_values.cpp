@@ -6,8 +6,8 @@
 #include <cstring>
 #include <set>
 
-#include "io/hdf5.hpp"
-#include "io/xxh64.hpp"
+#include "io/hdf5/hdf5.hpp"
+#include "io/system/xxh64.hpp"
 #include "read_store.hpp"
 #include "support/clouds.hpp"
 
@@ -83,7 +83,7 @@ struct SoundStore {
     write_las(folder / "a.las", cube_cloud(300, -4000, 4000, 3));
     convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
     bytes = bytes_of(folder / "a.h5");
-    index = Store(folder / "a.h5").index();
+    index = StoreReader(folder / "a.h5").index();
     const hdf5::Id file(H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
                         "file");
     for (const char* name : kHashed) hashed.push_back(values_in(file.get(), name));

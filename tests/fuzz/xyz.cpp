@@ -1,5 +1,5 @@
 // Any bytes, read as XYZ or PTS text.
-#include "io/xyz_reader.hpp"
+#include "io/formats/text/xyz_reader.hpp"
 #include "read_points.hpp"
 
 using namespace clearway;

@@ -13,20 +13,19 @@
 namespace clearway {
 namespace {
 
-Answer grid_on_cuda(const PackedCloud& cloud, const Question& question, int) {
+SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int) {
   const GridRun run;
-  HitSet hits =
-      run_grid(cloud, question, run,
-               [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
-                 CudaGridEngine engine(0, scene, {run.slots, page_bytes, run.cells_a_page});
-                 return run_in(engine);
-               });
+  HitSet hits = run_grid(
+      cloud, query, run, [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+        CudaGridEngine engine(0, scene, {run.slots, page_bytes, run.cells_a_page});
+        return run_in(engine);
+      });
   return {std::move(hits), ClearanceSet()};
 }
 
-Answer sweep_on_cuda(const PackedCloud& cloud, const Question& question, int threads) {
+SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
   return run_sweep(
-      cloud, question, threads,
+      cloud, query, threads,
       [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
         const SweepRef& sweep = filter.ref();
         auto engine = std::make_unique<CudaSweepEngine>(0, sweep, of, layout);

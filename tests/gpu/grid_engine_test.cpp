@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 #include "cpu/brute_force.hpp"
 #include "support/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
@@ -25,11 +25,10 @@ struct Scene {
 
   /// How many points an engine with such a layout answers wrongly.
   std::uint64_t wrong(bool first_pose, std::uint32_t cells_a_page, std::uint32_t slots) const {
-    const Question question{
-        .model = model, .poses = poses, .radius = 0.1, .first_pose = first_pose};
+    const Query query{model, poses, {.radius = 0.1, .first_pose = first_pose}};
     const GridRun run{.cells_a_page = cells_a_page};
     const HitSet hits =
-        run_grid(cloud, question, run,
+        run_grid(cloud, query, run,
                  [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
                    const SlotLayout layout{slots, page_bytes, run.cells_a_page};
                    CudaGridEngine engine(0, scene, layout);
@@ -40,9 +39,9 @@ struct Scene {
                    CHECK(engine.statistics().searches > 0);
                    return found;
                  });
-    const auto expected = brute_force_first_poses(positions_of(points, kMillimetre), question);
+    const auto expected = brute_force_first_poses(positions_of(points, kMillimetre), query);
     std::uint64_t count = 0;
-    for (std::uint64_t slot = 0; slot < cloud.slot_count(); ++slot) {
+    for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
       if (!cloud.is_used(slot)) continue;
       const std::uint32_t pose = expected[cloud.source(slot)];
       count += hits.contains(slot) != (pose != HitSet::kNever);

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/pose.hpp"
-#include "core/predicate.hpp"
+#include "clearway/pose.hpp"
+#include "core/geometry/predicate.hpp"
 
 namespace clearway {
 

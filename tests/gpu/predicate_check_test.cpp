@@ -6,7 +6,7 @@
 #include <iostream>
 #include <random>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 #include "gpu/devices.hpp"
 
 using namespace clearway;

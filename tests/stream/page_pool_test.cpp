@@ -1,4 +1,4 @@
-#include "core/page_pool.hpp"
+#include "core/page/page_pool.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -12,11 +12,11 @@ TEST_CASE("slots are disjoint, aligned and as large as they say") {
   const PlannedScene scene;
   for (const bool first_pose : {false, true}) {
     for (const double clearance : {0.0, 0.5}) {
-      Question question = scene.question;
-      question.first_pose = first_pose;
-      question.clearance = clearance;
+      Query query = scene.query;
+      query.first_pose = first_pose;
+      query.clearance = clearance;
       const SlotLayout layout{3, 1001, 5};
-      PagePool pool(scene.cloud, question, layout);
+      PagePool pool(scene.cloud, query, layout);
       std::uint64_t bytes = 0;
       const std::byte* last = nullptr;
       for (std::uint32_t slot = 0; slot < 3; ++slot) {
@@ -26,12 +26,12 @@ TEST_CASE("slots are disjoint, aligned and as large as they say") {
         CHECK((last == nullptr || page.data() >= last));
         last = page.data() + page.size();
         CHECK(pool.hits(slot).size() == 5 * scene.cloud.blocks_per_cell());
-        CHECK(pool.first_poses(slot).size() == (first_pose ? 5 * scene.cloud.cell_slots() : 0));
-        CHECK(pool.clearances(slot).size() == (clearance > 0 ? 5 * scene.cloud.cell_slots() : 0));
+        CHECK(pool.first_poses(slot).size() == (first_pose ? 5 * scene.cloud.cell_entries() : 0));
+        CHECK(pool.clearances(slot).size() == (clearance > 0 ? 5 * scene.cloud.cell_entries() : 0));
         bytes += page.size() + pool.hits(slot).size_bytes() + pool.first_poses(slot).size_bytes() +
                  pool.clearances(slot).size_bytes();
       }
-      CHECK(bytes == 3 * PagePool::slot_bytes(scene.cloud, question, layout));
+      CHECK(bytes == 3 * PagePool::slot_bytes(scene.cloud, query, layout));
     }
   }
 }

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 #include "planned_scene.hpp"
 
 using namespace clearway;

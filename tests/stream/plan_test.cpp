@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "core/hit_set.hpp"
+#include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
 #include "planned_scene.hpp"
 
@@ -42,16 +42,16 @@ TEST_CASE("the nodes of a planned cell are disjoint, in the order of their poses
 TEST_CASE("every cell with a colliding point is planned, with the point's first pose") {
   const PlannedScene scene;
   const auto first_poses =
-      brute_force_first_poses(positions_of(scene.cloud_points, kTenths), scene.question);
+      brute_force_first_poses(positions_of(scene.cloud_points, kTenths), scene.query);
   std::uint64_t colliding = 0;
-  for (std::uint64_t slot = 0; slot < scene.cloud.slot_count(); ++slot) {
+  for (std::uint64_t slot = 0; slot < scene.cloud.entry_count(); ++slot) {
     if (!scene.cloud.is_used(slot)) continue;
     const std::uint32_t pose = first_poses[scene.cloud.source(slot)];
     if (pose == HitSet::kNever) continue;
     ++colliding;
     const auto cell = std::find_if(
         scene.cells.begin(), scene.cells.end(),
-        [&](const PlannedCell& c) { return c.cell == slot / scene.cloud.cell_slots(); });
+        [&](const PlannedCell& c) { return c.cell == slot / scene.cloud.cell_entries(); });
     REQUIRE(cell != scene.cells.end());
     CHECK(std::any_of(cell->nodes.begin(), cell->nodes.end(), [&](std::uint32_t index) {
       const MotionNode& node = scene.motion.nodes()[index];

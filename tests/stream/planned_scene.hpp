@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/model_field.hpp"
-#include "core/sweep_filter.hpp"
+#include "core/sweep/model_field.hpp"
+#include "core/sweep/sweep_filter.hpp"
 #include "stream/plan.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
@@ -12,7 +12,7 @@ namespace clearway::test {
 
 inline const Quantisation kTenths{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
 
-/// A small cloud, a model on a path through it, and the plan of the question.
+/// A small cloud, a model on a path through it, and the plan of the query.
 class PlannedScene {
  public:
   explicit PlannedScene(const MemoryCloudOptions& packing = {256, 2000}, std::size_t points = 9000,
@@ -21,11 +21,11 @@ class PlannedScene {
         model(random_points(random_, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}, 60)),
         poses(smooth_path(random_, kWay, pose_count)),
         cloud(cloud_points, kTenths, packing),
-        question{model, poses, 0.1, first_pose, false, clearance},
+        query{model, poses, {0.1, first_pose, false, clearance}},
         tree(model),
-        field(tree, question.radius, {.reach = clearance}, 1),
+        field(tree, query.radius, {.reach = clearance}, 1),
         motion(poses, tree.box()),
-        filter(question, motion, tree, field, cloud),
+        filter(query, motion, tree, field, cloud),
         cells(plan(cloud, filter)) {}
 
  private:
@@ -38,7 +38,7 @@ class PlannedScene {
   std::vector<Vec3> model;
   std::vector<Pose> poses;
   MemoryCloud cloud;
-  Question question;
+  Query query;
   ModelTree tree;
   ModelField field;
   MotionTree motion;

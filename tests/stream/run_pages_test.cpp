@@ -6,7 +6,7 @@
 #include <future>
 #include <thread>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 #include "cpu/brute_force.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "planned_scene.hpp"
@@ -47,13 +47,13 @@ class TestEngine final : public PageEngine {
     });
   }
 
-  PageAnswer finish(std::uint32_t slot) override {
+  PageResult finish(std::uint32_t slot) override {
     const std::uint32_t page = finished++;
     if (!searches_[slot].valid()) {
       ++violations;
       return {};
     }
-    PageAnswer answer = searches_[slot].get();
+    PageResult answer = searches_[slot].get();
     if (after_finish) after_finish(page);
     const auto now = Clock::now();
     answer.upload = {now - std::chrono::milliseconds(1), now};
@@ -69,7 +69,7 @@ class TestEngine final : public PageEngine {
 
  private:
   SweepEngine engine_;
-  std::vector<std::future<PageAnswer>> searches_;
+  std::vector<std::future<PageResult>> searches_;
 };
 
 /// A cloud with something to do before each read.
@@ -128,14 +128,14 @@ struct Run {
         engine(planned, layout),
         pages(paginate(planned.cloud, planned.cells, layout.page_bytes, page_cells)) {}
 
-  Answer run(int threads = 4) {
+  SearchResult run(int threads = 4) {
     PageEngine* const engines[] = {&engine};
-    return run_pages(cloud, scene.cells, pages, engines, scene.question, threads, progress, times);
+    return run_pages(cloud, scene.cells, pages, engines, scene.query, threads, progress, times);
   }
 
-  Answer run_with(TestEngine& another, int threads) {
+  SearchResult run_with(TestEngine& another, int threads) {
     PageEngine* const engines[] = {&engine, &another};
-    return run_pages(cloud, scene.cells, pages, engines, scene.question, threads, progress, times);
+    return run_pages(cloud, scene.cells, pages, engines, scene.query, threads, progress, times);
   }
 
   const PlannedScene& scene;
@@ -148,20 +148,19 @@ struct Run {
 };
 
 /// Slots whose first pose or clearance is not that of brute force.
-std::uint64_t wrong_slots(const PlannedScene& scene, const Answer& answer) {
+std::uint64_t wrong_slots(const PlannedScene& scene, const SearchResult& answer) {
   const auto points = positions_of(scene.cloud_points, kTenths);
-  const auto first_poses = brute_force_first_poses(points, scene.question);
-  const auto clearances = scene.question.clearance > 0
-                              ? brute_force_clearances(points, scene.question)
-                              : std::vector<Clearance>(points.size());
-  const double limit = scene.question.clearance * scene.question.clearance;
+  const auto first_poses = brute_force_first_poses(points, scene.query);
+  const auto clearances = scene.query.clearance > 0 ? brute_force_clearances(points, scene.query)
+                                                    : std::vector<Clearance>(points.size());
+  const double limit = scene.query.clearance * scene.query.clearance;
   std::uint64_t wrong = 0;
-  for (std::uint64_t slot = 0; slot < scene.cloud.slot_count(); ++slot) {
+  for (std::uint64_t slot = 0; slot < scene.cloud.entry_count(); ++slot) {
     const bool used = scene.cloud.is_used(slot);
     const std::uint32_t pose = used ? first_poses[scene.cloud.source(slot)] : HitSet::kNever;
     wrong += answer.hits.contains(slot) != (pose != HitSet::kNever);
-    if (scene.question.first_pose) wrong += answer.hits.first_pose(slot) != pose;
-    if (scene.question.clearance > 0) {
+    if (scene.query.first_pose) wrong += answer.hits.first_pose(slot) != pose;
+    if (scene.query.clearance > 0) {
       Clearance expected;
       if (used && clearances[scene.cloud.source(slot)].squared < limit) {
         expected = clearances[scene.cloud.source(slot)];
@@ -195,7 +194,7 @@ TEST_CASE("the answer does not depend on slots, cells a page or threads") {
           CAPTURE(slots, page_cells, threads);
           Run run(*scene, slots, page_cells);
           run.engine.alike = threads % 2 == 0;
-          const Answer answer = run.run(threads);
+          const SearchResult answer = run.run(threads);
           CHECK(wrong_slots(*scene, answer) == 0);
           CHECK(run.engine.finished == run.pages.size());
           CHECK(run.progress.done == run.progress.total);
@@ -220,7 +219,7 @@ TEST_CASE("an empty cloud, and a plan of no cells, have an empty answer") {
     const PlannedScene scene({256, 0}, points, 0);
     REQUIRE(scene.cells.empty());
     Run run(scene);
-    const Answer answer = run.run();
+    const SearchResult answer = run.run();
     CHECK(answer.hits.count() == 0);
     CHECK(run.engine.started == 0);
     CHECK(run.times.compute == 0);
@@ -235,7 +234,7 @@ TEST_CASE("slow stages change nothing and are measured") {
   run.engine.before_start = [](std::uint32_t page) { sleep_ms(page % 2); };
   run.engine.in_search = [](std::uint32_t page) { sleep_ms(page % 4); };
   run.progress.before_advance = [](std::uint32_t call) { sleep_ms(call % 3); };
-  const Answer answer = run.run();
+  const SearchResult answer = run.run();
   CHECK(wrong_slots(scene, answer) == 0);
   CHECK(run.times.read > 0.003);
   CHECK(run.times.read <= run.times.total);
@@ -331,7 +330,7 @@ TEST_CASE("of two engines the faster one gets more pages, and the answer is the 
     TestEngine slow(scene, run.layout);
     REQUIRE(run.pages.size() > 40);
     slow.in_search = [](std::uint32_t) { sleep_ms(100); };
-    const Answer answer = run.run_with(slow, threads);
+    const SearchResult answer = run.run_with(slow, threads);
     CHECK(wrong_slots(scene, answer) == 0);
     CHECK(run.engine.finished + slow.finished == run.pages.size());
     if (threads > 2) CHECK(4U * slow.finished < run.engine.finished);

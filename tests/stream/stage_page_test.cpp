@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "core/error.hpp"
-#include "core/page_chunk.hpp"
+#include "clearway/error.hpp"
+#include "core/page/page_chunk.hpp"
 #include "planned_scene.hpp"
 #include "stream/paginate.hpp"
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 #include "support/clouds.hpp"
 #include "support/store_fixture.hpp"
 
@@ -28,7 +28,7 @@ struct SmallStore {
   std::filesystem::path path = folder / "a.h5";
 };
 
-std::vector<std::byte> read(const Store& store, std::uint32_t cell) {
+std::vector<std::byte> read(const StoreReader& store, std::uint32_t cell) {
   std::vector<std::byte> bytes(store.packed_bytes(cell));
   store.read_packed(cell, bytes);
   return bytes;
@@ -38,7 +38,7 @@ std::vector<std::byte> read(const Store& store, std::uint32_t cell) {
 
 TEST_CASE("cells read from the file are those of the map") {
   const SmallStore small;
-  const Store store(small.path), mapped(small.path);
+  const StoreReader store(small.path), mapped(small.path);
   std::uint64_t wrong = 0;
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
     std::vector<std::byte> bytes(store.packed_bytes(cell));
@@ -57,7 +57,7 @@ TEST_CASE("cells read from the file are those of the map") {
 
 TEST_CASE("a cell counts as read once, and only when it was") {
   const SmallStore small;
-  const Store store(small.path);
+  const StoreReader store(small.path);
   CHECK(store.touched().cells == 0);
   read(store, 3);
   read(store, 3);
@@ -72,11 +72,11 @@ TEST_CASE("a flipped bit in any of the three chunks is found and named") {
       const SmallStore small;
       std::uint64_t at = 0;
       {
-        const Store store(small.path);
+        const StoreReader store(small.path);
         at = store.index().address[4 * 5 + axis] + byte;
       }
       small.flip(at);
-      const Store store(small.path);
+      const StoreReader store(small.path);
       CHECK_NOTHROW(read(store, 4));
       CHECK_THROWS_WITH(read(store, 5), Contains("a.h5") && Contains("cell 5") &&
                                             Contains("at byte") && Contains("damaged"));
@@ -87,7 +87,7 @@ TEST_CASE("a flipped bit in any of the three chunks is found and named") {
 
 TEST_CASE("a store that was cut short while open is refused with the byte where it ends") {
   const SmallStore small;
-  const Store store(small.path);
+  const StoreReader store(small.path);
   const auto cell = static_cast<std::uint32_t>(store.cells().size() - 1);
   const std::uint64_t end = store.index().address[4 * cell + 1] + 3;
   REQUIRE(::truncate(small.path.c_str(), static_cast<off_t>(end)) == 0);
@@ -97,7 +97,7 @@ TEST_CASE("a store that was cut short while open is refused with the byte where 
 
 TEST_CASE("threads read cells at the same time") {
   const SmallStore small;
-  const Store store(small.path);
+  const StoreReader store(small.path);
   std::vector<std::thread> threads;
   std::atomic<int> wrong{0};
   for (int t = 0; t < 4; ++t) {

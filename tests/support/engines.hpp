@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/answer.hpp"
-#include "core/page_pool.hpp"
-#include "core/question.hpp"
-#include "core/sweep_filter.hpp"
+#include "clearway/query.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/query/search_result.hpp"
+#include "core/sweep/sweep_filter.hpp"
 #include "support/memory_cloud.hpp"
 
 namespace clearway {
@@ -17,8 +17,8 @@ namespace clearway {
 /// An engine under test. Every one runs through the same cases, against brute force.
 struct Engine {
   std::string name;
-  Answer (*run)(const PackedCloud& cloud, const Question& question, int threads);
-  bool between_poses;  ///< whether it answers such questions
+  SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads);
+  bool between_poses;  ///< whether it answers such queries
   bool clearances;     ///< likewise
   bool tolerance;      ///< likewise
 };
@@ -29,10 +29,10 @@ std::span<const Engine> engines();
 using MakeSweep = std::function<std::unique_ptr<PageEngine>(
     const SweepFilter& filter, const PackedCloud& cloud, const SlotLayout& layout)>;
 
-/// Plans the question, and runs it in an engine of as many slots and cells a page as the cloud's
+/// Plans the query, and runs it in an engine of as many slots and cells a page as the cloud's
 /// size makes them, so that all occur.
-Answer run_sweep(const PackedCloud& cloud, const Question& question, int threads,
-                 const MakeSweep& make);
+SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads,
+                       const MakeSweep& make);
 
 /// From now on engines() are these.
 void test_only(std::vector<Engine> engines);
@@ -42,17 +42,17 @@ void test_only(std::vector<Engine> engines);
 /// and above the radius, where an engine has them. Returns the number of points that collide at a
 /// pose.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
-                            const Question& question);
+                            const Query& query);
 
 /// Only between poses, in one packing. Returns every point's first pose, or HitSet::kNever.
 std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
-                                               const Quantisation& quantisation, Question question);
+                                               const Quantisation& quantisation, Query query);
 
 /// The same as check_engines above for one way of packing them.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
-                            const Question& question, const MemoryCloudOptions& packing);
+                            const Query& query, const MemoryCloudOptions& packing);
 
-struct ToleratedAnswers {
+struct ToleratedResults {
   std::uint64_t colliding = 0;  ///< points, exactly
   std::uint64_t differing = 0;  ///< answers of all engines that are not exact
 };
@@ -60,11 +60,11 @@ struct ToleratedAnswers {
 /// Runs every engine that takes a tolerance on the points, packed in several ways, and checks that
 /// an answer is wrong only where the least distance, by brute force, is within the tolerance of the
 /// radius, and that an engine says the same however the points are packed.
-ToleratedAnswers check_tolerance(std::span<const Quantum> points, const Quantisation& quantisation,
-                                 const Question& question);
+ToleratedResults check_tolerance(std::span<const Quantum> points, const Quantisation& quantisation,
+                                 const Query& query);
 
-/// The clearances that the question asks for. Returns how many there are.
+/// The clearances that the query asks for. Returns how many there are.
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
-                               const Question& question);
+                               const Query& query);
 
 }  // namespace clearway

@@ -1,7 +1,7 @@
 #include "support/grid_runs.hpp"
 
-#include "core/error.hpp"
-#include "grid/grid_cpu_engine.hpp"
+#include "clearway/error.hpp"
+#include "cpu/grid_cpu_engine.hpp"
 #include "stream/run_pages.hpp"
 
 namespace clearway {
@@ -35,11 +35,10 @@ std::vector<PlannedCell> plan_everything(const PackedCloud& cloud, const MotionT
 
 }  // namespace
 
-HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 GridStatistics* statistics) {
   return run_grid(
-      cloud, question, run,
-      [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
+      cloud, query, run, [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
         GridCpuEngine engine(scene, {run.slots, page_bytes, run.cells_a_page}, run.work_list);
         HitSet hits = run_in(engine);
         if (statistics != nullptr) statistics->add(engine.statistics());
@@ -47,19 +46,19 @@ HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRu
       });
 }
 
-HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 const RunPages& run_pages) {
-  if (question.model.empty()) return HitSet(cloud.slot_count(), question.first_pose);
-  const MotionTree motion(question.poses, ModelGroups(question.model).box());
+  if (query.model.empty()) return HitSet(cloud.entry_count(), query.first_pose);
+  const MotionTree motion(query.poses, ModelGroups(query.model).box());
   const std::vector<PlannedCell> cells = plan_everything(cloud, motion);
   const std::uint64_t page_bytes = run.cells_a_page * smallest_page_bytes(cloud, cells);
-  const GridScene scene(question, motion, cloud, run.options);
+  const GridScene scene(query, motion, cloud, run.options);
   return run_pages(scene, page_bytes, [&](PageEngine& engine) {
     NoProgress progress;
     StageTimes times;
     const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page);
     PageEngine* const engines[] = {&engine};
-    return clearway::run_pages(cloud, cells, pages, engines, question, 3, progress, times).hits;
+    return clearway::run_pages(cloud, cells, pages, engines, query, 3, progress, times).hits;
   });
 }
 

@@ -2,10 +2,10 @@
 
 #include <functional>
 
-#include "core/hit_set.hpp"
-#include "core/packed_cloud.hpp"
-#include "core/question.hpp"
-#include "grid/grid_scene.hpp"
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/grid/grid_scene.hpp"
+#include "core/query/hit_set.hpp"
 
 namespace clearway {
 
@@ -21,7 +21,7 @@ struct GridRun {
 /// The engine `grid` on the CPU over a whole cloud. Every cell is searched, with nodes of the
 /// motion tree that together hold every pose: whole ranges for one cell, finer ones for the next.
 /// statistics: added to.
-HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 GridStatistics* statistics = nullptr);
 
 /// What an engine made for the scene answers to cells staged in its pages.
@@ -29,7 +29,7 @@ using RunPages = std::function<HitSet(const GridScene& scene, std::uint64_t page
                                       const std::function<HitSet(PageEngine& engine)>& run_in)>;
 
 /// The same with another engine.
-HitSet run_grid(const PackedCloud& cloud, const Question& question, const GridRun& run,
+HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 const RunPages& run_pages);
 
 }  // namespace clearway

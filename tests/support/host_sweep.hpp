@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/page_engine.hpp"
-#include "core/page_pool.hpp"
-#include "gpu/sweep_block.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/sweep/sweep_block.hpp"
 
 namespace clearway {
 
@@ -18,13 +18,13 @@ class HostSweep final : public PageEngine {
             std::uint32_t entries)
       : sweep_(sweep),
         quantisation_(cloud.quantisation()),
-        pool_(cloud, question_of(sweep), layout),
-        answers_(layout.slots),
+        pool_(cloud, query_of(sweep), layout),
+        results_(layout.slots),
         entries_(entries) {}
 
   std::uint32_t slots() const override { return pool_.layout().slots; }
   std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
-  PageAnswer finish(std::uint32_t slot) override { return answers_[slot]; }
+  PageResult finish(std::uint32_t slot) override { return results_[slot]; }
 
   void start(std::uint32_t slot, const PageShape& shape) override {
     const std::span hits = pool_.hits(slot);
@@ -46,17 +46,17 @@ class HostSweep final : public PageEngine {
                 2 * entries_, entries_,       entries_,     entries_};
     run(job);
     const std::size_t points = std::size_t{blocks} * kBlockPoints;
-    answers_[slot] = {.hits = hits.first(blocks),
+    results_[slot] = {.hits = hits.first(blocks),
                       .first_poses = first_poses.first(first_poses.empty() ? 0 : points),
                       .clearances = clearances.first(clearances.empty() ? 0 : points)};
   }
 
  private:
-  static Question question_of(const SweepRef& sweep) {
-    Question question;
-    question.first_pose = sweep.first_pose;
-    question.clearance = sweep.clearance;
-    return question;
+  static Query query_of(const SweepRef& sweep) {
+    Query query;
+    query.first_pose = sweep.first_pose;
+    query.clearance = sweep.clearance;
+    return query;
   }
 
   static void run(const SweepPage& job) {
@@ -84,7 +84,7 @@ class HostSweep final : public PageEngine {
   SweepRef sweep_;
   Quantisation quantisation_;
   PagePool pool_;
-  std::vector<PageAnswer> answers_;
+  std::vector<PageResult> results_;
   std::uint32_t entries_;
 };
 

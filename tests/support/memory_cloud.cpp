@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 
 namespace clearway {
 namespace {
@@ -101,9 +101,9 @@ void MemoryCloud::add_cell(std::span<Point> points) {
         encode_block_box(box, box_of(points.subspan(first, count)));
   }
 
-  sources_.resize(cells_.size() * cell_slots());
-  const std::size_t first_slot = (cells_.size() - 1) * cell_slots();
-  for (std::size_t i = 0; i < points.size(); ++i) sources_[first_slot + i] = points[i].source;
+  sources_.resize(cells_.size() * cell_entries());
+  const std::size_t first_entry = (cells_.size() - 1) * cell_entries();
+  for (std::size_t i = 0; i < points.size(); ++i) sources_[first_entry + i] = points[i].source;
 
   auto& chunks = chunks_.emplace_back();
   std::vector<std::int32_t> values(cell_points_);

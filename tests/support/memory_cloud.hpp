@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/packed_cloud.hpp"
+#include "core/cloud/packed_cloud.hpp"
 
 namespace clearway {
 
@@ -40,7 +40,7 @@ class MemoryCloud final : public PackedCloud {
   /// Index, in the points given, of the point in a used slot.
   std::uint64_t source(std::uint64_t slot) const { return sources_[slot]; }
   bool is_used(std::uint64_t slot) const {
-    return slot % cell_slots() < cells_[slot / cell_slots()].count;
+    return slot % cell_entries() < cells_[slot / cell_entries()].count;
   }
 
   /// From now on coordinates(cell) throws InputError, as for a damaged store.

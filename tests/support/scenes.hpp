@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
-#include "core/box.hpp"
-#include "core/pose.hpp"
-#include "core/vec3.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/vec3.hpp"
+#include "core/geometry/box.hpp"
 
 /// Random parts of small scenes. Every test seeds its own generator.
 namespace clearway {

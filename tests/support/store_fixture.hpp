@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "io/convert/convert.hpp"
-#include "io/las_writer.hpp"
-#include "io/ply_writer.hpp"
-#include "io/store.hpp"
-#include "io/verify_store.hpp"
-#include "result_fixture.hpp"
+#include "io/formats/las/las_writer.hpp"
+#include "io/formats/ply/ply_writer.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/store/verify_store.hpp"
+#include "support/result_fixture.hpp"
 
 /// Scans made for a test, their conversion, and what the store then holds.
 namespace clearway::test {
@@ -78,7 +78,7 @@ struct StoredPoint {
 };
 
 /// The points of cells first .. first + count - 1 in the store's order.
-inline std::vector<StoredPoint> points_of_cells(const Store& store, std::uint32_t first,
+inline std::vector<StoredPoint> points_of_cells(const StoreReader& store, std::uint32_t first,
                                                 std::uint32_t count) {
   std::vector<StoredPoint> points;
   std::vector<std::int32_t> values(store.cell_points());
@@ -98,12 +98,12 @@ inline std::vector<StoredPoint> points_of_cells(const Store& store, std::uint32_
   return points;
 }
 
-inline std::vector<StoredPoint> stored_points(const Store& store) {
+inline std::vector<StoredPoint> stored_points(const StoreReader& store) {
   return points_of_cells(store, 0, static_cast<std::uint32_t>(store.cells().size()));
 }
 
 /// The points in source order; throws where an index is missing, out of range or there twice.
-inline std::vector<Quantum> points_by_source(const Store& store) {
+inline std::vector<Quantum> points_by_source(const StoreReader& store) {
   std::vector<Quantum> points(store.point_count());
   std::vector<bool> seen(points.size());
   for (const StoredPoint& point : stored_points(store)) {
@@ -116,7 +116,7 @@ inline std::vector<Quantum> points_by_source(const Store& store) {
   return points;
 }
 
-inline std::vector<std::string> faults_of(const Store& store) {
+inline std::vector<std::string> faults_of(const StoreReader& store) {
   NoProgress progress;
   return verify_store(store, progress, 20);
 }

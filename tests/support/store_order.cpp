@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/kd_order.hpp"
+#include "core/cloud/kd_order.hpp"
 
 namespace clearway::test {
 namespace {
@@ -29,7 +29,7 @@ int longest_side(std::span<const StoredPoint> points, const Quantisation& quanti
 
 class Structure {
  public:
-  explicit Structure(const Store& store) : store_(store) {}
+  explicit Structure(const StoreReader& store) : store_(store) {}
 
   std::vector<std::string> faults() {
     if (!store_.top_tree().empty()) check_top(0);
@@ -97,7 +97,7 @@ class Structure {
     return {{p.q[0], p.q[1], p.q[2]}, {p.q[0], p.q[1], p.q[2]}};
   }
 
-  const Store& store_;
+  const StoreReader& store_;
   std::vector<std::string> faults_;
 };
 
@@ -121,6 +121,8 @@ void order_plainly(std::span<StoredPoint> points, std::uint64_t cell_points,
   order_plainly(points.subspan(left), cell_points, quantisation);
 }
 
-std::vector<std::string> structure_faults(const Store& store) { return Structure(store).faults(); }
+std::vector<std::string> structure_faults(const StoreReader& store) {
+  return Structure(store).faults();
+}
 
 }  // namespace clearway::test

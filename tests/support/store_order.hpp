@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "core/quantisation.hpp"
-#include "io/store.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/store/store_reader.hpp"
 #include "support/store_fixture.hpp"
 
 namespace clearway::test {
@@ -17,6 +17,6 @@ void order_plainly(std::span<StoredPoint> points, std::uint64_t cell_points,
 /// What docs/store-format.md promises of every store but the order inside a bucket: full cells but
 /// a bucket's last, buckets of at most 2^21 points, parts on either side of a plane (or, at one
 /// place, of a source index), boxes that hold. Each fault as a sentence.
-std::vector<std::string> structure_faults(const Store& store);
+std::vector<std::string> structure_faults(const StoreReader& store);
 
 }  // namespace clearway::test

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/hand_over.hpp"
+#include "core/util/tsan_annotations.hpp"
 
 using namespace clearway;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/pose.hpp"
-#include "core/vec3.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/vec3.hpp"
 
 namespace clearway::scene {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec3.hpp"
+#include "clearway/vec3.hpp"
 
 namespace clearway::scene {
 

@@ -1,7 +1,7 @@
 #include "scene/scene.hpp"
 
-#include "core/error.hpp"
-#include "scene/kinds.hpp"
+#include "clearway/error.hpp"
+#include "scene/sites/kinds.hpp"
 
 namespace clearway::scene {
 

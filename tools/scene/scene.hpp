@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/pose.hpp"
-#include "core/vec3.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/vec3.hpp"
 #include "scene/path.hpp"
-#include "scene/scanner.hpp"
-#include "scene/world.hpp"
+#include "scene/scanning/scanner.hpp"
+#include "scene/sites/world.hpp"
 
 namespace clearway::scene {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/vec3.hpp"
+#include "clearway/vec3.hpp"
 
 /// What the scenes need of vectors and angles, made of + - * / and sqrt alone: IEEE rounds these
 /// alike everywhere, which the sine of a C library does not promise.

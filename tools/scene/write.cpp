@@ -9,8 +9,8 @@
 #include <charconv>
 #include <string>
 
-#include "io/las_writer.hpp"
-#include "io/ply_writer.hpp"
+#include "io/formats/las/las_writer.hpp"
+#include "io/formats/ply/ply_writer.hpp"
 
 namespace clearway::scene {
 namespace {

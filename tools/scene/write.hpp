@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/progress.hpp"
-#include "io/file.hpp"
+#include "core/util/progress.hpp"
+#include "io/system/file.hpp"
 #include "scene/scene.hpp"
 
 namespace clearway::scene {

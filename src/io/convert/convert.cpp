@@ -11,22 +11,22 @@
 #include <memory>
 #include <stop_token>
 
-#include "core/error.hpp"
-#include "core/hand_over.hpp"
-#include "core/kd_order.hpp"
-#include "core/stopwatch.hpp"
+#include "clearway/error.hpp"
+#include "core/cloud/kd_order.hpp"
+#include "core/util/stopwatch.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "io/convert/count.hpp"
 #include "io/convert/distribute.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/pack_unit.hpp"
-#include "io/file.hpp"
-#include "io/pending_file.hpp"
-#include "io/point_reader.hpp"
-#include "io/store.hpp"
-#include "io/store_layout.hpp"
-#include "io/store_writer.hpp"
-#include "io/verify_store.hpp"
-#include "io/xxh64.hpp"
+#include "io/formats/point_reader.hpp"
+#include "io/store/store_layout.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/store/store_writer.hpp"
+#include "io/store/verify_store.hpp"
+#include "io/system/file.hpp"
+#include "io/system/pending_file.hpp"
+#include "io/system/xxh64.hpp"
 
 namespace clearway {
 namespace {
@@ -288,10 +288,10 @@ class Conversion {
 };
 
 /// None where there is no store with a sound index.
-std::optional<Store> store_at(const std::filesystem::path& path) {
+std::optional<StoreReader> store_at(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return std::nullopt;
   try {
-    return std::optional<Store>(std::in_place, path);
+    return std::optional<StoreReader>(std::in_place, path);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -313,7 +313,7 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
 
 bool is_converted(const ConversionOptions& options, Progress& progress) {
   if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
-  const std::optional<Store> store = store_at(options.output);
+  const std::optional<StoreReader> store = store_at(options.output);
   if (!store || !would_make(options, store->metadata())) return false;
   SourceDescription sources(list_point_files(options.inputs), progress);
   if (sources.get() != store->metadata().sources) return false;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.hpp"
-#include "io/store_metadata.hpp"
+#include "core/util/progress.hpp"
+#include "io/store/store_metadata.hpp"
 
 namespace clearway {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <memory>
 
-#include "core/error.hpp"
-#include "core/hand_over.hpp"
+#include "clearway/error.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "io/convert/points_hash.hpp"
 
 namespace clearway {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/progress.hpp"
+#include "core/util/progress.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/progress.hpp"
+#include "core/util/progress.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
-#include "io/file.hpp"
+#include "io/system/file.hpp"
 
 namespace clearway {
 

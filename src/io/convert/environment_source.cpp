@@ -8,9 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include "core/error.hpp"
+#include "clearway/error.hpp"
 #include "io/convert/spooled_reader.hpp"
-#include "io/refusal.hpp"
+#include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {

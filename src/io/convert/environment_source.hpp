@@ -9,7 +9,7 @@
 #include "io/convert/file_state.hpp"
 #include "io/convert/input_agreement.hpp"
 #include "io/convert/quanta_batch.hpp"
-#include "io/point_reader.hpp"
+#include "io/formats/point_reader.hpp"
 
 namespace clearway {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "io/refusal.hpp"
-#include "io/store_metadata.hpp"
+#include "io/store/store_metadata.hpp"
+#include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/quantisation.hpp"
-#include "io/point_reader.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/formats/point_reader.hpp"
 
 /// What the inputs of a conversion agree on (docs/conversion.md). Everywhere files and what they
 /// say of themselves, in the order of the inputs. Throws InputError naming the file that differs.

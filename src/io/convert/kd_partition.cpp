@@ -9,9 +9,9 @@
 #include <limits>
 #include <vector>
 
-#include "core/hand_over.hpp"
-#include "core/kd_order.hpp"
-#include "core/macros.hpp"
+#include "core/cloud/kd_order.hpp"
+#include "core/util/macros.hpp"
+#include "core/util/tsan_annotations.hpp"
 
 namespace clearway {
 namespace {

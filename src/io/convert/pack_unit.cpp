@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <span>
 
-#include "core/hand_over.hpp"
-#include "core/kd_order.hpp"
-#include "core/packed_chunk.hpp"
+#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_chunk.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "io/convert/kd_partition.hpp"
 
 namespace clearway {

@@ -6,7 +6,7 @@
 
 #include "io/convert/distribute.hpp"
 #include "io/convert/split_tree.hpp"
-#include "io/store_writer.hpp"
+#include "io/store/store_writer.hpp"
 
 namespace clearway {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "core/quantisation.hpp"
+#include "core/geometry/quantisation.hpp"
 #include "io/convert/quanta_batch.hpp"
-#include "io/xxh64.hpp"
+#include "io/system/xxh64.hpp"
 
 namespace clearway {
 

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <optional>
 
-#include "core/error.hpp"
-#include "core/kd_order.hpp"
+#include "clearway/error.hpp"
+#include "core/cloud/kd_order.hpp"
 
 namespace clearway {
 namespace {

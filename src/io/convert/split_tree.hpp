@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/cell_tree.hpp"
+#include "core/cloud/cell_tree.hpp"
 #include "io/convert/bin_counter.hpp"
 #include "io/convert/lattice.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "io/file.hpp"
+#include "io/system/file.hpp"
 
 namespace clearway {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "io/point_reader.hpp"
+#include "io/formats/point_reader.hpp"
 
 namespace clearway {
 

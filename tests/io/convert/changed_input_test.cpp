@@ -4,7 +4,7 @@
 
 #include "io/convert/count.hpp"
 #include "io/convert/distribute.hpp"
-#include "io/xxh64.hpp"
+#include "io/system/xxh64.hpp"
 #include "support/clouds.hpp"
 
 using namespace clearway;
@@ -110,7 +110,7 @@ TEST_CASE("an input may change once its points are distributed") {
   Scans scans;
   const std::string before = bytes_of(scans.second);
   CHECK(scans.refusal_of_change("partition", [&] { fs::rename(scans.other, scans.second); }) == "");
-  const Store store(scans.options.output);
+  const StoreReader store(scans.options.output);
   CHECK(points_by_source(store).back() == scans.points.back());
   CHECK(store.metadata().sources[1].xxh64 == xxh64(std::as_bytes(std::span(before))));
 }

@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "io/hdf5.hpp"
-#include "io/las_bytes.hpp"
+#include "io/hdf5/hdf5.hpp"
 #include "support/clouds.hpp"
+#include "support/las_bytes.hpp"
 #include "support/store_order.hpp"
 
 using namespace clearway;
@@ -49,7 +49,7 @@ std::array<std::int64_t, 3> cube_of(const Quantum& q, std::int64_t quanta) {
 }
 
 /// A cell's points, and a bucket's, lie in one cube.
-void check_cubes(const Store& store, std::int64_t quanta) {
+void check_cubes(const StoreReader& store, std::int64_t quanta) {
   for (const TopNode& node : store.top_tree()) {
     if (node.right != 0) continue;
     const auto points = points_of_cells(store, node.first_cell, node.cell_count);
@@ -82,7 +82,7 @@ TEST_CASE("a store says what it holds") {
   CHECK(report.temporary_bytes == 777 * 20);
   CHECK(report.output_bytes == std::filesystem::file_size(scan.options.output));
   CHECK(report.remarks.empty());
-  const Store store(scan.options.output);
+  const StoreReader store(scan.options.output);
   const StoreMetadata& metadata = store.metadata();
   CHECK(metadata.point_count == 777);
   CHECK(metadata.input_points == 777);
@@ -98,7 +98,7 @@ TEST_CASE("a store says what it holds") {
 TEST_CASE("no points make an empty store") {
   const Scan scan({});
   scan.convert();
-  const Store store(scan.options.output);
+  const StoreReader store(scan.options.output);
   CHECK(store.point_count() == 0);
   CHECK(store.cells().empty());
   CHECK(store.tree().empty());
@@ -109,13 +109,13 @@ TEST_CASE("regular layouts keep to their cubes on both sides of the origin") {
   Scan scan(cube_cloud(20000, -3000, 3000, 8));
   const std::string adaptive_hash = [&] {
     scan.convert();
-    return std::to_string(Store(scan.options.output).metadata().points_hash);
+    return std::to_string(StoreReader(scan.options.output).metadata().points_hash);
   }();
   for (const std::int64_t quanta : {16, 17, 1000, 1024, 3001, 10000}) {
     CAPTURE(quanta);
     scan.options.regular_size = static_cast<double>(quanta) * 0.001;
     scan.convert();
-    const Store store(scan.options.output);
+    const StoreReader store(scan.options.output);
     check_cubes(store, quanta);
     CHECK(points_by_source(store) == scan.points);
     CHECK(structure_faults(store).empty());
@@ -130,7 +130,7 @@ TEST_CASE("cubes of axes with very unlike scales") {
   write_las(scan.folder / "a.las", scan.points, {{0.001, 0.01, 0.1}, {0, 0, 0}});
   scan.options.regular_size = 1.6;
   scan.convert();
-  const Store store(scan.options.output);
+  const StoreReader store(scan.options.output);
   CHECK(points_by_source(store) == scan.points);
   CHECK(structure_faults(store).empty());
   for (const Cell& cell : store.cells()) {
@@ -158,7 +158,7 @@ TEST_CASE("a regular layout over the whole range of the integers") {
     CAPTURE(size);
     scan.options.regular_size = size;
     scan.convert();
-    const Store store(scan.options.output);
+    const StoreReader store(scan.options.output);
     check_cubes(store, static_cast<std::int64_t>(std::nearbyint(size * 1000)));
     CHECK(points_by_source(store) == scan.points);
   }
@@ -212,7 +212,7 @@ TEST_CASE("an existing output stays as it is unless it may be overwritten") {
   CHECK(bytes_of(scan.options.output) == "mine");
   scan.options.overwrite = true;
   scan.convert();
-  CHECK(points_by_source(Store(scan.options.output)) == scan.points);
+  CHECK(points_by_source(StoreReader(scan.options.output)) == scan.points);
 }
 
 TEST_CASE("an input is never overwritten by the output") {

@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/error.hpp"
-#include "io/las_bytes.hpp"
+#include "clearway/error.hpp"
+#include "support/las_bytes.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;

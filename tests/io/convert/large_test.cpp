@@ -36,7 +36,7 @@ TEST_CASE("bins that hold more than a bucket are refined, whatever threads and m
   const auto options = conversion_of({folder / "a.las"}, folder / "a.h5", 65536);
   convert_quietly(with_budget(options, 1, kLeastConversionMemory >> 20));
   {
-    const Store store(folder / "a.h5");
+    const StoreReader store(folder / "a.h5");
     CHECK(store.top_tree().size() >= 5);
     CHECK(points_by_source(store) == points);
     CHECK(structure_faults(store).empty());
@@ -58,7 +58,7 @@ TEST_CASE("cubes with more than a bucket's points are split further, none is sha
   auto options = conversion_of({folder / "a.las"}, folder / "a.h5", 1000);
   options.regular_size = 0.050;
   convert_quietly(options);
-  const Store store(folder / "a.h5");
+  const StoreReader store(folder / "a.h5");
   CHECK(points_by_source(store) == points);
   CHECK(structure_faults(store).empty());
   for (const Cell& cell : store.cells()) {

@@ -22,7 +22,7 @@ void check_order(const std::vector<Quantum>& points, std::uint32_t cell_points,
   const ScratchFolder folder;
   write_las(folder / "a.las", points, quantisation);
   convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5", cell_points));
-  const Store store(folder / "a.h5");
+  const StoreReader store(folder / "a.h5");
   CHECK(store.quantisation() == quantisation);
   CHECK(stored_points(store) == plainly_ordered(points, cell_points, quantisation));
   CHECK(structure_faults(store).empty());

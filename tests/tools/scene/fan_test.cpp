@@ -1,4 +1,4 @@
-#include "scene/fan.hpp"
+#include "scene/scanning/fan.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/error.hpp"
-#include "core/rigid.hpp"
+#include "clearway/error.hpp"
+#include "core/geometry/rigid.hpp"
 #include "tools/scene/made_scene.hpp"
 
 using namespace clearway;

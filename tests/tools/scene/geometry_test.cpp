@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/predicate.hpp"
+#include "core/geometry/predicate.hpp"
 #include "scene/attitude.hpp"
-#include "scene/mesh.hpp"
 #include "scene/path.hpp"
-#include "scene/roughness.hpp"
+#include "scene/scanning/roughness.hpp"
 #include "scene/vector.hpp"
+#include "scene/vehicles/mesh.hpp"
 
 using namespace clearway;
 using namespace clearway::scene;

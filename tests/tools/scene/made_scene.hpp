@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/predicate.hpp"
-#include "core/progress.hpp"
-#include "core/quantisation.hpp"
-#include "io/file.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "core/util/progress.hpp"
+#include "io/system/file.hpp"
 #include "scene/scene.hpp"
 #include "scene/write.hpp"
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "clearway/pose.hpp"
+#include "clearway/vec3.hpp"
+
+namespace clearway {
+
+/// What is asked of every environment point, whatever the model and the trajectory.
+struct QueryParameters {
+  double radius = 0;           ///< metres, > 0: a point strictly closer to the model collides
+  bool first_pose = false;     ///< also the smallest pose index that touches each colliding point
+  bool between_poses = false;  ///< model points move on straight segments from pose to pose
+  double clearance = 0;        ///< metres: distances below it are asked for too; 0: none
+  /// Metres: a point whose distance differs from the radius by no more may be answered wrongly; 0:
+  /// none. Below the radius, and only without first poses, clearances and motion between poses.
+  double tolerance = 0;
+  friend bool operator==(const QueryParameters&, const QueryParameters&) = default;
+};
+
+/// Which points of an environment lie within the search radius of the moving model?
+struct Query : QueryParameters {
+  Query() = default;
+  Query(std::vector<Vec3> moved, std::vector<Pose> along, const QueryParameters& parameters)
+      : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
+
+  std::vector<Vec3> model;  ///< in the model's own frame, metres
+  std::vector<Pose> poses;
+};
+
+}  // namespace clearway

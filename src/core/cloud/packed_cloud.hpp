@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/cloud/cell_tree.hpp"
+#include "core/cloud/kd_order.hpp"
+#include "core/cloud/packed_chunk.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "core/geometry/quantum_box.hpp"
+
+namespace clearway {
+
+/// The environment as the engines see it: packed cells in k-d order. A *slot* numbers the points in
+/// that order: slot = cell * cell_entries() + index in the cell, so that block b of a cell is 64
+/// slots, one word of a HitSet. Slots past a cell's count are unused.
+class PackedCloud {
+ public:
+  virtual ~PackedCloud() = default;
+
+  virtual std::uint64_t point_count() const = 0;
+  virtual std::uint32_t cell_points() const = 0;
+  virtual const Quantisation& quantisation() const = 0;
+  virtual std::span<const Cell> cells() const = 0;
+  /// Preorder, see cell_tree.hpp. Empty for an empty cloud.
+  virtual std::span<const TreeNode> tree() const = 0;
+  /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries a cell; entries of
+  /// blocks past a cell's count are unused.
+  virtual std::span<const BlockBox> blocks() const = 0;
+
+  /// The packed x, y and z of a cell. Checked against the cell's hash at the first touch; thread
+  /// safe. Throws InputError naming file and cell when the bytes are not those that were written.
+  virtual std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const = 0;
+
+  /// Bytes of the packed x, y and z of a cell together.
+  virtual std::uint64_t packed_bytes(std::uint32_t cell) const = 0;
+
+  /// Brings the packed x, y and z of a cell, one after the other, into `to`, of packed_bytes(cell)
+  /// bytes, and checks them against the cell's hashes; the chunks returned are views of `to`.
+  /// Thread safe. Throws InputError naming file and cell when the bytes are not those that were
+  /// written, ResourceError when they cannot be read.
+  virtual std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
+                                                               std::span<std::byte> to) const = 0;
+
+  std::uint32_t blocks_per_cell() const {
+    return static_cast<std::uint32_t>(divide_up(cell_points(), kBlockPoints));
+  }
+  std::uint32_t cell_entries() const { return blocks_per_cell() * kBlockPoints; }
+  std::uint64_t entry_count() const { return std::uint64_t{cells().size()} * cell_entries(); }
+};
+
+}  // namespace clearway

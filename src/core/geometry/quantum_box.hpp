@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/box.hpp"
+#include "core/geometry/quantisation.hpp"
+
+namespace clearway {
+
+/// Axis-aligned box of stored integers, closed on both sides.
+struct QuantumBox {
+  std::int32_t lo[3];
+  std::int32_t hi[3];
+  friend bool operator==(const QuantumBox&, const QuantumBox&) = default;
+};
+
+/// The box of the positions: exact, because a position is monotone in its integers.
+CLEARWAY_HD inline Box position_box(const Quantisation& quantisation, const QuantumBox& box) {
+  return {position(quantisation, box.lo[0], box.lo[1], box.lo[2]),
+          position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
+}
+
+CLEARWAY_HD inline QuantumBox united(const QuantumBox& a, const QuantumBox& b) {
+  QuantumBox out = a;
+  for (int k = 0; k < 3; ++k) {
+    if (b.lo[k] < out.lo[k]) out.lo[k] = b.lo[k];
+    if (b.hi[k] > out.hi[k]) out.hi[k] = b.hi[k];
+  }
+  return out;
+}
+
+/// A block's box inside its cell's box, in steps of the cell's extent / 65535 per axis, rounded
+/// outwards. 12 bytes a block.
+struct BlockBox {
+  std::uint16_t lo[3];
+  std::uint16_t hi[3];
+  friend bool operator==(const BlockBox&, const BlockBox&) = default;
+};
+
+inline constexpr std::uint64_t kBlockBoxSteps = 65535;
+
+/// A BlockBox whose decoded box holds `block` and exceeds it by at most a step (and a quantum) on
+/// any side; `block` lies in `cell`.
+CLEARWAY_HD inline BlockBox encode_block_box(const QuantumBox& cell, const QuantumBox& block) {
+  BlockBox out;
+  for (int k = 0; k < 3; ++k) {
+    const auto extent = static_cast<std::uint64_t>(std::int64_t{cell.hi[k]} - cell.lo[k]);
+    const auto lo = static_cast<std::uint64_t>(std::int64_t{block.lo[k]} - cell.lo[k]);
+    const auto hi = static_cast<std::uint64_t>(std::int64_t{cell.hi[k]} - block.hi[k]);
+    out.lo[k] = static_cast<std::uint16_t>(extent == 0 ? 0 : lo * kBlockBoxSteps / extent);
+    out.hi[k] = static_cast<std::uint16_t>(
+        extent == 0 ? kBlockBoxSteps : kBlockBoxSteps - hi * kBlockBoxSteps / extent);
+  }
+  return out;
+}
+
+/// Integers again, rounded outwards: holds every point of the block.
+CLEARWAY_HD inline QuantumBox decode_block_box(const QuantumBox& cell, const BlockBox& block) {
+  QuantumBox out;
+  for (int k = 0; k < 3; ++k) {
+    const auto extent = static_cast<std::uint64_t>(std::int64_t{cell.hi[k]} - cell.lo[k]);
+    const std::uint64_t lo = block.lo[k] * extent / kBlockBoxSteps;
+    const std::uint64_t hi = (kBlockBoxSteps - block.hi[k]) * extent / kBlockBoxSteps;
+    out.lo[k] = static_cast<std::int32_t>(cell.lo[k] + static_cast<std::int64_t>(lo));
+    out.hi[k] = static_cast<std::int32_t>(cell.hi[k] - static_cast<std::int64_t>(hi));
+  }
+  return out;
+}
+
+}  // namespace clearway

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "clearway/pose.hpp"
+#include "core/geometry/box.hpp"
+
+namespace clearway {
+
+/// Rigid means: singular values within this of 1 and a positive determinant. Printing with six
+/// digits moves them by less than 1e-5.
+inline constexpr double kRigidTolerance = 1e-4;
+
+/// Singular values of a pose's rotation. least <= greatest; each computed value lies within a few
+/// ulps of the true one, and both are widened by 1e-12 so that they bound it.
+struct Stretch {
+  double least;
+  double greatest;
+  double determinant;
+};
+
+/// Source: Eigen's JacobiSVD.
+Stretch stretch_of(const Pose& pose);
+
+/// An upper bound of the largest singular value of a pose's rotation, rounding included: within
+/// 1e-4 of it for rigid poses and at most sqrt(3) times it for others. Far cheaper than stretch_of.
+double greatest_stretch_bound(const Pose& pose);
+
+bool is_rigid(const Stretch& stretch);
+
+/// An upper bound, rounding included, of |transform(a, m) - transform(b, m)| over every m of the
+/// box `model`, in the predicate's arithmetic. The displacement is an affine map of m, so its norm
+/// is convex and the eight corners suffice (docs/numerics.md, "Motion").
+double displacement_bound(const Box& model, const Pose& a, const Pose& b);
+
+/// An upper bound of the rounding error of each coordinate of transform(pose, m) for every m with
+/// |m_k| <= reach_k, where reach holds the largest coordinates of the model (docs/numerics.md).
+double transform_rounding(const Vec3& reach, const Pose& pose);
+
+}  // namespace clearway

@@ -1,0 +1,138 @@
+#include "core/grid/grid_scene.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "core/geometry/rigid.hpp"
+#include "core/grid/grid_size.hpp"
+
+namespace clearway {
+namespace {
+
+/// Bits of both a cell's occupancies, a point.
+constexpr std::uint32_t kOccupancyBits = 16;
+
+void refuse_unanswerable(const Query& query) {
+  if (query.between_poses) {
+    throw UsageError("--between-poses: engine grid searches at poses; take --engine sweep");
+  }
+  if (query.clearance > 0) {
+    throw UsageError("--clearance: engine grid has no clearances; take --engine sweep");
+  }
+}
+
+PoseBound bound_of(const Pose& pose, const Vec3& reach) {
+  return {greatest_stretch_bound(pose),
+          2 * std::sqrt(3.0) * 1.01 * transform_rounding(reach, pose)};
+}
+
+}  // namespace
+
+GridScene::GridScene(const Query& query, const MotionTree& motion, const PackedCloud& cloud,
+                     const GridOptions& options)
+    : motion_(motion),
+      model_(query.model),
+      first_pose_(query.first_pose),
+      grid_cell_(options.grid_cell > 0 ? options.grid_cell
+                                       : cheapest_grid_cell(query.radius, surface_density(cloud))) {
+  refuse_unanswerable(query);
+  const Vec3 reach = reach_of(model_.box());
+  bounds_.reserve(poses().size());
+  for (const Pose& pose : poses()) bounds_.push_back(bound_of(pose, reach));
+  add_nodes();
+  view_ = {.points = model_.points().data(),
+           .groups = model_.groups().data(),
+           .parts = model_.parts().data(),
+           .poses = poses().data(),
+           .bounds = bounds_.data(),
+           .nodes = nodes_.data(),
+           .runs = runs_.data(),
+           .quantisation = cloud.quantisation(),
+           .point_count = static_cast<std::uint32_t>(model_.points().size()),
+           .group_count = static_cast<std::uint32_t>(model_.groups().size()),
+           .part_count = static_cast<std::uint32_t>(model_.parts().size()),
+           .slots = cloud.cell_entries(),
+           .bucket_count = std::max(64U, std::bit_ceil(cloud.cell_entries())),
+           .word_count = std::bit_ceil(std::max(64U, cloud.cell_entries() * kOccupancyBits / 64)),
+           .radius = query.radius,
+           .search_radius = query.radius,
+           .float_alone = options.precision == GridPrecision::kFloat};
+  if (view_.float_alone) view_.search_radius = float_search_radius(cloud);
+  choose_group_radius();
+}
+
+/// Nodes are in preorder, so their runs come in the order of their poses.
+void GridScene::add_nodes() {
+  const std::span<const MotionNode> motion = motion_.nodes();
+  nodes_.reserve(motion.size());
+  std::size_t below_run = 0;  // nodes before this one belong to the last run
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    const MotionNode& n = motion[i];
+    const auto first_run = static_cast<std::uint32_t>(runs_.size());
+    nodes_.push_back({n.first, n.count, n.mid, first_run, 1, n.delta + bounds_[n.mid].spread});
+    if (i < below_run || n.count > kRunPoses) continue;
+    runs_.push_back(static_cast<std::uint32_t>(i));
+    below_run = i + 2 * std::size_t{n.count} - 1;
+  }
+  for (GridNode& node : nodes_) {
+    if (node.count <= kRunPoses) continue;
+    const auto end = std::lower_bound(
+        runs_.begin(), runs_.end(), node.first + node.count,
+        [&](std::uint32_t run, std::uint32_t pose) { return nodes_[run].first < pose; });
+    node.runs = static_cast<std::uint32_t>(end - runs_.begin()) - node.first_run;
+  }
+}
+
+/// Nine groups of ten find their bit in the group occupancy at any pose.
+void GridScene::choose_group_radius() {
+  std::vector<double> radii;
+  for (const GridSphere& group : model_.groups()) radii.push_back(group.radius);
+  if (radii.empty() || bounds_.empty()) return;
+  const auto at = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() * 9 / 10);
+  std::nth_element(radii.begin(), at, radii.end());
+  PoseBound greatest{0, 0};
+  for (const PoseBound& bound : bounds_) {
+    greatest.stretch = std::max(greatest.stretch, bound.stretch);
+    greatest.spread = std::max(greatest.spread, bound.spread);
+  }
+  group_radius_ = (view_.search_radius + greatest.stretch * *at + greatest.spread) * (1 + 1e-12);
+}
+
+/// Where floats decide, a pair is a hit only when it is closer than this (docs/numerics.md,
+/// "Floats alone").
+double GridScene::float_search_radius(const PackedCloud& cloud) const {
+  double largest = 0;
+  if (!cloud.tree().empty()) {
+    const Vec3 reach = reach_of(position_box(cloud.quantisation(), cloud.tree()[0].box));
+    largest = std::max({reach.x, reach.y, reach.z});
+  }
+  const Vec3 reach = reach_of(model_.box());
+  double moved = 0;
+  for (const Pose& pose : poses()) {
+    for (int k = 0; k < 3; ++k) {
+      const double* row = pose.rotation + 3 * k;
+      moved = std::max(moved, std::abs(row[0]) * reach.x + std::abs(row[1]) * reach.y +
+                                  std::abs(row[2]) * reach.z + std::abs(pose.translation[k]));
+    }
+  }
+  return view_.radius * (1 + 0x1p-19) + 0x1p-20 * (largest + moved) + 1e-20;
+}
+
+GridSceneView GridScene::view_over(const Vec3* points, const GridSphere* groups,
+                                   const GridSphere* parts, const Pose* poses,
+                                   const PoseBound* bounds, const GridNode* nodes,
+                                   const std::uint32_t* runs) const {
+  GridSceneView view = view_;
+  view.points = points;
+  view.groups = groups;
+  view.parts = parts;
+  view.poses = poses;
+  view.bounds = bounds;
+  view.nodes = nodes;
+  view.runs = runs;
+  return view;
+}
+
+}  // namespace clearway

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/grid/grid_view.hpp"
+#include "core/sweep/motion_tree.hpp"
+
+namespace clearway {
+
+enum class GridPrecision {
+  kExact,  ///< floats filter, the predicate decides
+  kFloat,  ///< floats decide, in the scene's own coordinates: for comparison
+};
+
+struct GridOptions {
+  double grid_cell = 0;  ///< metres; 0: chosen. Coarser where a cell needs it.
+  GridPrecision precision = GridPrecision::kExact;
+};
+
+/// Model, trajectory and environment as the grid engine needs them, the same for every page.
+class GridScene {
+ public:
+  /// `query` (its model and poses), `motion` outlive it; of the cloud no points are read. Offers
+  /// sets and first poses: throws UsageError for a query between poses or with a clearance.
+  GridScene(const Query& query, const MotionTree& motion, const PackedCloud& cloud,
+            const GridOptions& options = {});
+
+  const ModelGroups& model() const { return model_; }
+  std::span<const Pose> poses() const { return motion_.poses(); }
+  std::span<const PoseBound> bounds() const { return bounds_; }
+  std::span<const GridNode> nodes() const { return nodes_; }
+  std::span<const std::uint32_t> runs() const { return runs_; }
+  bool first_pose() const { return first_pose_; }
+  double grid_cell() const { return grid_cell_; }  ///< metres
+  double group_radius() const { return group_radius_; }
+
+  /// Of all that the views refer to.
+  std::uint64_t size_bytes() const {
+    return model_.points().size_bytes() + model_.groups().size_bytes() +
+           model_.parts().size_bytes() + poses().size_bytes() + bounds().size_bytes() +
+           nodes().size_bytes() + runs().size_bytes();
+  }
+
+  /// Over the host's memory.
+  const GridSceneView& view() const { return view_; }
+
+  /// Over copies of the same arrays elsewhere.
+  GridSceneView view_over(const Vec3* points, const GridSphere* groups, const GridSphere* parts,
+                          const Pose* poses, const PoseBound* bounds, const GridNode* nodes,
+                          const std::uint32_t* runs) const;
+
+ private:
+  void add_nodes();
+  void choose_group_radius();
+  double float_search_radius(const PackedCloud& cloud) const;
+
+  const MotionTree& motion_;
+  ModelGroups model_;
+  std::vector<PoseBound> bounds_;
+  std::vector<GridNode> nodes_;
+  std::vector<std::uint32_t> runs_;
+  bool first_pose_;
+  double grid_cell_;
+  double group_radius_ = 0;
+  GridSceneView view_{};
+};
+
+}  // namespace clearway

@@ -1,0 +1,234 @@
+#pragma once
+
+#include "core/geometry/predicate.hpp"
+#include "core/geometry/sweep_bounds.hpp"
+#include "core/grid/float_predicate.hpp"
+#include "core/grid/grid_build.hpp"
+#include "core/grid/grid_task.hpp"
+#include "core/query/hit_set.hpp"
+#include "core/util/device_bits.hpp"
+
+/// Bodies of the search. Every bound: docs/numerics.md, "Grid".
+/// Source: Schauer et al. (the paper), section 3.2.
+namespace clearway {
+
+/// Where a sphere's centre is at a pose, and how far from it a point may be that the sphere's
+/// points touch.
+struct MovedSphere {
+  Vec3 centre;
+  double reach;
+};
+
+CLEARWAY_HD inline MovedSphere moved(const GridSceneView& scene, const GridSphere& sphere,
+                                     std::uint32_t pose, double spread) {
+  const double sum = scene.search_radius + scene.bounds[pose].stretch * sphere.radius + spread;
+  return {transform(scene.poses[pose], sphere.centre), sum * (1 + 32 * kUnitRoundoff) + 1e-150};
+}
+
+/// False only when no point of the box can be touched. An overflow dismisses nothing.
+CLEARWAY_HD inline bool may_touch(const Box& box, const MovedSphere& sphere) {
+  const double squared = sphere.reach * sphere.reach * (1 + 8 * kUnitRoundoff);
+  return !(least_squared_distance(box, sphere.centre) > squared);
+}
+
+/// Whether the part may touch the task's cell at a pose of its node.
+CLEARWAY_HD inline bool part_is_open(const GridSceneView& scene, const GridPageView& page,
+                                     const GridTask& task, std::uint32_t part) {
+  const GridNode& node = scene.nodes[task.node];
+  return may_touch(page.cells[task.cell].box,
+                   moved(scene, scene.parts[part], node.mid, node.spread));
+}
+
+/// Whether the group may touch the cell at the pose: by box, then by one bit of the occupancy.
+CLEARWAY_HD inline bool group_is_open(const GridSceneView& scene, const GridPageView& page,
+                                      std::uint32_t cell, std::uint32_t group, std::uint32_t pose) {
+  const GridCell& grid = page.cells[cell];
+  const MovedSphere sphere = moved(scene, scene.groups[group], pose, scene.bounds[pose].spread);
+  if (!may_touch(grid.box, sphere)) return false;
+  if (grid.exact_only || !(sphere.reach <= grid.group_radius)) return true;
+  const GridPoint c = rebased(grid, sphere.centre, 0);
+  const float reach = grid.group_reach;
+  const bool within = c.x >= -reach && c.x <= grid.extent[0] + reach && c.y >= -reach &&
+                      c.y <= grid.extent[1] + reach && c.z >= -reach &&
+                      c.z <= grid.extent[2] + reach;
+  if (!within) return true;
+  return is_marked(page.group_occupancy + std::uint64_t{cell} * scene.word_count, scene.word_count,
+                   grid.per_group_bit, c.x, c.y, c.z);
+}
+
+/// Whether point `index` still matters at the pose.
+CLEARWAY_HD inline bool is_wanted(const GridSceneView& scene, const GridPageView& page,
+                                  std::uint32_t cell, std::uint32_t index, std::uint32_t pose) {
+  const std::uint64_t slot = std::uint64_t{cell} * scene.slots + index;
+  if (page.first_poses != nullptr) return pose < page.first_poses[slot];
+  return (page.hits[slot / kBlockPoints] >> (slot % kBlockPoints) & 1) == 0;
+}
+
+CLEARWAY_HD inline void mark_hit(const GridSceneView& scene, const GridPageView& page,
+                                 std::uint32_t cell, std::uint32_t index, std::uint32_t pose) {
+  const std::uint64_t slot = std::uint64_t{cell} * scene.slots + index;
+  or_bits(page.hits[slot / kBlockPoints], std::uint64_t{1} << (slot % kBlockPoints));
+  if (page.first_poses != nullptr) lower_to(&page.first_poses[slot], pose);
+}
+
+/// The decision about a pair: the predicate's, or that of floats alone. m: as moved.
+CLEARWAY_HD inline bool is_hit(const GridSceneView& scene, const GridPageView& page,
+                               std::uint32_t cell, std::uint32_t index, std::uint32_t pose,
+                               std::uint32_t model_point, const Vec3& m) {
+  const Vec3 e = position_of(scene, page, cell, index);
+  if (!scene.float_alone) return collides(e, m, scene.radius);
+  return collides_in_float(e, scene.poses[pose], scene.points[model_point], scene.radius);
+}
+
+/// A model point at a pose: as the predicate has it, and in the cell's floats.
+struct MovedPoint {
+  std::uint32_t pose;
+  std::uint32_t model_point;
+  Vec3 m;
+  GridPoint x;
+};
+
+/// Tests place `at` of the page's points against a moved model point, in float first.
+CLEARWAY_HD inline void test_pair(const GridSceneView& scene, const GridPageView& page,
+                                  std::uint32_t cell, std::uint32_t at, const MovedPoint& moved,
+                                  GridStatistics& statistics) {
+  const GridCell& grid = page.cells[cell];
+  const GridPoint p = page.points[at];
+  ++statistics.point_tests;
+  const float dx = p.x - moved.x.x, dy = p.y - moved.x.y, dz = p.z - moved.x.z;
+  const float squared = dx * dx + dy * dy + dz * dz;
+  if (squared > grid.outer_squared) return;
+  if (!is_wanted(scene, page, cell, p.index, moved.pose)) return;
+  if (!(squared < grid.inner_squared)) {
+    ++statistics.exact_tests;
+    if (!is_hit(scene, page, cell, p.index, moved.pose, moved.model_point, moved.m)) return;
+  }
+  mark_hit(scene, page, cell, p.index, moved.pose);
+  if (page.done != nullptr) or_bits(page.done[at / 64], std::uint64_t{1} << (at % 64));
+}
+
+/// Tests the points begin .. end - 1 that are not hit yet.
+CLEARWAY_HD inline void test_open(const GridSceneView& scene, const GridPageView& page,
+                                  std::uint32_t cell, const BucketRange& range,
+                                  const MovedPoint& moved, GridStatistics& statistics) {
+  for (std::uint32_t first = range.begin; first < range.end;) {
+    const std::uint32_t next = (first / 64 + 1) * 64;
+    std::uint64_t open = ~page.done[first / 64] >> (first % 64);
+    if (range.end < next) open &= (std::uint64_t{1} << (range.end - first)) - 1;
+    for (; open != 0; open &= open - 1) {
+      test_pair(scene, page, cell, first + lowest_bit(open), moved, statistics);
+    }
+    first = next;
+  }
+}
+
+/// Tests all points of a bucket, unless each has been hit at an earlier pose. Their latest first
+/// pose only ever falls, so one that another lane notes late is still a bound.
+CLEARWAY_HD inline void test_earlier(const GridSceneView& scene, const GridPageView& page,
+                                     std::uint32_t cell, std::uint64_t bucket,
+                                     const BucketRange& range, const MovedPoint& moved,
+                                     GridStatistics& statistics) {
+  if (moved.pose >= page.latest[bucket]) return;
+  std::uint32_t latest = 0;
+  for (std::uint32_t at = range.begin; at < range.end; ++at) {
+    test_pair(scene, page, cell, at, moved, statistics);
+    const std::uint64_t slot = std::uint64_t{cell} * scene.slots + page.points[at].index;
+    const std::uint32_t first = page.first_poses[slot];
+    if (first > latest) latest = first;
+  }
+  if (latest != HitSet::kNever) page.latest[bucket] = latest;
+}
+
+/// Tests the points of all grid cells within reach of the moved model point.
+CLEARWAY_HD inline void search_buckets(const GridSceneView& scene, const GridPageView& page,
+                                       std::uint32_t cell, const MovedPoint& moved,
+                                       GridStatistics& statistics) {
+  const GridCell& grid = page.cells[cell];
+  const float at[3] = {moved.x.x, moved.x.y, moved.x.z};
+  int lo[3], hi[3];
+  for (int k = 0; k < 3; ++k) {
+    const int last = grid_step(grid.extent[k], grid.per_bucket);
+    lo[k] = grid_step(at[k] - grid.reach, grid.per_bucket);
+    hi[k] = grid_step(at[k] + grid.reach, grid.per_bucket);
+    if (lo[k] < 0) lo[k] = 0;
+    if (hi[k] > last) hi[k] = last;
+  }
+  const std::uint64_t first = std::uint64_t{cell} * scene.bucket_count;
+  for (int z = lo[2]; z <= hi[2]; ++z) {
+    for (int y = lo[1]; y <= hi[1]; ++y) {
+      for (int x = lo[0]; x <= hi[0]; ++x) {
+        const std::uint64_t bucket = first + bucket_of(x, y, z, scene.bucket_count);
+        const BucketRange range = page.buckets[bucket];
+        ++statistics.bucket_tests;
+        if (range.begin == range.end) continue;
+        if (page.done != nullptr) {
+          test_open(scene, page, cell, range, moved, statistics);
+        } else {
+          test_earlier(scene, page, cell, bucket, range, moved, statistics);
+        }
+      }
+    }
+  }
+}
+
+/// Searches the cell around one model point at one pose.
+CLEARWAY_HD inline void search_point(const GridSceneView& scene, const GridPageView& page,
+                                     std::uint32_t cell, std::uint32_t pose,
+                                     std::uint32_t model_point, GridStatistics& statistics) {
+  const GridCell& grid = page.cells[cell];
+  const Vec3 m = transform(scene.poses[pose], scene.points[model_point]);
+  ++statistics.points_moved;
+  if (grid.exact_only) {
+    for (std::uint32_t i = 0; i < grid.count; ++i) {
+      if (!is_wanted(scene, page, cell, i, pose)) continue;
+      ++statistics.exact_tests;
+      if (is_hit(scene, page, cell, i, pose, model_point, m)) {
+        mark_hit(scene, page, cell, i, pose);
+      }
+    }
+    return;
+  }
+  const GridPoint x = rebased(grid, m, 0);
+  const float reach = grid.reach;
+  const bool within = x.x >= -reach && x.x <= grid.extent[0] + reach && x.y >= -reach &&
+                      x.y <= grid.extent[1] + reach && x.z >= -reach &&
+                      x.z <= grid.extent[2] + reach;
+  if (!within || !is_marked(page.occupancy + std::uint64_t{cell} * scene.word_count,
+                            scene.word_count, grid.per_bit, x.x, x.y, x.z)) {
+    return;
+  }
+  ++statistics.searches;
+  search_buckets(scene, page, cell, {pose, model_point, m, x}, statistics);
+}
+
+/// An open pair of group and pose in one word.
+CLEARWAY_HD inline std::uint32_t encode_pair(std::uint32_t group, std::uint32_t pose_of_run) {
+  return group * kRunPoses + pose_of_run;
+}
+
+/// Searches lane `lane` of a pair's group: one model point, where the group has so many.
+CLEARWAY_HD inline void search_lane(const GridSceneView& scene, const GridPageView& page,
+                                    const GridTask& task, std::uint32_t pair, std::uint32_t lane,
+                                    GridStatistics& statistics) {
+  const std::uint32_t point = pair / kRunPoses * kGroupPoints + lane;
+  const std::uint32_t pose = scene.nodes[task.node].first + pair % kRunPoses;
+  if (point < scene.point_count) {
+    search_point(scene, page, task.cell, pose, point, statistics);
+  }
+}
+
+/// Pair `index` of an open part: of its groups and the poses of the task's node. False where it is
+/// dismissed or the group does not exist.
+CLEARWAY_HD inline bool open_pair(const GridSceneView& scene, const GridPageView& page,
+                                  const GridTask& task, std::uint32_t part, std::uint32_t index,
+                                  std::uint32_t& pair, GridStatistics& statistics) {
+  const GridNode& node = scene.nodes[task.node];
+  const std::uint32_t group = part * kPartGroups + index % kPartGroups;
+  const std::uint32_t pose_of_run = index / kPartGroups;
+  if (group >= scene.group_count) return false;
+  ++statistics.sphere_tests;
+  pair = encode_pair(group, pose_of_run);
+  return group_is_open(scene, page, task.cell, group, node.first + pose_of_run);
+}
+
+}  // namespace clearway

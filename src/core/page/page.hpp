@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/cloud/kd_order.hpp"
+#include "core/geometry/quantum_box.hpp"
+#include "core/util/macros.hpp"
+
+/// A page: one run of bytes that holds what an engine needs of some planned cells, the same on the
+/// host and on a device. Layout: PageCell[cells], motion nodes uint32[nodes], BlockBox[cells *
+/// blocks_per_cell], then the packed payloads, each section on kPageAlignment bytes, kPagePadding
+/// zero bytes at the end, so that a decoder may read whole words past a payload.
+namespace clearway {
+
+inline constexpr std::size_t kPageAlignment = 16;
+inline constexpr std::size_t kPagePadding = 16;
+
+/// The payload of one packed chunk (core/cloud/packed_chunk.hpp): value i is `minimum` plus the
+/// `minbits` bits from bit i * minbits on, most significant first; minbits 32: little-endian
+/// values.
+struct PageChunk {
+  std::uint64_t payload;  ///< bytes from the begin of the page
+  std::int32_t minimum;
+  std::uint32_t minbits;
+};
+
+struct PageCell {
+  std::uint32_t cell;   ///< index in the cloud
+  std::uint32_t count;  ///< points
+  std::uint32_t first_node;
+  std::uint32_t node_count;
+  QuantumBox box;
+  PageChunk chunks[3];  ///< x, y, z
+};
+
+/// How large the sections of a page are.
+struct PageShape {
+  std::uint32_t cells = 0;
+  std::uint32_t blocks_per_cell = 0;
+  std::uint32_t nodes = 0;
+  std::uint64_t payload_bytes = 0;  ///< of all chunks
+
+  CLEARWAY_HD static constexpr std::uint64_t aligned(std::uint64_t bytes) {
+    return divide_up(bytes, kPageAlignment) * kPageAlignment;
+  }
+  CLEARWAY_HD constexpr std::uint64_t nodes_at() const {
+    return aligned(std::uint64_t{cells} * sizeof(PageCell));
+  }
+  CLEARWAY_HD constexpr std::uint64_t blocks_at() const {
+    return nodes_at() + aligned(std::uint64_t{nodes} * sizeof(std::uint32_t));
+  }
+  CLEARWAY_HD constexpr std::uint64_t payload_at() const {
+    return blocks_at() + aligned(std::uint64_t{cells} * blocks_per_cell * sizeof(BlockBox));
+  }
+  CLEARWAY_HD constexpr std::uint64_t bytes() const {
+    return aligned(payload_at() + payload_bytes + kPagePadding);
+  }
+};
+
+/// A page at its address, on the host or on a device. Does not own it.
+struct PageRef {
+  const std::byte* begin;
+  PageShape shape;
+
+  CLEARWAY_HD const PageCell& cell(std::uint32_t index) const {
+    return reinterpret_cast<const PageCell*>(begin)[index];
+  }
+  /// Motion nodes of the cell, in the order of their poses.
+  CLEARWAY_HD const std::uint32_t* nodes(const PageCell& cell) const {
+    return reinterpret_cast<const std::uint32_t*>(begin + shape.nodes_at()) + cell.first_node;
+  }
+  /// Boxes of the cell's blocks.
+  CLEARWAY_HD const BlockBox* blocks(std::uint32_t index) const {
+    return reinterpret_cast<const BlockBox*>(begin + shape.blocks_at()) +
+           std::uint64_t{index} * shape.blocks_per_cell;
+  }
+  /// Stored integer `index` < the cloud's cell_points of a chunk.
+  CLEARWAY_HD std::int32_t value(const PageChunk& chunk, std::uint32_t index) const;
+};
+
+// ---- implementation
+
+CLEARWAY_HD inline std::int32_t PageRef::value(const PageChunk& chunk, std::uint32_t index) const {
+  if (chunk.minbits == 0) return chunk.minimum;
+  const std::uint64_t bit = std::uint64_t{index} * chunk.minbits;
+  // Whole aligned words: a page begins on one, and its padding follows the last payload.
+  const std::uint64_t byte = chunk.payload + bit / 8;
+  const auto* words = reinterpret_cast<const std::uint32_t*>(begin) + byte / 4;
+  const auto shift = static_cast<std::uint32_t>(8 * (byte % 4));
+  const std::uint64_t low = std::uint64_t{words[1]} << 32 | words[0];
+  const std::uint64_t window =
+      shift == 0 ? low : low >> shift | std::uint64_t{words[2]} << (64 - shift);
+  if (chunk.minbits == 32) return static_cast<std::int32_t>(static_cast<std::uint32_t>(window));
+  std::uint64_t reversed = 0;  // the compilers make this one byte swap
+  for (int i = 0; i < 8; ++i) reversed |= (window >> (8 * i) & 0xff) << (56 - 8 * i);
+  const std::uint64_t delta = reversed << (bit % 8) >> (64 - chunk.minbits);
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(chunk.minimum) +
+                                   static_cast<std::uint32_t>(delta));
+}
+
+}  // namespace clearway

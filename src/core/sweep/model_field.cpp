@@ -1,0 +1,196 @@
+#include "core/sweep/model_field.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearway {
+namespace {
+
+/// The coarse lattice reaches this many of its steps beyond the model.
+constexpr double kMarginSteps = 3;
+/// A voxel is no smaller than this many spacings of the model's points, between half the radius and
+/// twice the radius.
+constexpr double kVoxelSpacings = 1.5;
+constexpr std::uint64_t kCoarseNodeBytes = 8;
+
+/// For a reach the coarse lattice is wider, up to this many nodes. Coarse bounds are close from
+/// kCloseSteps coarse steps on: at a distance d they miss at most 3/8 step^2 / d.
+constexpr double kMostWideNodes = 1 << 18;
+constexpr double kCloseSteps = 2;
+
+/// Not above the true square: one rounding to float and a few in double are taken off.
+float rounded_down(double squared) {
+  return std::nextafterf(static_cast<float>(squared * (1 - 1e-12)), 0.0F);
+}
+
+double length(const Vec3& v) { return std::sqrt(squared_length(v.x, v.y, v.z)); }
+
+}  // namespace
+
+ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options,
+                       int threads)
+    : tree_(tree) {
+  if (threads == 0) threads = omp_get_max_threads();
+  choose_voxel(radius, options);
+  for (;; voxel_ *= 2) {
+    lay_out(margin_steps(options.reach));
+    fill_coarse(options.reach > 0, threads);
+    const double band = this->band(radius, options.reach);
+    const std::uint64_t bytes = mark_bricks(band, threads) * kBrickNodes * 8;
+    if (bytes <= options.most_bytes) break;
+  }
+  fill_bricks(threads);
+}
+
+void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
+  const Box& box = tree_.box();
+  const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
+  const double wanted =
+      std::clamp(kVoxelSpacings * tree_.spacing(), radius / 2, 2 * radius) / options.fineness;
+  // A field much finer than the model's points, or than their rounding, serves nobody.
+  const double least = 1e-7 * (length(extent) + length(box.hi) + length(box.lo)) + 1e-100;
+  voxel_ = options.voxel > 0 ? options.voxel : std::max(wanted, least);
+  const auto coarse_bytes = [&] {
+    double nodes = 1;
+    for (int k = 0; k < 3; ++k) {
+      nodes *= extent[k] / (kBrick * voxel_) + 2 * kMarginSteps + 2;
+    }
+    return nodes * static_cast<double>(kCoarseNodeBytes);
+  };
+  while (coarse_bytes() > static_cast<double>(options.most_bytes) / 4) voxel_ *= 2;
+}
+
+/// How far from the model bricks are needed.
+double ModelField::band(double radius, double reach) const {
+  return std::max(radius, std::min(reach, kCloseSteps * coarse_)) + 2 * voxel_;
+}
+
+double ModelField::margin_steps(double reach) const {
+  const Box& box = tree_.box();
+  const double step = kBrick * voxel_;
+  const auto nodes = [&](double margin) {
+    double product = 1;
+    for (int k = 0; k < 3; ++k) product *= (box.hi[k] - box.lo[k]) / step + 2 * margin + 2;
+    return product;
+  };
+  double margin = kMarginSteps;
+  while (margin * step < reach && nodes(margin + 1) <= kMostWideNodes) ++margin;
+  return margin;
+}
+
+void ModelField::lay_out(double margin) {
+  coarse_ = kBrick * voxel_;
+  margin_ = (margin + 1) * coarse_;
+  const Box& box = tree_.box();
+  for (int k = 0; k < 3; ++k) {
+    origin_[k] = box.lo[k] - margin * coarse_;
+    size_[k] =
+        static_cast<std::uint32_t>(std::ceil((box.hi[k] - box.lo[k]) / coarse_ + 2 * margin)) + 1;
+  }
+}
+
+Vec3 ModelField::coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t iz) const {
+  return {origin_.x + ix * coarse_, origin_.y + iy * coarse_, origin_.z + iz * coarse_};
+}
+
+void ModelField::fill_coarse(bool with_nearest, int threads) {
+  coarse_squared_.assign(std::size_t{size_[0]} * size_[1] * size_[2], 0);
+  coarse_nearest_.assign(with_nearest ? coarse_squared_.size() : 0, 0);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (std::uint32_t iz = 0; iz < size_[2]; ++iz) {
+    std::uint32_t near = 0;
+    std::size_t at = std::size_t{iz} * size_[1] * size_[0];
+    for (std::uint32_t iy = 0; iy < size_[1]; ++iy) {
+      for (std::uint32_t ix = 0; ix < size_[0]; ++ix) {
+        const ModelTree::Nearest nearest = tree_.nearest(coarse_node(ix, iy, iz), near);
+        near = nearest.point;
+        if (with_nearest) coarse_nearest_[at] = near;
+        coarse_squared_[at++] = rounded_down(nearest.squared_distance);
+      }
+    }
+  }
+}
+
+/// Numbers the coarse cells in which a distance of at most `band` can occur.
+std::uint64_t ModelField::mark_bricks(double band, int threads) {
+  const double half_diagonal = coarse_ * std::sqrt(0.75) * (1 + 1e-9);
+  brick_of_.assign(coarse_squared_.size(), kNoBrick);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (std::uint32_t iz = 0; iz < size_[2] - 1; ++iz) {
+    std::uint32_t near = 0;
+    for (std::uint32_t iy = 0; iy + 1 < size_[1]; ++iy) {
+      for (std::uint32_t ix = 0; ix + 1 < size_[0]; ++ix) {
+        const std::size_t at = (std::size_t{iz} * size_[1] + iy) * size_[0] + ix;
+        if (std::sqrt(coarse_squared_[at]) > band + 2 * half_diagonal) continue;
+        const Vec3 node = coarse_node(ix, iy, iz);
+        const Vec3 centre{node.x + coarse_ / 2, node.y + coarse_ / 2, node.z + coarse_ / 2};
+        const ModelTree::Nearest nearest = tree_.nearest(centre, near);
+        near = nearest.point;
+        if (std::sqrt(nearest.squared_distance) <= band + half_diagonal) brick_of_[at] = 0;
+      }
+    }
+  }
+  std::uint32_t bricks = 0;
+  for (std::uint32_t& brick : brick_of_) {
+    if (brick == 0) brick = bricks++;
+  }
+  return bricks;
+}
+
+void ModelField::fill_bricks(int threads) {
+  std::vector<std::size_t> cells;
+  for (std::size_t at = 0; at < brick_of_.size(); ++at) {
+    if (brick_of_[at] != kNoBrick) cells.push_back(at);
+  }
+  distances_.resize(cells.size() * kBrickNodes);
+  nearest_.resize(cells.size() * kBrickNodes);
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
+  for (std::size_t brick = 0; brick < cells.size(); ++brick) {
+    const std::size_t cell = cells[brick];
+    const Vec3 corner = coarse_node(static_cast<std::uint32_t>(cell % size_[0]),
+                                    static_cast<std::uint32_t>(cell / size_[0] % size_[1]),
+                                    static_cast<std::uint32_t>(cell / size_[0] / size_[1]));
+    std::size_t at = brick * kBrickNodes;
+    for (std::uint32_t z = 0; z <= kBrick; ++z) {
+      for (std::uint32_t y = 0; y <= kBrick; ++y) {
+        for (std::uint32_t x = 0; x <= kBrick; ++x, ++at) {
+          // The nearest of the node before, along x and at the start of a row along y or z.
+          const std::size_t back = x > 0   ? 1
+                                   : y > 0 ? kBrick + 1
+                                   : z > 0 ? (kBrick + 1) * (kBrick + 1)
+                                           : 0;
+          const std::uint32_t near = back > 0 ? nearest_[at - back] : 0;
+          const Vec3 node{corner.x + x * voxel_, corner.y + y * voxel_, corner.z + z * voxel_};
+          const ModelTree::Nearest nearest = tree_.nearest(node, near);
+          distances_[at] = rounded_down(nearest.squared_distance);
+          nearest_[at] = nearest.point;
+        }
+      }
+    }
+  }
+}
+
+ModelFieldRef ModelField::ref() const {
+  return {.model = tree_.box(),
+          .coarse = coarse_,
+          .voxel = voxel_,
+          .per_metre = 1 / coarse_,
+          .origin = origin_,
+          .size = {size_[0], size_[1], size_[2]},
+          .bricks = static_cast<std::uint32_t>(bricks()),
+          .coarse_squared = coarse_squared_.data(),
+          .coarse_nearest = coarse_nearest_.empty() ? nullptr : coarse_nearest_.data(),
+          .brick_of = brick_of_.data(),
+          .distances = distances_.data(),
+          .nearest = nearest_.data()};
+}
+
+std::uint64_t ModelField::allocated_bytes() const {
+  return (coarse_squared_.capacity() + distances_.capacity()) * sizeof(float) +
+         (coarse_nearest_.capacity() + brick_of_.capacity() + nearest_.capacity()) *
+             sizeof(std::uint32_t);
+}
+
+}  // namespace clearway

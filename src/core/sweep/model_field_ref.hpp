@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/box.hpp"
+#include "core/geometry/sweep_bounds.hpp"
+
+namespace clearway {
+
+/// A ModelField where it lies, on the host or on a device. Does not own it. Lattice nodes hold
+/// squared distances, rounded down.
+struct ModelFieldRef {
+  static constexpr std::uint32_t kBrick = 8;  ///< fine voxels along a coarse one
+  static constexpr std::uint32_t kRow = kBrick + 1;
+  static constexpr std::uint32_t kBrickNodes = kRow * kRow * kRow;
+  static constexpr std::uint32_t kNoBrick = 0xffffffff;
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  struct Bounds {
+    double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
+    std::uint32_t near;    ///< a model point near x, or kNone; never kNone with a reach
+  };
+
+  Box model;              ///< of all model points
+  double coarse;          ///< step of the coarse lattice, metres
+  double voxel;           ///< of the fine one: coarse / kBrick
+  double per_metre;       ///< 1 / coarse
+  Vec3 origin;            ///< of the coarse lattice
+  std::uint32_t size[3];  ///< coarse nodes along each axis
+  std::uint32_t bricks;
+  const float* coarse_squared;          ///< [z][y][x]
+  const std::uint32_t* coarse_nearest;  ///< likewise, or null
+  const std::uint32_t* brick_of;        ///< per coarse cell, [z][y][x]
+  const float* distances;               ///< per brick [z][y][x]
+  const std::uint32_t* nearest;         ///< likewise, the nearest model point
+
+  CLEARWAY_HD std::size_t coarse_nodes() const { return std::size_t{size[0]} * size[1] * size[2]; }
+
+  CLEARWAY_HD Bounds bounds(const Vec3& x) const;
+
+ private:
+  CLEARWAY_HD std::uint32_t near_coarse_node(const double (&place)[3]) const;
+};
+
+// ---- implementation
+
+namespace field_detail {
+
+/// sum w_k f_k over the corners of a cell, given in the order x, then y, then z.
+CLEARWAY_HD inline double interpolated(const double (&f)[3], const double (&corner)[8]) {
+  double along_x[4];
+  for (int i = 0; i < 4; ++i) {
+    along_x[i] = (1 - f[0]) * corner[2 * i] + f[0] * corner[2 * i + 1];
+  }
+  const double low = (1 - f[1]) * along_x[0] + f[1] * along_x[1];
+  const double high = (1 - f[1]) * along_x[2] + f[1] * along_x[3];
+  return (1 - f[2]) * low + f[2] * high;
+}
+
+/// The corners of the cell whose first one is `first`.
+CLEARWAY_HD inline void load_corners(const float* first, std::size_t row, std::size_t layer,
+                                     double (&corner)[8]) {
+  for (int i = 0; i < 4; ++i) {
+    const float* at = first + (i & 1 ? row : 0) + (i & 2 ? layer : 0);
+    corner[2 * i] = static_cast<double>(at[0]);
+    corner[2 * i + 1] = static_cast<double>(at[1]);
+  }
+}
+
+/// d_M^2(x) - |x|^2 is a minimum of linear functions of x, hence concave: the interpolation of d^2
+/// exceeds d^2 by at most step^2 sum f (1 - f). The last term covers the rounding of all of it.
+CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3], double step) {
+  const double bend = f[0] * (1 - f[0]) + f[1] * (1 - f[1]) + f[2] * (1 - f[2]);
+  const double excess = step * step * bend;
+  const double bound = mean - excess - (mean + excess) * (64 * kUnitRoundoff);
+  return bound > 0 ? bound : 0;
+}
+
+}  // namespace field_detail
+
+/// place: in coarse steps from the origin, anywhere.
+CLEARWAY_HD inline std::uint32_t ModelFieldRef::near_coarse_node(const double (&place)[3]) const {
+  if (coarse_nearest == nullptr) return kNone;
+  std::size_t at = 0;
+  for (int k = 2; k >= 0; --k) {
+    const double last = size[k] - 1;
+    const double rounded = place[k] + 0.5;
+    const double node = place[k] > 0 ? (rounded < last ? rounded : last) : 0;
+    at = at * size[k] + static_cast<std::size_t>(node);
+  }
+  return coarse_nearest[at];
+}
+
+CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) const {
+  using namespace field_detail;
+  const double whole[3] = {(x.x - origin.x) * per_metre, (x.y - origin.y) * per_metre,
+                           (x.z - origin.z) * per_metre};
+  for (int k = 0; k < 3; ++k) {
+    if (!(whole[k] >= 0 && whole[k] < size[k] - 1)) {
+      return {least_squared_distance(model, x), near_coarse_node(whole)};
+    }
+  }
+  std::uint32_t cell[3];
+  double place[3], corner[8];
+  for (int k = 0; k < 3; ++k) {
+    cell[k] = static_cast<std::uint32_t>(whole[k]);
+    place[k] = whole[k] - cell[k];
+  }
+  const std::size_t at = (std::size_t{cell[2]} * size[1] + cell[1]) * size[0] + cell[0];
+  const std::uint32_t brick = brick_of[at];
+  if (brick == kNoBrick) {
+    load_corners(coarse_squared + at, size[0], std::size_t{size[0]} * size[1], corner);
+    return {concave_bound(interpolated(place, corner), place, coarse), near_coarse_node(whole)};
+  }
+  std::uint32_t fine[3], round[3];
+  for (int k = 0; k < 3; ++k) {
+    place[k] *= kBrick;
+    fine[k] = static_cast<std::uint32_t>(place[k]);
+    if (fine[k] > kBrick - 1) fine[k] = kBrick - 1;
+    place[k] -= fine[k];
+    round[k] = fine[k] + (place[k] >= 0.5 ? 1 : 0);
+  }
+  const std::size_t first = std::size_t{brick} * kBrickNodes;
+  load_corners(distances + first + (fine[2] * kRow + fine[1]) * kRow + fine[0], kRow, kRow * kRow,
+               corner);
+  return {concave_bound(interpolated(place, corner), place, voxel),
+          nearest[first + (round[2] * kRow + round[1]) * kRow + round[0]]};
+}
+
+}  // namespace clearway

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/box.hpp"
+
+namespace clearway {
+
+/// A ModelTree's points and boxes where they lie, on the host or on a device. Does not own them.
+struct ModelTreeRef {
+  static constexpr std::uint32_t kLeafPoints = 8;
+  static constexpr int kMostParts = 40;  ///< open parts of a descent; 2^32 points are 30 levels
+
+  enum class Step { kSkip, kEnter, kTake };
+
+  struct Nearest {
+    std::uint32_t point;  ///< in the order of the tree
+    double squared_distance;
+  };
+
+  const Vec3* points;
+  const Box* boxes;  ///< of node i; children 2 i + 1 and 2 i + 2
+  std::uint32_t size;
+  std::uint32_t box_count;
+
+  /// Goes down the tree: step(box) tells whether to leave out the points of the box, to look
+  /// closer, or to answer true. Whether any box was taken or visit(point) was true; stops at the
+  /// first.
+  template <typename StepInto, typename Visit>
+  CLEARWAY_HD bool any(StepInto step, Visit visit) const {
+    if (size == 0) return false;
+    Part open[kMostParts];
+    int count = 0;
+    open[count++] = {0, 0, size};
+    while (count > 0) {
+      const Part part = open[--count];
+      const Step next = step(boxes[part.node]);
+      if (next == Step::kTake) return true;
+      if (next == Step::kSkip) continue;
+      if (part.end - part.begin <= kLeafPoints) {
+        for (std::uint32_t i = part.begin; i < part.end; ++i) {
+          if (visit(points[i])) return true;
+        }
+        continue;
+      }
+      open[count++] = right_of(part);
+      open[count++] = left_of(part);
+    }
+    return false;
+  }
+
+  /// Whether visit(point) is true for any point with a computed squared distance to x of at most
+  /// `squared_radius`, and some others; stops at the first. A radius that is not a number visits
+  /// all.
+  template <typename Visit>
+  CLEARWAY_HD bool any_within(const Vec3& x, double squared_radius, Visit visit) const {
+    return any(
+        [&](const Box& box) {
+          return least_squared_distance(box, x) > squared_radius ? Step::kSkip : Step::kEnter;
+        },
+        [&](const Vec3& m) { return !(squared_distance(m, x) > squared_radius) && visit(m); });
+  }
+
+  /// The nearest point to x of a model that is not empty. `guess`: any point, better a near one.
+  CLEARWAY_HD Nearest nearest(const Vec3& x, std::uint32_t guess) const {
+    Nearest best{guess, squared_distance(points[guess], x)};
+    Part open[kMostParts];
+    double squared[kMostParts];  // to the boxes of the open parts
+    int count = 0;
+    squared[count] = 0;
+    open[count++] = {0, 0, size};
+    while (count > 0) {
+      const Part part = open[--count];
+      if (!(squared[count] < best.squared_distance)) continue;
+      if (part.end - part.begin <= kLeafPoints) {
+        for (std::uint32_t i = part.begin; i < part.end; ++i) {
+          const double here = squared_distance(points[i], x);
+          if (here < best.squared_distance) best = {i, here};
+        }
+        continue;
+      }
+      const Part left = left_of(part), right = right_of(part);
+      const double to_left = least_squared_distance(boxes[left.node], x);
+      const double to_right = least_squared_distance(boxes[right.node], x);
+      const bool left_first = to_left <= to_right;
+      squared[count] = left_first ? to_right : to_left;
+      open[count++] = left_first ? right : left;
+      squared[count] = left_first ? to_left : to_right;
+      open[count++] = left_first ? left : right;
+    }
+    return best;
+  }
+
+ private:
+  struct Part {
+    std::uint32_t node, begin, end;
+  };
+
+  CLEARWAY_HD static Part left_of(const Part& part) {
+    return {2 * part.node + 1, part.begin, part.begin + (part.end - part.begin) / 2};
+  }
+  CLEARWAY_HD static Part right_of(const Part& part) {
+    return {2 * part.node + 2, part.begin + (part.end - part.begin) / 2, part.end};
+  }
+};
+
+}  // namespace clearway

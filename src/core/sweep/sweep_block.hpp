@@ -1,0 +1,193 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/sweep/sweep_clearances.hpp"
+#include "core/sweep/sweep_hits.hpp"
+#include "core/sweep/sweep_page.hpp"
+#include "core/sweep/sweep_walk.hpp"
+#include "core/util/device_bits.hpp"
+
+namespace clearway {
+
+/// The first step for one block of 64 points, by one warp: clears its answer, then goes through the
+/// planned motion nodes, a lane a node, and puts those that may touch the block on the page's list
+/// of entries, or where that is full the block as a whole. With clearances the points are
+/// searched at once, because only one warp may improve theirs.
+template <typename Warp, bool kClearance>
+class SweepBlock {
+ public:
+  template <typename Value>
+  using PerLane = typename Warp::template PerLane<Value>;
+
+  static constexpr std::uint32_t kQueue = SweepSubtrees::kMost;
+  static constexpr std::uint32_t kOpen = 96;
+
+  /// What the lanes share.
+  struct Shared {
+    std::uint32_t open[kOpen];    ///< nodes to be looked at
+    std::uint32_t queue[kQueue];  ///< nodes for the points
+  };
+
+  CLEARWAY_HD SweepBlock(const SweepPage& job, std::uint32_t block, Shared& shared,
+                         PerLane<SweepStatistics>& statistics)
+      : job_(job),
+        block_(block),
+        cell_(job.cell_of_block(block)),
+        shared_(shared),
+        statistics_(statistics) {}
+
+  CLEARWAY_HD void search() {
+    clear_result();
+    if (job_.first_point(block_) >= cell_.count) return;
+    const std::uint32_t per_cell = job_.page.shape.blocks_per_cell;
+    const BlockBox& code = job_.page.blocks(block_ / per_cell)[block_ % per_cell];
+    const Box box = position_box(job_.quantisation, decode_block_box(cell_.box, code));
+    narrow(centre_of(box), half_diagonal(box), job_.page.nodes(cell_));
+  }
+
+ private:
+  CLEARWAY_HD void clear_result() {
+    Warp::each([&](std::uint32_t lane) {
+      if (lane == 0) job_.hits[block_] = 0;
+      for (std::uint32_t i = lane; i < kBlockPoints; i += kWarpLanes) {
+        const std::uint32_t slot = block_ * kBlockPoints + i;
+        if (job_.first_poses != nullptr) job_.first_poses[slot] = SweepPage::kNever;
+        if (kClearance) job_.clearances[slot] = Clearance{kInfinity, SweepPage::kNever};
+      }
+    });
+  }
+
+  CLEARWAY_HD void narrow(const Vec3& centre, double rho, const std::uint32_t* nodes) {
+    double limit = job_.sweep.radius;
+    if constexpr (kClearance) limit = clearance_limit(centre, rho, nodes);
+    for (std::uint32_t next = 0;;) {  // of `nodes`
+      const bool done = open_ == 0 && next >= cell_.node_count;
+      if (queued_ > kQueue - kWarpLanes || (done && queued_ > 0)) empty_queue();
+      if (done || is_whole_) return;
+      if (open_ == 0) next = open_planned(nodes, next);
+      narrow_open(centre, rho, limit);
+    }
+  }
+
+  /// The next planned nodes are open. Returns how many were so far.
+  CLEARWAY_HD std::uint32_t open_planned(const std::uint32_t* nodes, std::uint32_t next) {
+    const std::uint32_t left = cell_.node_count - next;
+    open_ = left < kWarpLanes ? left : kWarpLanes;
+    Warp::each([&](std::uint32_t lane) {
+      if (lane < open_) shared_.open[lane] = nodes[next + lane];
+    });
+    return next + open_;
+  }
+
+  /// Looks at the last open nodes, a lane a node. Those that are fine enough go to the queue, those
+  /// that are not leave their halves open; without room for them they are fine enough.
+  CLEARWAY_HD void narrow_open(const Vec3& centre, double rho, double limit) {
+    const std::uint32_t count = open_ < kWarpLanes ? open_ : kWarpLanes;
+    open_ -= count;
+    const bool has_room = open_ + 2 * count <= kOpen;
+    PerLane<std::uint32_t> at;
+    PerLane<SweepRef::BoxClass> fate;
+    Warp::each([&](std::uint32_t lane) {
+      fate[lane] = SweepRef::BoxClass::kDismissed;
+      if (lane >= count) return;
+      ++statistics_[lane].node_tests;
+      at[lane] = shared_.open[open_ + lane];
+      const MotionNode& node = job_.sweep.motion.nodes[at[lane]];
+      fate[lane] = job_.sweep.classify_box(node, centre, rho, limit);
+      if (fate[lane] == SweepRef::BoxClass::kSplit && !has_room)
+        fate[lane] = SweepRef::BoxClass::kKept;
+    });
+    const std::uint32_t keep =
+        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepRef::BoxClass::kKept; });
+    const std::uint32_t split =
+        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepRef::BoxClass::kSplit; });
+    Warp::each([&](std::uint32_t lane) {
+      const std::uint32_t before = (1U << lane) - 1;
+      if ((keep >> lane & 1) != 0) shared_.queue[queued_ + count_of(keep & before)] = at[lane];
+      if ((split >> lane & 1) == 0) return;
+      std::uint32_t* halves = shared_.open + open_ + 2 * count_of(split & before);
+      halves[0] = job_.sweep.motion.nodes[at[lane]].later;
+      halves[1] = at[lane] + 1;
+    });
+    queued_ += count_of(keep);
+    open_ += 2 * count_of(split);
+  }
+
+  CLEARWAY_HD double clearance_limit(const Vec3& centre, double rho, const std::uint32_t* nodes) {
+    PerLane<double> limits;
+    Warp::each([&](std::uint32_t lane) {
+      limits[lane] = kInfinity;
+      for (std::uint32_t i = lane; i < cell_.node_count; i += kWarpLanes) {
+        const double limit =
+            job_.sweep.clearance_limit(centre, rho, nodes + i, 1, statistics_[lane]);
+        if (limit < limits[lane]) limits[lane] = limit;
+      }
+    });
+    return Warp::least(limits);
+  }
+
+  CLEARWAY_HD std::uint32_t halves() const {
+    return job_.first_point(block_) + kWarpLanes < cell_.count ? 2 : 1;
+  }
+
+  CLEARWAY_HD void empty_queue() {
+    if constexpr (kClearance) {
+      search_points();
+    } else {
+      is_whole_ = !put_on_list();
+      if (is_whole_) put_whole_on_list();
+    }
+    queued_ = 0;
+  }
+
+  CLEARWAY_HD void search_points() {
+    const SweepSubtrees subtrees{shared_.queue, queued_};
+    for (std::uint32_t i = 0; i < halves(); ++i) {
+      const std::uint32_t half = SweepWork::kHalves * block_ + i;
+      if (!job_.sweep.hits_follow_from_clearance()) {
+        SweepHits<Warp>(job_, statistics_).search_half(half, subtrees, false);
+      }
+      SweepClearances<Warp>(job_, half, statistics_).search(subtrees);
+    }
+  }
+
+  /// All of the queue, or nothing.
+  CLEARWAY_HD bool put_on_list() {
+    const SweepWork& work = job_.work;
+    const auto nodes = SweepWork::room<Warp>(&work.counts->nodes, queued_, work.node_capacity);
+    if (!nodes.fits()) return false;
+    const auto entries =
+        SweepWork::room<Warp>(&work.counts->entries, halves(), work.entry_capacity);
+    Warp::each([&](std::uint32_t lane) {
+      for (std::uint32_t i = lane; i < queued_; i += kWarpLanes) {
+        work.nodes[nodes.first + i] = shared_.queue[i];
+      }
+      if (lane >= entries.written()) return;
+      work.entries[entries.first + lane] = {
+          entries.fits() ? SweepWork::kHalves * block_ + lane : SweepWork::kNone, nodes.first,
+          queued_};
+    });
+    return entries.fits();
+  }
+
+  /// The points are then put to all planned nodes.
+  CLEARWAY_HD void put_whole_on_list() {
+    const std::uint32_t first = Warp::add(&job_.work.counts->whole, halves(), SweepWork::kNone);
+    Warp::each([&](std::uint32_t lane) {
+      if (lane >= halves()) return;
+      job_.work.entries[job_.work.entry_capacity + first + lane] = {
+          SweepWork::kHalves * block_ + lane, 0, SweepWork::kWhole};
+    });
+  }
+
+  const SweepPage& job_;
+  std::uint32_t block_;
+  const PageCell& cell_;
+  Shared& shared_;
+  std::uint32_t open_ = 0, queued_ = 0;  ///< how many
+  bool is_whole_ = false;                ///< because the list was full
+  PerLane<SweepStatistics>& statistics_;
+};
+
+}  // namespace clearway

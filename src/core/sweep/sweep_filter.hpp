@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/sweep/model_field.hpp"
+#include "core/sweep/model_tree.hpp"
+#include "core/sweep/motion_tree.hpp"
+#include "core/sweep/sweep_ref.hpp"
+
+namespace clearway {
+
+/// The inverse query, answered for ranges of poses and boxes of environment points at once by
+/// going down the motion tree with the tests of SweepRef.
+class SweepFilter {
+ public:
+  /// All arguments outlive it. cloud: for the largest coordinates, which the rounding bound needs.
+  SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
+              const ModelField& field, const PackedCloud& cloud);
+
+  const Query& query() const { return query_; }
+  const SweepRef& ref() const { return ref_; }
+  const MotionTree& motion() const { return motion_; }
+  const ModelTree& model() const { return model_; }
+
+  /// The first pose equal to `pose` without another in between. Only with a clearance.
+  std::uint32_t first_equal_pose(std::uint32_t pose) const { return first_equal_pose_[pose]; }
+
+  /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
+  /// clearance be the nearest to one, as fine as the box is small; replaces `out`. In the order of
+  /// the poses when `nodes` are.
+  void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
+              SweepStatistics& statistics) const;
+
+  /// Whether the model touches e at a pose of `nodes`, or between poses on the way from one to the
+  /// next.
+  bool touches(const Vec3& e, std::span<const std::uint32_t> nodes,
+               SweepStatistics& statistics) const;
+
+  /// The smallest pose of `nodes` at or after which the model touches e, or HitSet::kNever. `nodes`
+  /// in the order of their poses.
+  std::uint32_t first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
+                           SweepStatistics& statistics) const;
+
+ private:
+  void narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t node,
+                   std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
+  SweepRef::Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
+                         double& squared_lower) const;
+  bool touches_below(const Vec3& e, std::uint32_t node, SweepStatistics& statistics) const;
+  void first_pose_below(const Vec3& e, std::uint32_t node, std::uint32_t& best,
+                        SweepStatistics& statistics) const;
+
+  const Query& query_;
+  const MotionTree& motion_;
+  const ModelTree& model_;
+  SweepRef ref_;
+  std::vector<std::uint32_t> first_equal_pose_;
+};
+
+}  // namespace clearway

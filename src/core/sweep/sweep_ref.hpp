@@ -1,0 +1,150 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/sweep_bounds.hpp"
+#include "core/sweep/model_field_ref.hpp"
+#include "core/sweep/model_tree_ref.hpp"
+#include "core/sweep/motion_tree_ref.hpp"
+#include "core/sweep/swept_step.hpp"
+
+namespace clearway {
+
+/// How often the steps of a descent were taken.
+struct SweepStatistics {
+  std::uint64_t node_tests = 0;      ///< field look-ups for cells, runs of blocks and blocks
+  std::uint64_t point_tests = 0;     ///< field look-ups for points
+  std::uint64_t exact_tests = 0;     ///< ball searches in the model
+  std::uint64_t points_tested = 0;   ///< points that no block dismissed
+  std::uint64_t resolved_tests = 0;  ///< ball searches that a tolerance spared
+
+  CLEARWAY_HD void add(const SweepStatistics& other) {
+    node_tests += other.node_tests;
+    point_tests += other.point_tests;
+    exact_tests += other.exact_tests;
+    points_tested += other.points_tested;
+    resolved_tests += other.resolved_tests;
+  }
+};
+
+/// The tests of the sweep on data where it lies, on the host or on a device: the inverse query
+/// at one node of the motion tree. e collides with pose i exactly when the model is closer than the
+/// radius to e pulled back by pose i. Bounds: docs/numerics.md ("Sweep").
+struct SweepRef {
+  /// A node of the motion tree is split for a box while it moves more than this many times the
+  /// box's half diagonal.
+  static constexpr double kMotionPerBox = 1.0;
+
+  MotionTreeRef motion;
+  ModelTreeRef model;
+  ModelFieldRef field;
+  double radius;  ///< whatever is closer is a hit; with a tolerance search_radius()
+  double
+      resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
+  double clearance;   ///< 0: not asked for
+  double rounding;    ///< metres, of a test of one point at one pose
+  bool first_pose;
+  bool between_poses;
+
+  /// Whether the least d2 below the clearance alone says which points collide.
+  CLEARWAY_HD bool hits_follow_from_clearance() const { return clearance >= radius && !first_pose; }
+
+  CLEARWAY_HD bool moves_on(const MotionNode& node) const {
+    return between_poses && node.count == 1 && node.first + 1 < motion.pose_count;
+  }
+
+  enum class BoxClass {
+    kDismissed,  ///< no pose of the node matters
+    kSplit,      ///< to be looked at in halves
+    kKept,       ///< fine enough for a box of this size
+  };
+
+  /// What becomes of a node for the points within rho of `centre`, to which nothing beyond `limit`
+  /// matters.
+  CLEARWAY_HD BoxClass classify_box(const MotionNode& node, const Vec3& centre, double rho,
+                                    double limit) const {
+    const InversePose& back = motion.inverse_poses[node.mid];
+    const double reach = limit + node.delta + rho + rounding;
+    if (farther(back.least, field.bounds(back.apply(centre)).squared_lower, reach)) {
+      return BoxClass::kDismissed;
+    }
+    const bool fine = node.delta <= kMotionPerBox * rho;
+    if (node.count > 1) return fine ? BoxClass::kKept : BoxClass::kSplit;
+    const bool long_step = moves_on(node) && !fine;
+    return long_step &&
+                   !SweptStep(motion, model, node.first, radius, rounding).may_touch(centre, rho)
+               ? BoxClass::kDismissed
+               : BoxClass::kKept;
+  }
+
+  /// A distance beyond which nothing matters to any point within rho of `centre`: the clearance
+  /// asked for, or what a pair found at the middle pose of one of `nodes` keeps them all below;
+  /// never less than a radius still to be searched.
+  CLEARWAY_HD double clearance_limit(const Vec3& centre, double rho, const std::uint32_t* nodes,
+                                     std::uint32_t count, SweepStatistics& statistics) const {
+    double squared = kInfinity;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      ++statistics.node_tests;
+      const std::uint32_t mid = motion.nodes[nodes[i]].mid;
+      const std::uint32_t near = field.bounds(motion.inverse_poses[mid].apply(centre)).near;
+      if (near == ModelFieldRef::kNone) continue;
+      const double here =
+          squared_distance(centre, transform(motion.poses[mid], model.points[near]));
+      if (here < squared) squared = here;
+    }
+    const double upper = std::sqrt(squared) * kRoundedUp + rho + rounding;
+    const double widest = clearance * kRoundedUp;
+    const double limit = upper < widest ? upper : widest;
+    return hits_follow_from_clearance() ? limit : greater_of(limit, radius);
+  }
+
+  enum class Verdict {
+    kDismissed,  ///< no pose of the node touches e, or need not
+    kHitAtMid,   ///< its middle pose does
+    kOpen,       ///< to be looked at in halves, or of a single pose: collides_at decides
+  };
+
+  /// Looks at a node for the point e without a search of the model. squared_lower: of the field at
+  /// the middle pose.
+  CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
+                           double& squared_lower) const {
+    ++statistics.point_tests;
+    const InversePose& back = motion.inverse_poses[node.mid];
+    const ModelFieldRef::Bounds bounds = field.bounds(back.apply(e));
+    squared_lower = bounds.squared_lower;
+    if (farther(back.least, squared_lower, radius + node.delta + rounding)) {
+      return Verdict::kDismissed;
+    }
+    if (bounds.near != ModelFieldRef::kNone &&
+        collides(e, transform(motion.poses[node.mid], model.points[bounds.near]), radius)) {
+      return Verdict::kHitAtMid;
+    }
+    // Not earlier, and only at single poses: the answer must not depend on the nodes looked at.
+    if (resolved_from < radius && node.count == 1 &&
+        farther(back.least, squared_lower, resolved_from + rounding)) {
+      ++statistics.resolved_tests;
+      return Verdict::kDismissed;
+    }
+    return Verdict::kOpen;
+  }
+
+  CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node,
+                           SweepStatistics& statistics) const {
+    double squared_lower;
+    return look(e, node, statistics, squared_lower);
+  }
+
+  /// Whether e collides at a single pose, or on the way from it, that look() left open.
+  CLEARWAY_HD bool collides_at(const Vec3& e, const MotionNode& node) const {
+    if (moves_on(node)) {
+      return SweptStep(motion, model, node.first, radius, rounding).touches(e);
+    }
+    const InversePose& back = motion.inverse_poses[node.mid];
+    const Pose& pose = motion.poses[node.mid];
+    const double ball = (resolved_from + rounding) / back.least * kRoundedUp;
+    return model.any_within(back.apply(e), ball * ball * kRoundedUp,
+                            [&](const Vec3& m) { return collides(e, transform(pose, m), radius); });
+  }
+};
+
+}  // namespace clearway

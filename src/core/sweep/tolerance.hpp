@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "clearway/pose.hpp"
+#include "clearway/query.hpp"
+#include "core/geometry/box.hpp"
+
+/// What a query with a tolerance t allows (docs/numerics.md, "Tolerance"): distances may grow by
+/// t when model points and poses are left out, and whatever comes closer than about r + t may be
+/// taken.
+namespace clearway {
+
+/// What is searched for, metres: the radius, or with a tolerance the largest distance at which a
+/// point may be taken. Nothing farther is.
+double search_radius(const Query& query);
+
+/// Indices of some of the poses, ascending: at each of the others no point of the box `model` is
+/// farther than `most_motion` from where it is at one of these, rounding included. Equal poses that
+/// follow each other are one, whatever most_motion is.
+std::vector<std::uint32_t> kept_poses(std::span<const Pose> poses, const Box& model,
+                                      double most_motion);
+
+/// Indices of some of the points, ascending: each of the others lies within `cover` of one of
+/// these, rounding included. Equal points are one, whatever the cover is. Takes 12 bytes a point
+/// meanwhile.
+std::vector<std::uint32_t> kept_points(std::span<const Vec3> model, double cover);
+
+/// A query with no more of model and trajectory than its tolerance needs: half of the tolerance
+/// is spent on each.
+class ThinnedQuery {
+ public:
+  /// `query` has a tolerance and a model; its data may go afterwards.
+  explicit ThinnedQuery(const Query& query);
+  ThinnedQuery(const ThinnedQuery&) = delete;
+  ThinnedQuery& operator=(const ThinnedQuery&) = delete;
+
+  /// Valid while this lives.
+  const Query& query() const { return query_; }
+  std::uint64_t allocated_bytes() const {
+    return query_.poses.capacity() * sizeof(Pose) + query_.model.capacity() * sizeof(Vec3);
+  }
+
+ private:
+  Query query_;
+};
+
+}  // namespace clearway

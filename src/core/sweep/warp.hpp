@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/util/macros.hpp"
+
+namespace clearway {
+
+inline constexpr std::uint32_t kWarpLanes = 32;
+
+/// Warp code is written once, as steps that all lanes take: `each` and `ballot` call a function
+/// with the lane's number, values of a lane live in a PerLane. Here the lanes of a CUDA warp, whose
+/// threads all come along; everything between the steps is computed alike by all of them.
+struct CudaWarp {
+  template <typename Value>
+  struct PerLane {
+    Value value{};
+    CLEARWAY_HD Value& operator[](std::uint32_t) { return value; }
+  };
+
+  template <typename Step>
+  CLEARWAY_HD static void each([[maybe_unused]] Step step) {
+#ifdef __CUDA_ARCH__
+    step(threadIdx.x % kWarpLanes);
+    __syncwarp();
+#endif
+  }
+
+  /// The lanes for which `test` is true, as bits.
+  template <typename Test>
+  CLEARWAY_HD static std::uint32_t ballot([[maybe_unused]] Test test) {
+#ifdef __CUDA_ARCH__
+    return __ballot_sync(0xffffffff, test(threadIdx.x % kWarpLanes));
+#else
+    return 0;
+#endif
+  }
+
+  /// The least of the lanes' values.
+  CLEARWAY_HD static double least([[maybe_unused]] PerLane<double>& values) {
+#ifdef __CUDA_ARCH__
+    double value = values.value;
+    for (int apart = kWarpLanes / 2; apart > 0; apart /= 2) {
+      const double other = __shfl_xor_sync(0xffffffff, value, apart);
+      if (other < value) value = other;
+    }
+    return value;
+#else
+    return 0;
+#endif
+  }
+
+  /// Replaces every lane's value by the sum of those of the lanes before it. Returns the sum of
+  /// all.
+  CLEARWAY_HD static std::uint32_t sum_before([[maybe_unused]] PerLane<std::uint32_t>& values) {
+#ifdef __CUDA_ARCH__
+    const std::uint32_t lane = threadIdx.x % kWarpLanes;
+    std::uint32_t sum = values.value;
+    for (std::uint32_t apart = 1; apart < kWarpLanes; apart *= 2) {
+      const std::uint32_t other = __shfl_up_sync(0xffffffff, sum, apart);
+      if (lane >= apart) sum += other;
+    }
+    values.value = sum - values.value;
+    return __shfl_sync(0xffffffff, sum, kWarpLanes - 1);
+#else
+    return 0;
+#endif
+  }
+
+  /// Adds n, once for the warp, to a counter that other warps add to, unless it is at `full`
+  /// already, so that it cannot overflow. What it was before.
+  CLEARWAY_HD static std::uint32_t add([[maybe_unused]] std::uint32_t* counter,
+                                       [[maybe_unused]] std::uint32_t n,
+                                       [[maybe_unused]] std::uint32_t full) {
+#ifdef __CUDA_ARCH__
+    std::uint32_t before = 0;
+    if (threadIdx.x % kWarpLanes == 0) {
+      before = *static_cast<volatile std::uint32_t*>(counter);
+      if (before < full) before = atomicAdd(counter, n);
+    }
+    return __shfl_sync(0xffffffff, before, 0);
+#else
+    return 0;
+#endif
+  }
+};
+
+/// The lanes as a loop: the same code without a GPU.
+struct HostWarp {
+  template <typename Value>
+  struct PerLane {
+    Value values[kWarpLanes]{};
+    Value& operator[](std::uint32_t lane) { return values[lane]; }
+  };
+
+  template <typename Step>
+  static void each(Step step) {
+    for (std::uint32_t lane = 0; lane < kWarpLanes; ++lane) step(lane);
+  }
+
+  template <typename Test>
+  static std::uint32_t ballot(Test test) {
+    std::uint32_t bits = 0;
+    for (std::uint32_t lane = 0; lane < kWarpLanes; ++lane) {
+      bits |= static_cast<std::uint32_t>(static_cast<bool>(test(lane))) << lane;
+    }
+    return bits;
+  }
+
+  static double least(PerLane<double>& values) {
+    double least = values[0];
+    for (const double value : values.values) least = value < least ? value : least;
+    return least;
+  }
+
+  static std::uint32_t sum_before(PerLane<std::uint32_t>& values) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t& value : values.values) {
+      const std::uint32_t before = sum;
+      sum += value;
+      value = before;
+    }
+    return sum;
+  }
+
+  static std::uint32_t add(std::uint32_t* counter, std::uint32_t n, std::uint32_t full) {
+    const std::uint32_t before = *counter;
+    if (before < full) *counter += n;
+    return before;
+  }
+};
+
+}  // namespace clearway

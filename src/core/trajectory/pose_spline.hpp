@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "clearway/pose.hpp"
+
+namespace clearway {
+
+/// The way from one pose to the next: a cubic in position, a cumulative cubic in rotation
+/// (docs/trajectory.md).
+class PoseCurve {
+ public:
+  /// 0 <= t <= 1; at 0 and 1 the two poses, up to rounding.
+  Pose at(double t) const;
+
+ private:
+  friend class PoseSpline;
+
+  Eigen::Vector3d position_;
+  Eigen::Quaterniond rotation_;
+  Eigen::Matrix3d stretch_, stretch_change_;
+  std::array<Eigen::Vector3d, 3> moves_;  ///< metres
+  std::array<Eigen::Vector3d, 3> turns_;  ///< rotation vectors in the model's frame, radians
+};
+
+/// A curve through all poses of a trajectory with continuous velocity, in position and rotation.
+/// Each way depends on two poses to either side of it. Stretching (what a pose is beside a
+/// rotation) is interpolated by itself. Sources: Kim, Kim and Shin 1995 (rotation), Lee 1989
+/// (parametrisation), Fritsch and Carlson 1980 (limit of velocities), Shoemake and Duff 1992
+/// (stretching).
+class PoseSpline {
+ public:
+  /// motions: how far the model moves from each pose to the next, metres, finite, one fewer than
+  /// poses; 0 where it does not. `poses` outlive the spline and are invertible.
+  PoseSpline(std::span<const Pose> poses, std::span<const double> motions);
+
+  /// From pose i to pose i + 1. Throws InputError where one mirrors the model and the other does
+  /// not.
+  PoseCurve between(std::size_t i) const;
+
+ private:
+  /// Change a unit of the parameter.
+  struct Velocity {
+    Eigen::Vector3d linear, angular;  ///< the latter in the model's frame
+  };
+  /// A stretch of the parameter between two different poses.
+  struct Leg {
+    std::size_t from;
+    double span;
+    Velocity mean;
+  };
+
+  Velocity at_knot(const std::vector<Leg>& legs, std::size_t knot) const;
+  static Velocity weighted(const Velocity& a, double weight_a, const Velocity& b, double weight_b);
+  static Velocity limited(const Velocity& velocity, const Velocity& before, const Velocity& after);
+
+  std::span<const Pose> poses_;
+  std::vector<double> spans_;         ///< of the parameter, pose to pose
+  std::vector<Velocity> velocities_;  ///< a pose
+};
+
+}  // namespace clearway

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+
+#include "clearway/pose.hpp"
+#include "core/geometry/box.hpp"
+
+namespace clearway {
+
+/// displacement_bound, but 0 for equal poses, whose model points fall together exactly. Metres.
+double motion_bound(const Box& model, const Pose& a, const Pose& b);
+
+/// The greatest motion_bound of two consecutive poses; 0 for fewer than two.
+double largest_motion(const Box& model, std::span<const Pose> poses);
+
+}  // namespace clearway

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "core/util/macros.hpp"
+
+/// Bits of a word, and words that the threads of a device share.
+namespace clearway {
+
+/// Or-s bits into a word that other threads of a device or-into at the same time.
+CLEARWAY_HD inline void or_into(std::uint64_t* word, std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  atomicOr(reinterpret_cast<unsigned long long*>(word), static_cast<unsigned long long>(bits));
+#else
+  *word |= bits;
+#endif
+}
+
+/// Lowers a value that other threads of a device lower at the same time.
+CLEARWAY_HD inline void lower_to(std::uint32_t* value, std::uint32_t to) {
+#ifdef __CUDA_ARCH__
+  atomicMin(value, to);
+#else
+  if (to < *value) *value = to;
+#endif
+}
+
+/// Index of the lowest set bit; there is one.
+CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  return static_cast<std::uint32_t>(__ffsll(static_cast<long long>(bits)) - 1);
+#else
+  return static_cast<std::uint32_t>(std::countr_zero(bits));
+#endif
+}
+
+/// Set bits.
+CLEARWAY_HD inline std::uint32_t count_of(std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  return static_cast<std::uint32_t>(__popcll(bits));
+#else
+  return static_cast<std::uint32_t>(std::popcount(bits));
+#endif
+}
+
+}  // namespace clearway

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/util/progress.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway {
+
+/// Writes the colliding points of `result` to `output`, in the format that the ending of its name
+/// says, in constant memory and in the order of the result:
+/// - .las  the integers of the source, with its scale, offset and CRS; first_pose as extra bytes
+/// - .ply  binary little-endian, double x y z, uint first_pose
+/// - .xyz  text, "x y z" a line
+/// - .csv  text with a header, source,x,y,z and first_pose
+/// first_pose only where the result has it. Text holds the shortest digits that give back each
+/// double. The file appears under its name when complete. Throws UsageError for another ending and,
+/// unless `overwrite`, for an existing output; InputError for a malformed result.
+void export_result(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
+                   Progress& progress);
+
+/// Writes the clearances of `result` as text with a header, source,distance,pose, ascending by
+/// source; distance in metres. The name must end in .csv, and the result must have clearances: if
+/// not, UsageError. Otherwise like export_result.
+void export_clearances(const ResultReader& result, const std::filesystem::path& output,
+                       bool overwrite, Progress& progress);
+
+}  // namespace clearway

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "io/system/file.hpp"
+
+namespace clearway {
+
+/// Little-endian values appended through a buffer to a file, front to back. The file stays the
+/// caller's; what was not flushed is lost. Throws ResourceError as File does.
+class ByteWriter {
+ public:
+  static_assert(std::endian::native == std::endian::little);
+
+  explicit ByteWriter(const File& file) : file_(file) { buffer_.reserve(kBufferBytes); }
+
+  template <typename Value>
+  requires std::is_trivially_copyable_v<Value>
+  void put(const Value& value) { std::memcpy(room(sizeof value), &value, sizeof value); }
+
+  /// The text's first `bytes` bytes, zeros where it is shorter.
+  void put_text(std::string_view text, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i) put(i < text.size() ? text[i] : '\0');
+  }
+
+  void flush() {
+    file_.write(std::as_bytes(std::span(buffer_)));
+    buffer_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kBufferBytes = 1 << 20;
+
+  /// bytes <= kBufferBytes
+  std::byte* room(std::size_t bytes) {
+    if (buffer_.size() + bytes > kBufferBytes) flush();
+    buffer_.resize(buffer_.size() + bytes);
+    return buffer_.data() + buffer_.size() - bytes;
+  }
+
+  const File& file_;
+  std::vector<std::byte> buffer_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,263 @@
+#include "io/formats/las/las_header.hpp"
+
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "io/formats/byte_load.hpp"
+#include "io/formats/las/geotiff_keys.hpp"
+#include "io/formats/las/wkt.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kHeaderBytes10 = 227;  // LAS 1.0 to 1.2
+constexpr std::size_t kHeaderBytes13 = 235;
+constexpr std::size_t kHeaderBytes14 = 375;
+constexpr std::uint16_t kSmallestRecord[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+constexpr std::uint16_t kInternalWaveforms = 2;  // of the global encoding
+
+[[noreturn]] void refuse_laz(const InputBuffer& input, std::uint64_t byte) {
+  refuse_byte(
+      input.name(), byte,
+      "the points are compressed (LAZ), which is not read; expected uncompressed LAS. Convert "
+      "it (for example `pdal translate scan.laz scan.las`), or have PDAL write uncompressed "
+      "LAS into a pipe and give `-` as the input");
+}
+
+[[noreturn]] void refuse_cut(const InputBuffer& input, const std::string& expected) {
+  refuse(input.name(),
+         "ends at byte " + std::to_string(input.end_position()) + "; expected " + expected);
+}
+
+std::span<const std::byte> take_header(InputBuffer& input, std::size_t bytes) {
+  const auto taken = input.take(bytes);
+  if (taken.empty())
+    refuse_cut(input, "a LAS header of at least " + std::to_string(bytes) + " bytes");
+  return taken;
+}
+
+/// Checks the first 227 bytes as far as they decide how the rest is read.
+void check_kind(const InputBuffer& input, const std::byte* header) {
+  if (std::memcmp(header, "LASF", 4) != 0) {
+    refuse_byte(input.name(), 0, "expected the signature LASF of a LAS file");
+  }
+  const unsigned major = load<std::uint8_t>(header + 24);
+  const unsigned minor = load<std::uint8_t>(header + 25);
+  if (major != 1 || minor > 4) {
+    refuse_byte(input.name(), 24,
+                "version " + std::to_string(major) + "." + std::to_string(minor) +
+                    "; expected LAS 1.0 to 1.4");
+  }
+  const unsigned format = load<std::uint8_t>(header + 104);
+  if ((format & 0xC0u) != 0) refuse_laz(input, 104);
+  if (format >= std::size(kSmallestRecord)) {
+    refuse_byte(input.name(), 104, "point format " + std::to_string(format) + "; expected 0 to 10");
+  }
+  const unsigned record = load<std::uint16_t>(header + 105);
+  if (record < kSmallestRecord[format]) {
+    refuse_byte(input.name(), 105,
+                "point records of " + std::to_string(record) + " bytes; expected at least " +
+                    std::to_string(kSmallestRecord[format]) + " for point format " +
+                    std::to_string(format));
+  }
+}
+
+Quantisation read_quantisation(const InputBuffer& input, const std::byte* header) {
+  Quantisation result;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const unsigned scale_byte = 131 + 8 * axis;
+    const unsigned offset_byte = 155 + 8 * axis;
+    result.scale[axis] = load<double>(header + scale_byte);
+    result.offset[axis] = load<double>(header + offset_byte);
+    const std::string name(1, static_cast<char>('x' + axis));
+    if (!std::isfinite(result.scale[axis]) || result.scale[axis] <= 0) {
+      refuse_byte(input.name(), scale_byte,
+                  name + " scale is " + shown(result.scale[axis]) + "; expected a positive number");
+    }
+    if (!std::isfinite(result.offset[axis])) {
+      refuse_byte(input.name(), offset_byte,
+                  name + " offset is " + shown(result.offset[axis]) + "; expected a finite number");
+    }
+  }
+  return result;
+}
+
+/// rest: the header from byte 227 on.
+void read_version_14(const InputBuffer& input, std::span<const std::byte> rest,
+                     LasPublicHeader& header) {
+  const std::byte* bytes = rest.data() - kHeaderBytes10;
+  const std::uint64_t points = load<std::uint64_t>(bytes + 247);
+  if (header.points != 0 && header.points != points) {
+    refuse_byte(input.name(), 247,
+                std::to_string(points) + " points declared, but " + std::to_string(header.points) +
+                    " at byte 107; expected equal counts, or 0 there");
+  }
+  header.points = points;
+  header.tail_offset = load<std::uint64_t>(bytes + 235);
+  header.tail_count = load<std::uint32_t>(bytes + 243);
+}
+
+void check_layout(const InputBuffer& input, const LasPublicHeader& header) {
+  if (header.points_offset < header.header_bytes) {
+    refuse_byte(input.name(), 96,
+                "points start at byte " + std::to_string(header.points_offset) +
+                    "; expected them behind the header of " + std::to_string(header.header_bytes) +
+                    " bytes");
+  }
+  const std::uint64_t room = std::numeric_limits<std::int64_t>::max() - header.points_offset;
+  if (header.points > room / header.record_bytes) {
+    refuse(input.name(), "declares " + std::to_string(header.points) + " points of " +
+                             std::to_string(header.record_bytes) +
+                             " bytes; expected a count that a file can hold");
+  }
+  if (header.tail_count > 0 && header.tail_offset < header.points_end()) {
+    refuse(input.name(), "extended variable length records start at byte " +
+                             std::to_string(header.tail_offset) +
+                             "; expected them behind the points, which end at byte " +
+                             std::to_string(header.points_end()));
+  }
+  if (input.size() && *input.size() < header.points_end()) {
+    refuse(input.name(), "ends at byte " + std::to_string(*input.size()) + "; expected " +
+                             std::to_string(header.points_end()) + " bytes for " +
+                             std::to_string(header.points) + " points of " +
+                             std::to_string(header.record_bytes) + " bytes from byte " +
+                             std::to_string(header.points_offset));
+  }
+}
+
+/// A user id or a text of fixed length, padded with zeros.
+std::string_view padded_text(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return text.substr(0, text.find('\0'));
+}
+
+/// Keeps what a record says of the CRS. payload: all of the record behind its header.
+void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
+                 LasCrs& crs) {
+  constexpr unsigned kWkt = 2112;
+  constexpr unsigned kGeoKeys = 34735;
+  if (user == "LASF_Projection" && id == kGeoKeys) crs.geotiff_unit = horizontal_unit(payload);
+  if (id != kWkt) return;
+  std::string* wkt = user == "LASF_Projection" ? &crs.wkt
+                     : user == "liblas"        ? &crs.foreign_wkt
+                                               : nullptr;
+  if (wkt && wkt->empty()) *wkt = padded_text(payload);
+}
+
+bool is_about_crs(std::string_view user, unsigned id) {
+  return (user == "LASF_Projection" || user == "liblas") && (id == 2112 || id == 34735);
+}
+
+}  // namespace
+
+std::uint64_t LasPublicHeader::points_end() const { return points_offset + points * record_bytes; }
+
+void LasCrs::describe(CloudInfo& info) const {
+  info.crs_wkt = wkt.empty() ? foreign_wkt : wkt;
+  info.unit = horizontal_unit(std::string_view(info.crs_wkt));
+  if (info.unit == LengthUnit::kUnknown) info.unit = geotiff_unit;
+}
+
+LasPublicHeader read_las_header(InputBuffer& input) {
+  LasPublicHeader header{};
+  const std::byte* bytes = take_header(input, kHeaderBytes10).data();
+  check_kind(input, bytes);
+  const unsigned minor = load<std::uint8_t>(bytes + 25);
+  const bool internal_waveforms = (load<std::uint16_t>(bytes + 6) & kInternalWaveforms) != 0;
+  header.header_bytes = load<std::uint16_t>(bytes + 94);
+  header.points_offset = load<std::uint32_t>(bytes + 96);
+  header.vlr_count = load<std::uint32_t>(bytes + 100);
+  header.record_bytes = load<std::uint16_t>(bytes + 105);
+  header.points = load<std::uint32_t>(bytes + 107);
+  header.quantisation = read_quantisation(input, bytes);
+
+  const std::size_t least = minor == 4 ? kHeaderBytes14 : kHeaderBytes10;
+  if (header.header_bytes < least) {
+    refuse_byte(input.name(), 94,
+                "header of " + std::to_string(header.header_bytes) + " bytes; expected at least " +
+                    std::to_string(least) + " for LAS 1." + std::to_string(minor));
+  }
+  if (minor == 4) {
+    read_version_14(input, take_header(input, kHeaderBytes14 - kHeaderBytes10), header);
+  } else if (minor == 3 && header.header_bytes >= kHeaderBytes13 && internal_waveforms) {
+    // LAS 1.3 has one extended record at most: the waveforms.
+    header.tail_offset = load<std::uint64_t>(take_header(input, 8).data());
+    header.tail_count = header.tail_offset == 0 ? 0 : 1;
+  }
+  check_layout(input, header);
+  if (!input.skip(header.header_bytes - input.position())) {
+    refuse_cut(input, "a header of " + std::to_string(header.header_bytes) + " bytes");
+  }
+  return header;
+}
+
+void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs) {
+  constexpr std::size_t kVlrHeaderBytes = 54;
+  for (std::uint32_t i = 0; i < header.vlr_count; ++i) {
+    const std::uint64_t start = input.position();
+    const std::string which = "variable length record " + std::to_string(i + 1) + " of " +
+                              std::to_string(header.vlr_count);
+    const std::uint64_t room = header.points_offset - start;
+    if (room < kVlrHeaderBytes) {
+      refuse_byte(input.name(), start,
+                  which + " does not fit before the points at byte " +
+                      std::to_string(header.points_offset) + "; expected 54 bytes for its header");
+    }
+    const auto head = input.take(kVlrHeaderBytes);
+    if (head.empty()) refuse_cut(input, which);
+    const std::string user(padded_text(head.subspan(2, 16)));
+    const unsigned id = load<std::uint16_t>(head.data() + 18);
+    const std::size_t length = load<std::uint16_t>(head.data() + 20);
+    if (length > room - kVlrHeaderBytes) {
+      refuse_byte(input.name(), start,
+                  which + " has " + std::to_string(length) +
+                      " bytes; expected it to end before the " + "points at byte " +
+                      std::to_string(header.points_offset));
+    }
+    if (user == "laszip encoded") refuse_laz(input, start);
+    const auto payload = input.take(length);
+    if (payload.size() != length) refuse_cut(input, which);
+    note_record(user, id, payload, crs);
+  }
+  if (!input.skip(header.points_offset - input.position())) {
+    refuse_cut(input, "points from byte " + std::to_string(header.points_offset));
+  }
+}
+
+void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs) {
+  constexpr std::size_t kEvlrHeaderBytes = 60;
+  if (header.tail_count == 0) return;
+  if (!input.skip(header.tail_offset - input.position())) {
+    refuse_cut(input,
+               "extended variable length records from byte " + std::to_string(header.tail_offset));
+  }
+  for (std::uint32_t i = 0; i < header.tail_count; ++i) {
+    const std::uint64_t start = input.position();
+    const std::string which = "extended variable length record " + std::to_string(i + 1) + " of " +
+                              std::to_string(header.tail_count) + " from byte " +
+                              std::to_string(start);
+    const auto head = input.take(kEvlrHeaderBytes);
+    if (head.empty()) refuse_cut(input, which);
+    const std::string user(padded_text(head.subspan(2, 16)));
+    const unsigned id = load<std::uint16_t>(head.data() + 18);
+    const std::uint64_t length = load<std::uint64_t>(head.data() + 20);
+    std::span<const std::byte> payload;
+    if (is_about_crs(user, id)) {
+      if (length > InputBuffer::kCapacity) {
+        refuse_byte(input.name(), start + 20,
+                    "a coordinate reference system of " + std::to_string(length) +
+                        " bytes; expected at most " + std::to_string(InputBuffer::kCapacity));
+      }
+      payload = input.take(length);
+      if (payload.size() != length)
+        refuse_cut(input, which + " with its " + std::to_string(length) + " bytes");
+      note_record(user, id, payload, crs);
+    } else if (!input.skip(length)) {
+      refuse_cut(input, which + " with its " + std::to_string(length) + " bytes");
+    }
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,127 @@
+#include "io/formats/las/wkt.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kRoot = static_cast<std::size_t>(-1);
+
+/// KEYWORD[value, ..., child, ...]; nodes stand in the order of the text.
+struct Node {
+  std::string keyword;  ///< upper case
+  std::size_t parent;
+  std::vector<std::string_view> values;  ///< bare words and numbers, without quoted strings
+};
+
+bool is_word(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '.' || c == '-' || c == '+';
+}
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
+  return result;
+}
+
+/// Without recursion, so that no text can exhaust the stack. Unbalanced brackets end the parsing.
+std::vector<Node> parse(std::string_view text) {
+  std::vector<Node> nodes;
+  std::size_t open = kRoot;
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    if (c == '"') {
+      const std::size_t close = text.find('"', at + 1);
+      if (close == std::string_view::npos) break;
+      at = close + 1;
+    } else if (is_word(c)) {
+      std::size_t end = at;
+      while (end < text.size() && is_word(text[end])) ++end;
+      const std::string_view word = text.substr(at, end - at);
+      at = end;
+      while (at < text.size() && text[at] == ' ') ++at;
+      if (at < text.size() && (text[at] == '[' || text[at] == '(')) {
+        nodes.push_back({upper(word), open, {}});
+        open = nodes.size() - 1;
+        ++at;
+      } else if (open != kRoot) {
+        nodes[open].values.push_back(word);
+      }
+    } else {
+      if (c == ']' || c == ')') {
+        if (open == kRoot) break;
+        open = nodes[open].parent;
+      }
+      ++at;
+    }
+  }
+  return nodes;
+}
+
+bool is_one_of(const Node& node, std::initializer_list<std::string_view> keywords) {
+  return std::find(keywords.begin(), keywords.end(), node.keyword) != keywords.end();
+}
+
+std::optional<std::size_t> find(const std::vector<Node>& nodes,
+                                std::initializer_list<std::string_view> keywords) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (is_one_of(nodes[i], keywords)) return i;
+  }
+  return std::nullopt;
+}
+
+LengthUnit unit_of(const Node& node) {
+  double metres = 0;
+  if (node.values.empty()) return LengthUnit::kUnknown;
+  const std::string_view text = node.values.front();
+  std::from_chars(text.data(), text.data() + text.size(), metres);
+  const auto is = [&](double factor) { return std::abs(metres - factor) < 1e-8 * factor; };
+  if (is(1)) return LengthUnit::kMetre;
+  if (is(0.3048)) return LengthUnit::kFoot;
+  if (is(1200.0 / 3937.0)) return LengthUnit::kUsSurveyFoot;
+  return LengthUnit::kUnknown;
+}
+
+/// The unit that stands in the system itself, or else in its first axis that has one.
+LengthUnit unit_within(const std::vector<Node>& nodes, std::size_t system) {
+  for (const Node& node : nodes) {
+    if (node.parent == system && is_one_of(node, {"UNIT", "LENGTHUNIT"})) return unit_of(node);
+  }
+  for (const Node& node : nodes) {
+    if (!is_one_of(node, {"UNIT", "LENGTHUNIT"}) || node.parent == kRoot) continue;
+    const Node& axis = nodes[node.parent];
+    if (axis.keyword == "AXIS" && axis.parent == system) return unit_of(node);
+  }
+  return LengthUnit::kUnknown;
+}
+
+bool has_cartesian_axes(const std::vector<Node>& nodes, std::size_t system) {
+  return std::any_of(nodes.begin(), nodes.end(), [&](const Node& node) {
+    return node.keyword == "CS" && node.parent == system && !node.values.empty() &&
+           upper(node.values.front()) == "CARTESIAN";
+  });
+}
+
+}  // namespace
+
+LengthUnit horizontal_unit(std::string_view wkt) {
+  const std::vector<Node> nodes = parse(wkt);
+  const auto metric = find(nodes, {"PROJCS", "PROJCRS", "PROJECTEDCRS", "GEOCCS", "LOCAL_CS",
+                                   "ENGCRS", "ENGINEERINGCRS"});
+  if (metric) return unit_within(nodes, *metric);
+  const auto geodetic = find(nodes, {"GEODCRS", "GEODETICCRS"});
+  if (geodetic && has_cartesian_axes(nodes, *geodetic)) return unit_within(nodes, *geodetic);
+  if (geodetic || find(nodes, {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS"})) return LengthUnit::kDegree;
+  return LengthUnit::kUnknown;
+}
+
+}  // namespace clearway

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/formats/input_buffer.hpp"
+
+namespace clearway {
+
+enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
+
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+std::size_t size_bytes(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type;                       ///< of a list: of its items
+  std::optional<PlyType> list_count;  ///< type of the number of items; none: not a list
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count;
+  std::vector<PlyProperty> properties;
+
+  /// Bytes of one element in a binary file; none where a list makes it vary.
+  std::optional<std::size_t> fixed_bytes() const;
+  /// The least bytes of one element in a binary file.
+  std::size_t least_bytes() const;
+};
+
+struct PlyHeader {
+  PlyFormat format;
+  std::vector<PlyElement> elements;
+  std::size_t vertex;          ///< index of the element named vertex
+  std::size_t coordinates[3];  ///< indices of its properties x, y, z, all scalar
+
+  const PlyElement& vertices() const { return elements[vertex]; }
+};
+
+/// Reads the header and leaves the input behind it. Throws InputError with the line for anything
+/// malformed and where there is no element vertex with x, y and z.
+/// Source: G. Turk, The PLY Polygon File Format, 1994, with the later names of types.
+PlyHeader read_ply_header(InputBuffer& input);
+
+}  // namespace clearway

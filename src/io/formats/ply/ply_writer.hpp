@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "clearway/vec3.hpp"
+#include "io/formats/byte_writer.hpp"
+#include "io/system/file.hpp"
+
+namespace clearway {
+
+enum class PlyCoordinates { kFloat32, kFloat64 };
+
+/// What a PLY file's header has to say before the first point is written.
+struct PlyOutput {
+  std::uint64_t points = 0;
+  PlyCoordinates coordinates = PlyCoordinates::kFloat64;
+  bool first_pose = false;  ///< adds the property "first_pose", uint
+  std::string comment{};    ///< one line; empty: none
+};
+
+/// Writes a point cloud as binary little-endian PLY, front to back: the element "vertex" with the
+/// properties x, y, z (double, or float rounded to nearest) and, where the header asks, first_pose
+/// (uint). Buffered; the file stays the caller's.
+class PlyWriter {
+ public:
+  PlyWriter(const File& file, const PlyOutput& header);
+
+  /// first_pose: as many as points where the header has it, empty otherwise.
+  void write(std::span<const Vec3> points, std::span<const std::uint32_t> first_pose = {});
+
+  /// Flushes. Throws std::logic_error unless exactly header.points points were written.
+  void finish();
+
+ private:
+  ByteWriter out_;
+  PlyOutput header_;
+  std::uint64_t written_ = 0;
+};
+
+}  // namespace clearway

@@ -1,0 +1,49 @@
+#include "io/formats/point_reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "io/formats/input_buffer.hpp"
+#include "io/formats/las/las_reader.hpp"
+#include "io/formats/ply/ply_reader.hpp"
+#include "io/formats/point_formats.hpp"
+#include "io/formats/text/xyz_reader.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+PointFormat format_of(const File& file, const std::filesystem::path& path) {
+  std::array<std::byte, 16> bytes{};
+  const std::span<std::byte> first(bytes.data(),
+                                   std::min<std::uint64_t>(bytes.size(), file.size_bytes()));
+  file.read_at(0, first);
+  auto format = format_of_content(first);
+  if (!format) format = format_of_name(path);
+  if (!format) {
+    refuse(file.name(),
+           "unknown format of points; expected LAS, PLY, or text with the ending xyz, pts, asc, "
+           "txt or csv");
+  }
+  return *format;
+}
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) {
+  File file = File::open_for_reading(path);
+  if (!file.is_regular()) return open_las_stream(std::move(file));
+  const PointFormat format = format_of(file, path);
+  refuse_unless_read(format, file.name());
+  InputBuffer input(std::move(file), InputBuffer::Access::kSeek);
+  switch (format) {
+    case PointFormat::kLas:
+      return read_las(std::move(input));
+    case PointFormat::kPly:
+      return read_ply(std::move(input));
+    default:
+      return read_xyz(std::move(input));
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/vec3.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/system/file.hpp"
+
+namespace clearway {
+
+enum class LengthUnit { kUnknown, kMetre, kFoot, kUsSurveyFoot, kDegree };
+
+/// What a point cloud file says of itself before its points. Bounds in headers are not among it:
+/// they are never trusted.
+struct CloudInfo {
+  std::optional<Quantisation> quantisation;      ///< where points are stored as integers
+  std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
+  std::string crs_wkt;                           ///< as found; empty where there is none
+  LengthUnit unit = LengthUnit::kUnknown;        ///< of the horizontal coordinates
+  std::uint64_t faces = 0;                       ///< of a mesh, which are not read
+};
+
+/// Consecutive points of a file, in its order: integers where the file has a quantisation,
+/// otherwise positions; the other vector is empty.
+struct PointBatch {
+  std::vector<std::array<std::int32_t, 3>> quanta;
+  std::vector<Vec3> positions;
+
+  std::size_t size() const { return quanta.size() + positions.size(); }
+};
+
+/// Reads the points of one file, front to back, in constant memory. Non-finite positions are
+/// delivered as they are; the caller counts them. Malformed input throws InputError with file, line
+/// or byte, and what was expected; nothing is skipped silently.
+class PointReader {
+ public:
+  static constexpr std::size_t kBatchPoints = 1 << 16;
+
+  virtual ~PointReader() = default;
+  virtual const CloudInfo& info() const = 0;
+  /// Fills `batch` with up to kBatchPoints points; false, and an empty batch, at the end.
+  virtual bool read(PointBatch& batch) = 0;
+  /// Back to the first point. Throws ResourceError where the input cannot seek.
+  virtual void rewind() = 0;
+};
+
+/// Opens a file by its content, where the content tells, and by the ending of its name otherwise:
+/// LAS 1.0-1.4, PLY, XYZ and PTS text. What is no regular file is read as by open_las_stream. LAZ
+/// and unknown formats throw InputError with advice.
+std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path);
+
+/// Reads LAS from a stream that cannot seek, for example standard input. A CRS that only a record
+/// behind the points holds (LAS 1.4) is in info() once read() has returned false.
+std::unique_ptr<PointReader> open_las_stream(File stream);
+
+/// The point files of a list of inputs in the order that counts: the inputs as given, a folder's
+/// files in byte order of their names (not recursive; hidden files, and files whose ending is not
+/// that of a point format alone, such as .md, .txt and .csv, are left out). Throws ResourceError
+/// for a missing input, InputError for a folder without any point file.
+std::vector<std::filesystem::path> list_point_files(
+    const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace clearway

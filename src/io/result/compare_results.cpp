@@ -1,0 +1,140 @@
+#include "io/result/compare_results.hpp"
+
+#include "clearway/error.hpp"
+#include "io/result/result_cursor.hpp"
+#include "io/system/input_error.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+std::string content_text(std::uint64_t count, const char* unit, std::uint64_t hash) {
+  return std::to_string(count) + " " + unit + ", hash " + hash_text(hash);
+}
+
+std::string environment_text(const ResultHeader& header) {
+  return content_text(header.environment_points, "points", header.environment_hash);
+}
+
+std::string quantisation_text(const Quantisation& quantisation) {
+  std::string text = "scale";
+  for (const double scale : quantisation.scale) text.append(" ").append(shown(scale));
+  text += ", offset";
+  for (const double offset : quantisation.offset) text.append(" ").append(shown(offset));
+  return text;
+}
+
+std::string clearance_text(const ResultHeader& header) {
+  return header.clearance > 0 ? shown(header.clearance) + " m" : "not asked for";
+}
+
+std::string tolerance_text(const ResultHeader& header) {
+  if (!(header.tolerance > 0)) return "none: exact";
+  return shown(header.tolerance) + " m, engine " + header.engine;
+}
+
+std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b) {
+  std::vector<QueryDifference> out;
+  const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
+    if (text_a != text_b) out.push_back({std::move(what), std::move(text_a), std::move(text_b)});
+  };
+  differ("model", content_text(a.model_points, "points", a.model_hash),
+         content_text(b.model_points, "points", b.model_hash));
+  differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
+         content_text(b.poses, "poses", b.trajectory_hash));
+  differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");
+  differ("first poses", a.first_pose ? "asked for" : "not asked for",
+         b.first_pose ? "asked for" : "not asked for");
+  differ("clearance", clearance_text(a), clearance_text(b));
+  differ("motion", a.between_poses ? "between poses" : "at poses only",
+         b.between_poses ? "between poses" : "at poses only");
+  differ("tolerance", tolerance_text(a), tolerance_text(b));
+  differ("precision", a.float_precision ? "float" : "exact", b.float_precision ? "float" : "exact");
+  differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
+  differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
+  return out;
+}
+
+class Merge {
+ public:
+  Merge(const ResultReader& a, const ResultReader& b, std::size_t kept)
+      : a_(a), b_(b), kept_(kept) {
+    out_.in_a = a.collisions();
+    out_.in_b = b.collisions();
+    out_.queries = query_differences(a.header(), b.header());
+    if (a.header().first_pose && b.header().first_pose) out_.differing_first_poses = 0;
+  }
+
+  Comparison run() {
+    merge_rows(
+        a_, b_,
+        [&] {
+          ++out_.only_in_a;
+          keep({Kind::kOnlyInA, a_.source(), a_.xyz(), a_.first_pose(), std::nullopt});
+        },
+        [&] {
+          ++out_.only_in_b;
+          keep({Kind::kOnlyInB, b_.source(), b_.xyz(), std::nullopt, b_.first_pose()});
+        },
+        [&] { common(); });
+    return std::move(out_);
+  }
+
+ private:
+  using Kind = PointDifference::Kind;
+
+  void common() {
+    ++out_.common;
+    const PointDifference point{Kind::kFirstPose, a_.source(), a_.xyz(), a_.first_pose(),
+                                b_.first_pose()};
+    if (out_.differing_first_poses && point.first_pose_a != point.first_pose_b) {
+      ++*out_.differing_first_poses;
+      keep(point);
+    }
+    if (a_.xyz() != b_.xyz()) {
+      ++out_.differing_coordinates;
+      keep({Kind::kCoordinates, point.source, point.xyz, point.first_pose_a, point.first_pose_b});
+    }
+  }
+
+  void keep(const PointDifference& point) {
+    if (out_.points.size() < kept_) out_.points.push_back(point);
+  }
+
+  RowCursor a_, b_;
+  std::size_t kept_;
+  Comparison out_;
+};
+
+ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader& b) {
+  ClearanceComparison out;
+  out.in_a = a.clearances();
+  out.in_b = b.clearances();
+  ClearanceCursor from_a(a), from_b(b);
+  merge_rows(
+      from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
+      [&] {
+        ++out.common;
+        const bool same = from_a.distance() == from_b.distance() && from_a.pose() == from_b.pose();
+        if (!same) ++out.differing;
+      });
+  return out;
+}
+
+}  // namespace
+
+Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept) {
+  if (a.header().environment_points != b.header().environment_points ||
+      a.header().environment_hash != b.header().environment_hash) {
+    throw InputError(a.name() + " and " + b.name() + ": results about different environments (" +
+                     environment_text(a.header()) + "; " + environment_text(b.header()) +
+                     "), whose point indices cannot be compared");
+  }
+  Comparison out = Merge(a, b, kept).run();
+  if (a.header().clearance > 0 && b.header().clearance > 0) {
+    out.clearances = compare_clearances(a, b);
+  }
+  return out;
+}
+
+}  // namespace clearway

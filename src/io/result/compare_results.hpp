@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/vec3.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway {
+
+/// Something that two results were asked differently, in words: "radius", "0.1 m", "0.2 m".
+struct QueryDifference {
+  std::string what, a, b;
+};
+
+/// A point that the two results do not say the same of.
+struct PointDifference {
+  enum class Kind { kOnlyInA, kOnlyInB, kFirstPose, kCoordinates };
+
+  Kind kind;
+  std::uint64_t source;
+  Vec3 xyz;                                                 ///< as a has it, where a has it
+  std::optional<std::uint32_t> first_pose_a, first_pose_b;  ///< where that result has it
+};
+
+/// How the clearances of two results differ.
+struct ClearanceComparison {
+  std::uint64_t in_a = 0, in_b = 0;
+  std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
+  std::uint64_t differing = 0;  ///< of common points, in distance or pose
+
+  bool equal() const { return only_in_a == 0 && only_in_b == 0 && differing == 0; }
+  friend bool operator==(const ClearanceComparison&, const ClearanceComparison&) = default;
+};
+
+struct Comparison {
+  std::uint64_t in_a = 0, in_b = 0;
+  std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
+  std::uint64_t differing_coordinates = 0;             ///< of common points
+  std::optional<std::uint64_t> differing_first_poses;  ///< of common points, where both have them
+  std::optional<ClearanceComparison> clearances;       ///< where both have them
+  std::vector<QueryDifference> queries;
+  std::vector<PointDifference> points;  ///< the first ones, ascending by source
+
+  /// The same points at the same places with the same first poses and clearances, whatever was
+  /// asked.
+  bool equal() const {
+    return only_in_a == 0 && only_in_b == 0 && differing_coordinates == 0 &&
+           differing_first_poses.value_or(0) == 0 && (!clearances || clearances->equal());
+  }
+};
+
+/// Merges both results in constant memory; keeps up to `kept` differing points. Throws InputError
+/// when they are about different environments, whose indices cannot be compared.
+Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept);
+
+}  // namespace clearway

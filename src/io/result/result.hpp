@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "clearway/query.hpp"
+#include "clearway/vec3.hpp"
+#include "core/geometry/quantisation.hpp"
+
+namespace clearway {
+
+/// What a result says of its query: a function of the source points, the model, the trajectory
+/// and the parameters, and but for the engine and the precision where they are part of the answer,
+/// of nothing else (docs/result-format.md), so that `cmp` compares runs.
+struct ResultHeader : QueryParameters {
+  std::uint64_t environment_points = 0;
+  std::uint64_t environment_hash = 0;  ///< of the source points, whatever file format or layout
+  std::uint64_t model_points = 0;
+  std::uint64_t model_hash = 0;
+  std::uint64_t poses = 0;
+  std::uint64_t trajectory_hash = 0;
+  std::string engine;            ///< that searched; only with a tolerance
+  bool float_precision = false;  ///< floats alone decided: not an exact result
+  Quantisation quantisation{};
+  std::string crs_wkt;
+  friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
+};
+
+/// Writes `/collisions/source` (uint64, ascending), `/collisions/xyz` (float64, n x 3) and, where
+/// the header asks, `/collisions/first_pose` (uint32) and `/clearance/source` (uint64, ascending),
+/// `distance` (float64) and `pose` (uint32) to a file of its own; the caller publishes it. Its
+/// bytes depend on header and rows alone. A failing disk throws ResourceError.
+/// docs/result-format.md has the layout.
+class ResultWriter {
+ public:
+  ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
+               std::uint64_t collisions, std::uint64_t clearances = 0);
+  ~ResultWriter();
+
+  /// The next rows, ascending by source. first_pose: empty unless the header has it. Throws
+  /// std::logic_error for rows out of order, more than promised, or spans of unequal lengths.
+  void append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
+              std::span<const std::uint32_t> first_pose);
+  /// The next clearances, ascending by source; distance in metres. After every collision, and only
+  /// where the header asks for them. Throws like append.
+  void append_clearances(std::span<const std::uint64_t> source, std::span<const double> distance,
+                         std::span<const std::uint32_t> pose);
+  /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Reads a result by ranges of rows, which lie below collisions(); whoever reads all of them front
+/// to back (result_rows.hpp) checks them against their hash too. Throws InputError when the file
+/// is not a complete result, is damaged, or holds rows that no run can have found.
+class ResultReader {
+ public:
+  explicit ResultReader(const std::filesystem::path& path);
+  ~ResultReader();
+  ResultReader(ResultReader&&) noexcept;
+
+  const std::string& name() const;  ///< the file's, for messages
+  const ResultHeader& header() const;
+  std::uint64_t collisions() const;
+  /// ColumnHashes of source, xyz and, where there is one, first_pose.
+  std::uint64_t collisions_hash() const;
+  /// Strictly ascending and below header().environment_points.
+  void read_source(std::uint64_t first, std::span<std::uint64_t> out) const;
+  void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
+  /// Below header().poses. Only where the header has first poses.
+  void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
+
+  /// Rows of the clearances, 0 where the header has none.
+  std::uint64_t clearances() const;
+  /// ColumnHashes of source, distance and pose; 0 where there are none.
+  std::uint64_t clearances_hash() const;
+  /// source as read_source, distance from 0 to header().clearance, pose as read_first_pose. Only
+  /// where the header has clearances.
+  void read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
+                       std::span<double> distance, std::span<std::uint32_t> pose) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace clearway

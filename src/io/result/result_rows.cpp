@@ -1,0 +1,78 @@
+#include "io/result/result_rows.hpp"
+
+#include <algorithm>
+
+#include "clearway/error.hpp"
+
+namespace clearway {
+namespace {
+
+void check_ascending(const ResultReader& reader, const char* dataset, std::uint64_t row,
+                     std::uint64_t last_source, std::uint64_t source) {
+  if (row == 0 || source > last_source) return;
+  throw InputError(reader.name() + ": " + dataset + ", row " + std::to_string(row) +
+                   ": expected an index above the row before");
+}
+
+template <typename Values>
+void add(Xxh64Stream& column, const Values& values) {
+  column.update(std::as_bytes(std::span(values)));
+}
+
+void check_hash(const ResultReader& reader, const char* group, std::span<const Xxh64Stream> columns,
+                std::uint64_t expected) {
+  ColumnHashes hashes;
+  for (const Xxh64Stream& column : columns) hashes.add_digest(column.digest());
+  if (hashes.digest() == expected) return;
+  throw InputError(reader.name() + ": /" + group +
+                   ": its rows are damaged (their hash is not the one recorded)");
+}
+
+}  // namespace
+
+bool ResultRowStream::read(ResultRows& rows) {
+  const std::size_t count = std::min<std::uint64_t>(kBatchRows, reader_.collisions() - next_);
+  const bool first_pose = reader_.header().first_pose;
+  rows.source.resize(count);
+  rows.xyz.resize(count);
+  rows.first_pose.resize(first_pose ? count : 0);
+  if (count == 0) {
+    check_hash(reader_, "collisions", std::span(columns_).first(first_pose ? 3 : 2),
+               reader_.collisions_hash());
+    return false;
+  }
+  reader_.read_source(next_, rows.source);
+  reader_.read_xyz(next_, rows.xyz);
+  if (first_pose) reader_.read_first_pose(next_, rows.first_pose);
+  add(columns_[0], rows.source);
+  add(columns_[1], rows.xyz);
+  add(columns_[2], rows.first_pose);
+  check_ascending(reader_, "/collisions/source", next_, last_source_, rows.source.front());
+  last_source_ = rows.source.back();
+  next_ += count;
+  return true;
+}
+
+bool ClearanceRowStream::read(ClearanceRows& rows) {
+  const std::size_t count =
+      std::min<std::uint64_t>(ResultRowStream::kBatchRows, reader_.clearances() - next_);
+  rows.source.resize(count);
+  rows.distance.resize(count);
+  rows.pose.resize(count);
+  if (count == 0) {
+    if (reader_.header().clearance > 0) {
+      check_hash(reader_, "clearance", columns_, reader_.clearances_hash());
+    }
+    return false;
+  }
+  reader_.read_clearances(next_, rows.source, rows.distance, rows.pose);
+  add(columns_[0], rows.source);
+  add(columns_[1], rows.distance);
+  add(columns_[2], rows.pose);
+  check_ascending(reader_, "/clearance/source", next_, last_source_, rows.source.front());
+  last_source_ = rows.source.back();
+  next_ += count;
+  return true;
+}
+
+}  // namespace clearway

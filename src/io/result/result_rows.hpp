@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "clearway/vec3.hpp"
+#include "io/result/column_hashes.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway {
+
+/// Consecutive rows of a result. first_pose is empty where the result has none.
+struct ResultRows {
+  std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;
+  std::vector<std::uint32_t> first_pose;
+
+  std::size_t size() const { return source.size(); }
+};
+
+/// Consecutive rows of a result's clearances.
+struct ClearanceRows {
+  std::vector<std::uint64_t> source;
+  std::vector<double> distance;
+  std::vector<std::uint32_t> pose;
+
+  std::size_t size() const { return source.size(); }
+};
+
+/// A result's rows front to back in constant memory. The reader outlives the stream.
+class ResultRowStream {
+ public:
+  static constexpr std::size_t kBatchRows = 1 << 16;  ///< whole chunks of every dataset
+
+  explicit ResultRowStream(const ResultReader& reader) : reader_(reader) {}
+
+  /// Fills `rows` with up to kBatchRows rows; false, and no rows, at the end. Throws InputError as
+  /// the reader does, also where sources do not ascend from one batch to the next, and at the end
+  /// where the rows are not those that their hash is of.
+  bool read(ResultRows& rows);
+
+ private:
+  const ResultReader& reader_;
+  std::uint64_t next_ = 0;
+  std::uint64_t last_source_ = 0;
+  std::array<Xxh64Stream, 3> columns_;  ///< of the rows read
+};
+
+/// The same for its clearances; no rows where it has none.
+class ClearanceRowStream {
+ public:
+  explicit ClearanceRowStream(const ResultReader& reader) : reader_(reader) {}
+
+  /// As ResultRowStream's.
+  bool read(ClearanceRows& rows);
+
+ private:
+  const ResultReader& reader_;
+  std::uint64_t next_ = 0;
+  std::uint64_t last_source_ = 0;
+  std::array<Xxh64Stream, 3> columns_;  ///< of the rows read
+};
+
+}  // namespace clearway

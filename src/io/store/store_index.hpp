@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/cloud/packed_cloud.hpp"
+#include "io/store/store_layout.hpp"
+#include "io/store/store_metadata.hpp"
+
+namespace clearway {
+
+/// All that a store says but its points.
+struct StoreIndex {
+  StoreMetadata metadata;
+  CellIndex cells;
+  std::vector<TopNode> top;
+  std::vector<BlockBox> blocks;  ///< the same number for every cell
+};
+
+/// Reads it from the store, of which `file_bytes` are there, and checks it against its hash.
+/// Throws InputError when the file is not a complete store of this version with an intact index, or
+/// when another tool rewrote it.
+StoreIndex read_store_index(const std::filesystem::path& path, std::uint64_t file_bytes);
+
+}  // namespace clearway

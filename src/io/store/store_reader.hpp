@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/cloud/packed_cloud.hpp"
+#include "io/store/store_index.hpp"
+#include "io/system/mapped_file.hpp"
+
+namespace clearway {
+
+/// A store opened for reading: its index in memory, its points in a read-only map of the file.
+/// Throws InputError when the file is not an intact, complete store of this version, or when
+/// another tool rewrote it.
+class StoreReader final : public PackedCloud {
+ public:
+  explicit StoreReader(const std::filesystem::path& path);
+
+  const StoreMetadata& metadata() const { return index_.metadata; }
+  const std::string& name() const { return map_.name(); }
+  const CellIndex& index() const { return index_.cells; }
+  std::span<const TopNode> top_tree() const { return index_.top; }
+
+  /// Hash of the cells' hashes and of everything else that the store says: tells whether two files
+  /// are the same store without reading their points.
+  std::uint64_t fingerprint() const;
+
+  /// The packed source indices of a cell, checked against their hash.
+  PackedChunk<std::uint64_t> sources(std::uint32_t cell) const;
+
+  // PackedCloud
+  std::uint64_t point_count() const override { return metadata().point_count; }
+  std::uint32_t cell_points() const override { return metadata().cell_points; }
+  const Quantisation& quantisation() const override { return metadata().quantisation; }
+  std::span<const Cell> cells() const override { return cells_; }
+  std::span<const TreeNode> tree() const override { return tree_; }
+  std::span<const BlockBox> blocks() const override { return index_.blocks; }
+  std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
+  std::uint64_t packed_bytes(std::uint32_t cell) const override;
+  /// Reads the file, not the map: one call where x, y and z are adjacent in it.
+  std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
+                                                       std::span<std::byte> to) const override;
+
+  /// Cells whose coordinates were asked for or read since the store was opened, and their packed
+  /// bytes.
+  struct Touched {
+    std::uint64_t cells = 0;
+    std::uint64_t bytes = 0;
+  };
+  Touched touched() const;
+
+  /// Bytes of memory that the index takes.
+  std::uint64_t allocated_bytes() const;
+
+ private:
+  std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
+  void check_hash(std::uint32_t cell, int dataset, std::span<const std::byte> bytes) const;
+  template <typename Number>
+  PackedChunk<Number> chunk(std::uint32_t cell, int dataset,
+                            std::span<const std::byte> bytes) const;
+
+  MappedFile map_;
+  StoreIndex index_;
+  std::vector<Cell> cells_;
+  std::vector<TreeNode> tree_;
+  /// Per cell: 1 when the hashes of x, y and z were found right in the map.
+  mutable std::vector<std::uint8_t> checked_;
+  mutable std::vector<std::uint8_t> read_;  ///< per cell: 1 when they were read past the map
+};
+
+}  // namespace clearway

@@ -1,0 +1,229 @@
+#include "io/store/store_writer.hpp"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "clearway/error.hpp"
+#include "core/cloud/kd_order.hpp"
+#include "io/hdf5/hdf5.hpp"
+#include "io/store/store_layout.hpp"
+#include "io/system/file.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+/// A point dataset: [cells, cell_points], chunk [1, cell_points], packed by scale-offset.
+template <typename Number>
+hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t cells,
+                       std::uint32_t cell_points) {
+  const std::array<hsize_t, 2> size{cells, cell_points};
+  const std::array<hsize_t, 2> chunk{1, cell_points};
+  const hdf5::Id space(H5Screate_simple(2, size.data(), nullptr), H5Sclose, "HDF5 dataspace");
+  const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "HDF5 property list");
+  const hid_t type = hdf5::file_type<Number>();
+  hdf5::check(H5Pset_obj_track_times(list.get(), false), "HDF5 object times");
+  if (cells > 0) {
+    hdf5::check(H5Pset_chunk(list.get(), 2, chunk.data()), "HDF5 chunk size");
+    hdf5::check(H5Pset_fill_value(list.get(), type, nullptr), "HDF5 undefined fill value");
+    hdf5::check(H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER), "HDF5 fill time");
+    hdf5::check(H5Pset_scaleoffset(list.get(), H5Z_SO_INT, H5Z_SO_INT_MINBITS_DEFAULT),
+                "HDF5 scale-offset");
+  }
+  return {H5Dcreate2(group.get(), name, type, space.get(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
+          H5Dclose, std::string("create dataset ") + name};
+}
+
+/// The datasets of /sources are the first of `hashes`.
+void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnHashes& hashes) {
+  hdf5::write_attribute(file, "format", kStoreFormat);
+  hdf5::write_number(file, "version", kStoreVersion);
+  hdf5::write_number(file, "point_count", metadata.point_count);
+  hdf5::write_number(file, "input_points", metadata.input_points);
+  hdf5::write_number(file, "cell_points", metadata.cell_points);
+  hdf5::write_number(file, "points_hash", metadata.points_hash);
+  hdf5::write_attribute<double>(file, "scale", metadata.quantisation.scale);
+  hdf5::write_attribute<double>(file, "offset", metadata.quantisation.offset);
+  hdf5::write_attribute(file, "layout", metadata.layout);
+  hdf5::write_attribute(file, "length_unit", to_string(metadata.unit));
+  hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
+
+  std::vector<std::uint8_t> names;
+  std::vector<std::uint64_t> bytes, contents;
+  for (const SourceFile& source : metadata.sources) {
+    names.insert(names.end(), source.name.begin(), source.name.end());
+    names.push_back(0);
+    bytes.push_back(source.bytes);
+    contents.push_back(source.xxh64);
+  }
+  const hdf5::Id group = hdf5::create_group(file, "sources");
+  hdf5::write_dataset<std::uint8_t>(group, "names", names);
+  hdf5::write_dataset<std::uint64_t>(group, "bytes", bytes);
+  hdf5::write_dataset<std::uint64_t>(group, "xxh64", contents);
+  hashes.add(names);
+  hashes.add(bytes);
+  hashes.add(contents);
+}
+
+/// So that it never takes more than it needs.
+void reserve(CellIndex& index, std::uint64_t cells) {
+  index.count.reserve(cells);
+  index.box.reserve(6 * cells);
+  index.address.reserve(4 * cells);
+  index.bytes.reserve(4 * cells);
+  index.xxh64.reserve(4 * cells);
+}
+
+}  // namespace
+
+struct StoreWriter::State {
+  std::filesystem::path path;
+  StoreMetadata metadata;
+  std::uint64_t promised_cells;
+  hdf5::Id file;
+  std::array<hdf5::Id, 4> points;
+  CellIndex index;
+  File blocks;  ///< rows of /blocks/box, spooled: too many to keep in memory
+  std::uint64_t block_rows = 0;
+  ColumnHashes hashes;  ///< of all datasets but /points
+
+  std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
+
+  void spool_blocks(std::span<const BlockBox> boxes) {
+    static_assert(sizeof(BlockBox) == 6 * sizeof(std::uint16_t));
+    std::vector<BlockBox> rows(boxes.begin(), boxes.end());
+    rows.resize(blocks_per_cell());
+    blocks.write(std::as_bytes(std::span(rows)));
+    block_rows += rows.size();
+  }
+
+  void write_blocks() {
+    constexpr std::uint64_t kPieceRows = 1 << 16;
+    const hdf5::Id group = hdf5::create_group(file, "blocks");
+    hdf5::Rows<std::uint16_t> dataset(group, "box", block_rows, 6);
+    std::vector<std::uint16_t> piece;
+    Xxh64Stream hash;
+    for (std::uint64_t row = 0; row < block_rows; row += kPieceRows) {
+      piece.resize(6 * std::min(kPieceRows, block_rows - row));
+      blocks.read_at(row * sizeof(BlockBox), std::as_writable_bytes(std::span(piece)));
+      dataset.write(row, piece);
+      hash.update(std::as_bytes(std::span(piece)));
+    }
+    dataset.close();
+    hashes.add_digest(hash.digest());
+  }
+
+  /// Writes a packed chunk at the end of the file; gives its address.
+  std::uint64_t write_chunk(int dataset, std::uint64_t cell, std::span<const std::byte> bytes) {
+    const hid_t id = points[static_cast<std::size_t>(dataset)].get();
+    haddr_t address = 0;
+    hdf5::check(H5Fget_eoa(file.get(), &address), path.string() + ": HDF5 end of file");
+    const std::array<hsize_t, 2> at{cell, 0};
+    hdf5::check(H5Dwrite_chunk(id, H5P_DEFAULT, 0, at.data(), bytes.size(), bytes.data()),
+                path.string() + ": cannot write");
+    if (cell == 0) {  // with it comes the index of chunks, which may lie before it
+      unsigned mask = 0;
+      hsize_t size = 0;
+      hdf5::check(H5Dget_chunk_info_by_coord(id, at.data(), &mask, &address, &size),
+                  path.string() + ": HDF5 address of a chunk");
+    }
+    return address;
+  }
+
+  void confirm_addresses() const {
+    const File reread = File::open_for_reading(path);
+    std::vector<std::byte> bytes;
+    for (std::size_t i = 0; i < index.bytes.size(); ++i) {
+      bytes.resize(index.bytes[i]);
+      reread.read_at(index.address[i], bytes);
+      if (xxh64(bytes) != index.xxh64[i]) {
+        throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(i / 4) +
+                            " read back differs from what was written at byte " +
+                            std::to_string(index.address[i]));
+      }
+    }
+  }
+};
+
+StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
+                         std::uint64_t cells)
+    : state_(new State{.path = path,
+                       .metadata = metadata,
+                       .promised_cells = cells,
+                       .file = {},
+                       .points = {},
+                       .index = {},
+                       .blocks = File::create_temporary(folder_of(path)),
+                       .hashes = {}}) {
+  hdf5::naming(path.string(), [&] { create(cells); });
+}
+
+void StoreWriter::create(std::uint64_t cells) {
+  const StoreMetadata& metadata = state_->metadata;
+  reserve(state_->index, cells);
+  state_->file = hdf5::create_file(state_->path);
+  write_metadata(state_->file, metadata, state_->hashes);
+  const hdf5::Id group = hdf5::create_group(state_->file, "points");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    state_->points[axis] =
+        create_packed<std::int32_t>(group, kPointDatasets[axis], cells, metadata.cell_points);
+  }
+  state_->points[3] =
+      create_packed<std::uint64_t>(group, kPointDatasets[3], cells, metadata.cell_points);
+}
+
+StoreWriter::~StoreWriter() = default;
+
+void StoreWriter::append(const PackedCell& packed) {
+  State& state = *state_;
+  CellIndex& index = state.index;
+  const std::uint64_t cell = index.count.size();
+  if (cell >= state.promised_cells) throw std::logic_error("more cells than promised");
+  for (int i = 0; i < 4; ++i) {
+    const std::vector<std::byte>& chunk = packed.chunks[static_cast<std::size_t>(i)];
+    index.address.push_back(state.write_chunk(i, cell, chunk));
+    index.bytes.push_back(static_cast<std::uint32_t>(chunk.size()));
+    index.xxh64.push_back(xxh64(chunk));
+  }
+  index.count.push_back(packed.cell.count);
+  index.box.insert(index.box.end(), packed.cell.box.lo, packed.cell.box.lo + 3);
+  index.box.insert(index.box.end(), packed.cell.box.hi, packed.cell.box.hi + 3);
+  state.spool_blocks(packed.blocks);
+}
+
+void StoreWriter::finish(const std::vector<TopNode>& tree) {
+  hdf5::naming(state_->path.string(), [&] { write_index(tree); });
+}
+
+void StoreWriter::write_index(const std::vector<TopNode>& tree) {
+  State& state = *state_;
+  if (state.index.count.size() != state.promised_cells) {
+    throw std::logic_error("fewer cells than promised");
+  }
+  std::vector<std::uint32_t> nodes;
+  for (const TopNode& node : tree) {
+    nodes.insert(nodes.end(), {node.first_cell, node.cell_count, node.right});
+  }
+  {
+    const hdf5::Id cells = hdf5::create_group(state.file, "cells");
+    hdf5::write_dataset<std::uint32_t>(cells, "count", state.index.count);
+    hdf5::write_dataset<std::int32_t>(cells, "box", state.index.box, 6);
+    hdf5::write_dataset<std::uint64_t>(cells, "address", state.index.address, 4);
+    hdf5::write_dataset<std::uint32_t>(cells, "bytes", state.index.bytes, 4);
+    hdf5::write_dataset<std::uint64_t>(cells, "xxh64", state.index.xxh64, 4);
+    add_index(state.index, state.hashes);
+    state.write_blocks();
+    const hdf5::Id group = hdf5::create_group(state.file, "tree");
+    hdf5::write_dataset<std::uint32_t>(group, "nodes", nodes, 3);
+    state.hashes.add(nodes);
+  }
+  hdf5::write_number(state.file, "index_hash", state.hashes.digest());
+  hdf5::write_number(state.file, "complete", std::uint32_t{1});
+  for (hdf5::Id& dataset : state.points) dataset.close(state.path.string() + ": cannot write");
+  state.file.close(state.path.string() + ": cannot write");
+  state.confirm_addresses();
+}
+
+}  // namespace clearway

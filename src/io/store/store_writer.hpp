@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "core/cloud/cell_tree.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/store/store_metadata.hpp"
+
+namespace clearway {
+
+/// One cell, packed: what the writer puts into the file without looking into it.
+struct PackedCell {
+  Cell cell;
+  std::vector<BlockBox> blocks;                  ///< one for each block with points
+  std::array<std::vector<std::byte>, 4> chunks;  ///< x, y, z, source; each of cell_points values
+};
+
+/// Writes a store front to back. All calls from one thread. The caller owns the file's name and
+/// publishes it after finish().
+class StoreWriter {
+ public:
+  /// cells: how many will be written. Throws ResourceError.
+  StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
+              std::uint64_t cells);
+  ~StoreWriter();
+
+  void append(const PackedCell& cell);
+
+  /// Writes the index, closes the file, and re-reads every chunk at its recorded address.
+  /// Throws ResourceError when a chunk is not where it should be.
+  void finish(const std::vector<TopNode>& tree);
+
+ private:
+  void create(std::uint64_t cells);
+  void write_index(const std::vector<TopNode>& tree);
+
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,126 @@
+#include "io/store/verify_store.hpp"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "clearway/error.hpp"
+#include "core/cloud/kd_order.hpp"
+
+namespace clearway {
+namespace {
+
+/// Source indices seen so far: a bit for each of the input's points, or the indices themselves
+/// where so few are stored that the bits would take more.
+class SeenSources {
+ public:
+  explicit SeenSources(const StoreMetadata& metadata) : end_(metadata.input_points) {
+    if (end_ / kIndexBits <= metadata.point_count) bits_.resize(end_, false);
+  }
+
+  /// False where the index is out of range or was there before.
+  bool insert(std::uint64_t source) {
+    if (source >= end_) return false;
+    if (bits_.empty()) return indices_.insert(source).second;
+    if (bits_[source]) return false;
+    bits_[source] = true;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint64_t kIndexBits = 512;  // of a set of indices, about
+
+  std::uint64_t end_;
+  std::vector<bool> bits_;
+  std::unordered_set<std::uint64_t> indices_;
+};
+
+class Verification {
+ public:
+  explicit Verification(const StoreReader& store) : store_(store), seen_(store.metadata()) {}
+
+  /// Throws InputError with the first fault of the cell.
+  void check(std::uint32_t cell) {
+    const auto coordinates = store_.coordinates(cell);
+    for (std::size_t k = 0; k < 3; ++k) {
+      values_[k].resize(store_.cell_points());
+      coordinates[k].decode(0, values_[k]);
+    }
+    sources_.resize(store_.cell_points());
+    store_.sources(cell).decode(0, sources_);
+    check_boxes(cell);
+    check_order(cell);
+  }
+
+ private:
+  [[noreturn]] void fail(std::uint32_t cell, const std::string& what) const {
+    throw InputError(store_.name() + ": cell " + std::to_string(cell) + ": " + what);
+  }
+
+  QuantumBox box_of(std::uint32_t first, std::uint32_t end) const {
+    QuantumBox box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [lo, hi] =
+          std::minmax_element(values_[k].begin() + first, values_[k].begin() + end);
+      box.lo[k] = *lo;
+      box.hi[k] = *hi;
+    }
+    return box;
+  }
+
+  void check_boxes(std::uint32_t cell) const {
+    const Cell& known = store_.cells()[cell];
+    if (!(box_of(0, known.count) == known.box)) fail(cell, "its box is not that of its points");
+    const BlockBox* blocks = store_.blocks().data() + std::size_t{cell} * store_.blocks_per_cell();
+    for (std::uint32_t first = 0; first < known.count; first += kBlockPoints) {
+      const std::uint32_t end = std::min(known.count, first + kBlockPoints);
+      if (!(blocks[first / kBlockPoints] == encode_block_box(known.box, box_of(first, end)))) {
+        fail(cell, "the box of block " + std::to_string(first / kBlockPoints) +
+                       " is not that of its points");
+      }
+    }
+  }
+
+  void check_order(std::uint32_t cell) {
+    const std::uint32_t count = store_.cells()[cell].count;
+    for (std::uint32_t i = 0; i < store_.cell_points(); ++i) {
+      const std::uint64_t source = sources_[i];
+      if (i >= count) {
+        if (source != sources_[count - 1]) fail(cell, "its padding is not its last point");
+        continue;
+      }
+      if (!seen_.insert(source)) {
+        fail(cell,
+             "source index " + std::to_string(source) + " is out of range or twice in the store");
+      }
+      if (i % kBlockPoints != 0 && source <= sources_[i - 1]) {
+        fail(cell, "a block is not in the order of its source indices");
+      }
+    }
+  }
+
+  const StoreReader& store_;
+  SeenSources seen_;
+  std::array<std::vector<std::int32_t>, 3> values_;
+  std::vector<std::uint64_t> sources_;
+};
+
+}  // namespace
+
+std::vector<std::string> verify_store(const StoreReader& store, Progress& progress,
+                                      std::size_t most) {
+  std::vector<std::string> faults;
+  Verification verification(store);
+  progress.begin("verify", store.point_count(), "points");
+  for (std::uint32_t cell = 0; cell < store.cells().size() && faults.size() < most; ++cell) {
+    try {
+      verification.check(cell);
+    } catch (const InputError& fault) {
+      faults.emplace_back(fault.what());
+    }
+    progress.advance(store.cells()[cell].count);
+  }
+  progress.end();
+  return faults;
+}
+
+}  // namespace clearway

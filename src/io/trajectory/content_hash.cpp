@@ -1,0 +1,18 @@
+#include "io/trajectory/content_hash.hpp"
+
+#include <bit>
+
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Pose) == 12 * sizeof(double));
+
+std::uint64_t hash_of_model(std::span<const Vec3> points) { return xxh64(std::as_bytes(points)); }
+
+std::uint64_t hash_of_trajectory(std::span<const Pose> poses) {
+  return xxh64(std::as_bytes(poses));
+}
+
+}  // namespace clearway

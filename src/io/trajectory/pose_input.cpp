@@ -1,0 +1,68 @@
+#include "io/trajectory/pose_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/rigid.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+bool all_finite(std::span<const double> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); });
+}
+
+Objection objection_to(const Stretch& stretch, bool allow_non_rigid) {
+  const std::string found = "the rotation has singular values from " + shown(stretch.least) +
+                            " to " + shown(stretch.greatest) + " and determinant " +
+                            shown(stretch.determinant);
+  if (!(stretch.least > 0) || !std::isfinite(stretch.greatest)) {
+    return found + "; expected an invertible matrix";
+  }
+  if (allow_non_rigid || is_rigid(stretch)) return {};
+  return found + "; expected a rigid motion: singular values within " + shown(kRigidTolerance) +
+         " of 1 and a positive determinant (--allow-non-rigid accepts any invertible matrix)";
+}
+
+}  // namespace
+
+Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, Pose& pose) {
+  if (!all_finite(numbers)) return "expected finite numbers";
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::copy_n(numbers.begin() + 4 * row, 3, pose.rotation + 3 * row);
+    pose.translation[row] = numbers[4 * row + 3];
+  }
+  if (numbers.size() == 16) {
+    constexpr double kNoise = 1e-9;
+    for (std::size_t column = 0; column < 4; ++column) {
+      if (std::abs(numbers[12 + column] - (column == 3 ? 1 : 0)) > kNoise) {
+        return "the last row of the 4x4 matrix is not 0 0 0 1; expected row-major order";
+      }
+    }
+  }
+  const Stretch stretch = stretch_of(pose);
+  return is_rigid(stretch) ? Objection() : objection_to(stretch, allow_non_rigid);
+}
+
+Objection pose_of_quaternion(std::span<const double, 3> position,
+                             std::span<const double, 4> quaternion, Pose& pose) {
+  if (!all_finite(position) || !all_finite(quaternion)) return "expected finite numbers";
+  constexpr double kNormTolerance = 0.01;
+  const double norm = std::sqrt(quaternion[0] * quaternion[0] + quaternion[1] * quaternion[1] +
+                                quaternion[2] * quaternion[2] + quaternion[3] * quaternion[3]);
+  if (!(std::abs(norm - 1) <= kNormTolerance)) {
+    return "the quaternion has norm " + shown(norm) + "; expected 1 within 0.01";
+  }
+  const double x = quaternion[0] / norm;
+  const double y = quaternion[1] / norm;
+  const double z = quaternion[2] / norm;
+  const double w = quaternion[3] / norm;
+  pose = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+           1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
+           1 - 2 * (x * x + y * y)},
+          {position[0], position[1], position[2]}};
+  return {};
+}
+
+}  // namespace clearway

@@ -1,0 +1,48 @@
+#include "search/memory_budget.hpp"
+
+#include "clearway/error.hpp"
+#include "core/util/format.hpp"
+
+namespace clearway {
+
+std::uint64_t program_bytes(int threads) {
+  constexpr std::uint64_t kProgram = std::uint64_t{8} << 20;
+  constexpr std::uint64_t kThread = std::uint64_t{256} << 10;
+  return kProgram + kThread * static_cast<std::uint64_t>(threads);
+}
+
+std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
+  return store.allocated_bytes() + query.model.size() * sizeof(Vec3) +
+         query.poses.size() * sizeof(Pose);
+}
+
+std::uint64_t result_bytes(const StoreReader& store, const Query& query) {
+  const std::uint64_t a_slot = (query.first_pose ? sizeof(std::uint32_t) : 0) +
+                               (query.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
+  return store.entry_count() / 8 + a_slot * store.entry_count();
+}
+
+void check_memory(std::uint64_t needed, std::uint64_t allowed) {
+  if (needed > allowed) refuse_memory(needed, allowed);
+}
+
+void refuse_memory(std::uint64_t needed, std::uint64_t allowed) {
+  throw ResourceError("--memory " + format_size(allowed) + " is too little: this run needs " +
+                      format_size(needed) + " (--memory " + std::to_string(needed) +
+                      ") beside the mapped store");
+}
+
+void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
+                          const std::string& short_device) {
+  const std::string need = ": this run needs " + format_size(needed);
+  if (!short_device.empty()) {
+    throw ResourceError(short_device + " has too little" + need + ", and may take " +
+                        format_size(allowed) +
+                        " there; nvidia-smi lists what else uses it: take others with --gpus, or "
+                        "--device cpu");
+  }
+  throw ResourceError("--device-memory " + format_size(allowed) + " is too little" + need +
+                      " (--device-memory " + std::to_string(needed) + ") on each device");
+}
+
+}  // namespace clearway

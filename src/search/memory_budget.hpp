@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "clearway/query.hpp"
+#include "io/store/store_reader.hpp"
+
+/// What a run takes of --memory beside the mapped store.
+namespace clearway {
+
+/// The program itself: its libraries' data, stacks of threads, buffers of files.
+std::uint64_t program_bytes(int threads);
+
+/// Index of the store, model and poses.
+std::uint64_t input_bytes(const StoreReader& store, const Query& query);
+
+/// Hits, first poses and clearances of all points.
+std::uint64_t result_bytes(const StoreReader& store, const Query& query);
+
+/// Throws ResourceError naming what is needed where that is more than `allowed`.
+void check_memory(std::uint64_t needed, std::uint64_t allowed);
+
+/// Throws ResourceError that says what to do.
+[[noreturn]] void refuse_memory(std::uint64_t needed, std::uint64_t allowed);
+/// short_device: the device whose free memory, not --device-memory, is the bound; empty: none.
+[[noreturn]] void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
+                                       const std::string& short_device);
+
+}  // namespace clearway

@@ -1,0 +1,27 @@
+#include "search/threads.hpp"
+
+#include <latch>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "clearway/error.hpp"
+
+namespace clearway {
+
+void check_threads(int threads) {
+  std::latch all_started(1);
+  std::vector<std::jthread> started;
+  try {
+    for (int i = 1; i < threads; ++i) started.emplace_back([&] { all_started.wait(); });
+  } catch (const std::system_error& error) {
+    const std::string reason = error.what();
+    all_started.count_down();
+    throw ResourceError(std::to_string(threads) + " threads cannot be started (" + reason +
+                        "); give fewer --threads, or raise the limit of processes or memory");
+  }
+  all_started.count_down();
+}
+
+}  // namespace clearway

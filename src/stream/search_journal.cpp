@@ -1,0 +1,316 @@
+#include "stream/search_journal.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+#include <vector>
+
+namespace clearway {
+namespace {
+
+enum Kind : std::uint8_t { kCell = 1, kMarks = 2, kFinishedPoses = 3 };
+
+constexpr std::uint64_t kMostCountBytes = 10;
+
+std::uint64_t bit_of(std::size_t index) { return std::uint64_t{1} << index; }
+
+/// Calls visit(i) for all set bits i.
+template <typename Visit>
+void for_each_bit(std::uint64_t bits, Visit visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+/// The words that are not 0, each with its distance from the one before; put_point(i) follows for
+/// each of its points.
+template <typename WordAt, typename PutPoint>
+void put_words(JournalRecord& record, std::size_t words, WordAt word_at, PutPoint put_point) {
+  std::uint64_t count = 0;
+  for (std::size_t word = 0; word < words; ++word) count += word_at(word) != 0;
+  record.put_count(count);
+  std::size_t next = 0;
+  for (std::size_t word = 0; word < words; ++word) {
+    const std::uint64_t bits = word_at(word);
+    if (bits == 0) continue;
+    record.put_count(word - next);
+    record.put(bits);
+    for_each_bit(bits, [&](std::size_t i) { put_point(word * kBlockPoints + i); });
+    next = word + 1;
+  }
+}
+
+void put_clearances(JournalRecord& record, std::span<const Clearance> clearances) {
+  const auto word_at = [&](std::size_t word) {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < kBlockPoints; ++i) {
+      if (clearances[word * kBlockPoints + i].found()) bits |= bit_of(i);
+    }
+    return bits;
+  };
+  put_words(record, clearances.size() / kBlockPoints, word_at, [&](std::size_t point) {
+    record.put(clearances[point].squared);
+    record.put_count(clearances[point].pose);
+  });
+}
+
+/// As many poses as the payload says, from the first; at most `most`.
+struct PoseRange {
+  PoseRange(JournalPayload& payload, std::uint64_t most)
+      : first(payload.take_count()), count(payload.take_count()) {
+    if (first > most || count > most - first) {
+      payload.refuse("poses past the trajectory's end");
+    }
+  }
+  std::uint64_t first, count;
+};
+
+}  // namespace
+
+SearchJournal::SearchJournal(std::filesystem::path path, JournalIdentity identity,
+                             const JournalReader* read, const PackedCloud& cloud,
+                             const Query& query, double interval_seconds)
+    : cloud_(cloud),
+      query_(query),
+      read_(read),
+      finished_cells_(cloud.cells().size()),
+      finished_poses_(query.poses.size()),
+      path_(std::move(path)),
+      identity_(std::move(identity)),
+      interval_seconds_(interval_seconds) {
+  note_finished();
+}
+
+void SearchJournal::note_finished() {
+  if (read_ == nullptr) return;
+  replay_all(nullptr, nullptr);  // checks them all
+  read_->for_each([this](JournalPayload payload) {
+    const auto kind = payload.take<std::uint8_t>();
+    if (kind == kCell) finished_cells_[take_cell(payload)] = true;
+    if (kind == kFinishedPoses) {
+      const PoseRange poses(payload, finished_poses_.size());
+      const auto begin = finished_poses_.begin() + static_cast<std::ptrdiff_t>(poses.first);
+      std::fill_n(begin, poses.count, true);
+    }
+  });
+}
+
+// ---- reading
+
+void SearchJournal::replay_all(HitSet* hits, ClearanceSet* clearances) const {
+  if (read_ == nullptr) return;
+  read_->for_each([&](JournalPayload payload) {
+    switch (payload.take<std::uint8_t>()) {
+      case kCell:
+        replay_cell(payload, hits, clearances);
+        break;
+      case kMarks:
+        replay_marks(payload, hits);
+        break;
+      case kFinishedPoses:
+        PoseRange(payload, query_.poses.size());
+        break;
+      default:
+        payload.refuse("of an unknown kind");
+    }
+    if (!payload.at_end()) payload.refuse("longer than what it holds");
+  });
+}
+
+std::uint32_t SearchJournal::take_cell(JournalPayload& payload) const {
+  const std::uint64_t cell = payload.take_count();
+  if (cell >= cloud_.cells().size()) payload.refuse("a cell that the store does not have");
+  return static_cast<std::uint32_t>(cell);
+}
+
+std::uint32_t SearchJournal::take_pose(JournalPayload& payload) const {
+  const std::uint64_t pose = payload.take_count();
+  if (pose >= query_.poses.size()) payload.refuse("a pose past the trajectory's end");
+  return static_cast<std::uint32_t>(pose);
+}
+
+/// The bits of a word, all of them points of the cloud.
+std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t word) const {
+  const auto bits = payload.take<std::uint64_t>();
+  const std::uint64_t words_per_cell = cloud_.blocks_per_cell();
+  const Cell& cell = cloud_.cells()[word / words_per_cell];
+  const std::uint64_t first = word % words_per_cell * kBlockPoints;
+  const std::uint64_t points = cell.count > first ? cell.count - first : 0;
+  if (bits == 0 || (points < kBlockPoints && bits >> points != 0)) {
+    payload.refuse("points that the store does not have");
+  }
+  return bits;
+}
+
+void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
+                                ClearanceSet* clearances) const {
+  const std::uint64_t cell_word = std::uint64_t{take_cell(payload)} * cloud_.blocks_per_cell();
+  const auto for_each_word = [&](auto visit) {
+    std::uint64_t next = 0;
+    for (std::uint64_t words = payload.take_count(); words > 0; --words) {
+      const std::uint64_t skipped = payload.take_count();
+      if (skipped >= cloud_.blocks_per_cell() - next) payload.refuse("a block past its cell's end");
+      const std::uint64_t word = cell_word + next + skipped;
+      visit(word, take_points(payload, word));
+      next += skipped + 1;
+    }
+  };
+  for_each_word([&](std::uint64_t word, std::uint64_t bits) {
+    if (hits != nullptr) hits->mark_word(word, bits);
+    if (!query_.first_pose) return;
+    for_each_bit(bits, [&](std::size_t i) {
+      const std::uint32_t pose = take_pose(payload);
+      if (hits != nullptr) hits->mark(word * kBlockPoints + i, pose);
+    });
+  });
+  if (!(query_.clearance > 0)) return;
+  for_each_word([&](std::uint64_t word, std::uint64_t bits) {
+    for_each_bit(bits, [&](std::size_t i) {
+      const auto squared = payload.take<double>();
+      const Clearance clearance{squared, take_pose(payload)};
+      if (!(squared >= 0 && clearance.found())) payload.refuse("a distance that is none");
+      if (clearances != nullptr) clearances->set(word * kBlockPoints + i, clearance);
+    });
+  });
+}
+
+void SearchJournal::replay_marks(JournalPayload& payload, HitSet* hits) const {
+  const std::uint64_t words = cloud_.entry_count() / kBlockPoints;
+  std::uint64_t word = 0;
+  for (std::uint64_t marks = payload.take_count(); marks > 0; --marks) {
+    const std::uint64_t skipped = payload.take_count();
+    if (skipped >= words - word) payload.refuse("a block that the store does not have");
+    word += skipped;
+    const std::uint64_t bits = take_points(payload, word);
+    if (!query_.first_pose) {
+      if (hits != nullptr) hits->mark_word(word, bits);
+      continue;
+    }
+    const std::uint32_t pose = take_pose(payload);
+    if (hits == nullptr) continue;
+    for_each_bit(bits, [&](std::size_t i) { hits->mark(word * kBlockPoints + i, pose); });
+  }
+}
+
+bool SearchJournal::poses_finished(std::uint32_t first, std::uint32_t count) const {
+  const auto begin = finished_poses_.begin() + first;
+  return std::find(begin, begin + count, false) == begin + count;
+}
+
+// ---- appending
+
+void SearchJournal::append(JournalRecord& record) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!writer_) {
+      writer_.emplace(read_ != nullptr
+                          ? JournalWriter::resume(path_, *read_, interval_seconds_)
+                          : JournalWriter::create(path_, identity_, interval_seconds_));
+    }
+  }
+  writer_->append(record);
+}
+
+bool SearchJournal::is_in_place() const {
+  if (writer_) return writer_->file().is_at(path_);
+  return read_ != nullptr && read_->file().is_at(path_);
+}
+
+void SearchJournal::append_page(std::span<const PlannedCell> cells, const PageResult& answer) {
+  JournalRecord record;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto hits = part_of_cell(answer.hits, i, cloud_.blocks_per_cell());
+    const auto poses = part_of_cell(answer.first_poses, i, cloud_.cell_entries());
+    record.put(kCell);
+    record.put_count(cells[i].cell);
+    put_words(
+        record, hits.size(), [&](std::size_t word) { return hits[word]; },
+        [&](std::size_t point) {
+          if (!poses.empty()) record.put_count(poses[point]);
+        });
+    if (query_.clearance > 0) {
+      put_clearances(record, part_of_cell(answer.clearances, i, cloud_.cell_entries()));
+    }
+    append(record);
+  }
+}
+
+void SearchJournal::append_marks(std::span<PoseMark> marks) {
+  const auto key = [this](const PoseMark& mark) {
+    return std::pair(mark.word, query_.first_pose ? mark.pose : 0);
+  };
+  std::sort(marks.begin(), marks.end(),
+            [&](const PoseMark& a, const PoseMark& b) { return key(a) < key(b); });
+  std::size_t merged = 0;  // marks of the same word and pose are one
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (merged > 0 && key(marks[merged - 1]) == key(marks[i])) {
+      marks[merged - 1].bits |= marks[i].bits;
+    } else {
+      marks[merged++] = marks[i];
+    }
+  }
+  JournalRecord record;
+  record.put(kMarks);
+  record.put_count(merged);
+  std::uint64_t word = 0;
+  for (const PoseMark& mark : marks.first(merged)) {
+    record.put_count(mark.word - word);
+    record.put(mark.bits);
+    if (query_.first_pose) record.put_count(mark.pose);
+    word = mark.word;
+  }
+  append(record);
+}
+
+void SearchJournal::append_finished_poses(std::uint32_t first, std::uint32_t count) {
+  JournalRecord record;
+  record.put(kFinishedPoses);
+  record.put_count(first);
+  record.put_count(count);
+  append(record);
+}
+
+std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& query, int threads) {
+  constexpr std::uint64_t kWordBytes = kMostCountBytes + sizeof(std::uint64_t);
+  constexpr std::uint64_t kPoseBytes = 5;
+  const bool clearance = query.clearance > 0;
+  const std::uint64_t block =
+      kWordBytes + (query.first_pose ? kBlockPoints * kPoseBytes : 0) +
+      (clearance ? kWordBytes + kBlockPoints * (sizeof(double) + kPoseBytes) : 0);
+  constexpr std::uint64_t kRecordBytes = 64;
+  // A vector that grows is there twice for a moment, the new one twice as large.
+  const std::uint64_t record = 3 * (kRecordBytes + cloud.blocks_per_cell() * block);
+  return static_cast<std::uint64_t>(threads) * record +
+         (cloud.cells().size() + query.poses.size()) / 8;
+}
+
+JournalledWork journalled_work(const JournalReader& journal) {
+  JournalledWork work;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> poses;  // first and count
+  journal.for_each([&](JournalPayload payload) {
+    switch (payload.take<std::uint8_t>()) {
+      case kCell:
+        ++work.cells;
+        break;
+      case kFinishedPoses: {
+        const std::uint64_t first = payload.take_count();
+        poses.emplace_back(first, payload.take_count());
+        break;
+      }
+      case kMarks:
+        break;
+      default:
+        payload.refuse("of an unknown kind");
+    }
+  });
+  // With other numbers of threads the poses were divided otherwise: some were finished twice.
+  std::sort(poses.begin(), poses.end());
+  std::uint64_t end = 0;
+  for (const auto& [first, count] : poses) {
+    const std::uint64_t past = first + std::min(count, ~first);
+    if (past <= end) continue;
+    work.poses += past - std::max(first, end);
+    end = past;
+  }
+  return work;
+}
+
+}  // namespace clearway

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/query/pose_journal.hpp"
+#include "core/query/search_result.hpp"
+#include "io/journal/journal.hpp"
+
+namespace clearway {
+
+/// The answer of a run as far as it is known, in a journal file: cell by cell from engines that
+/// work on pages, marks and finished poses from the others (docs/journal.md).
+class SearchJournal final : public PoseJournal {
+ public:
+  /// A new file, made by the first append, or, where `read` is given, the one that it read, to go
+  /// on with. Throws InputError naming the first record that cannot be of this cloud and query.
+  /// All outlive it but path and identity.
+  SearchJournal(std::filesystem::path path, JournalIdentity identity, const JournalReader* read,
+                const PackedCloud& cloud, const Query& query, double interval_seconds);
+
+  /// Adds what the file held to `answer`, of the same cloud and query.
+  void restore(SearchResult& answer) const { replay_all(&answer.hits, &answer.clearances); }
+  bool cell_finished(std::uint32_t cell) const { return finished_cells_[cell]; }
+
+  /// Keeps the answer of a page of these cells. Thread safe.
+  void append_page(std::span<const PlannedCell> cells, const PageResult& answer);
+
+  // PoseJournal
+  void restore(HitSet& hits) const override { replay_all(&hits, nullptr); }
+  bool poses_finished(std::uint32_t first, std::uint32_t count) const override;
+  void append_marks(std::span<PoseMark> marks) override;
+  void append_finished_poses(std::uint32_t first, std::uint32_t count) override;
+
+  /// Whether the file's name is still this journal's. Not while others append.
+  bool is_in_place() const;
+
+  /// Memory at the most, while as many threads append, bytes.
+  static std::uint64_t most_bytes(const PackedCloud& cloud, const Query& query, int threads);
+
+ private:
+  void note_finished();
+  void append(JournalRecord& record);
+  void replay_all(HitSet* hits, ClearanceSet* clearances) const;
+  void replay_cell(JournalPayload& payload, HitSet* hits, ClearanceSet* clearances) const;
+  void replay_marks(JournalPayload& payload, HitSet* hits) const;
+  std::uint32_t take_cell(JournalPayload& payload) const;
+  std::uint32_t take_pose(JournalPayload& payload) const;
+  std::uint64_t take_points(JournalPayload& payload, std::uint64_t word) const;
+
+  const PackedCloud& cloud_;
+  const Query& query_;
+  const JournalReader* read_;
+  std::vector<bool> finished_cells_;
+  std::vector<bool> finished_poses_;
+  std::filesystem::path path_;
+  JournalIdentity identity_;
+  double interval_seconds_;
+  std::mutex mutex_;
+  std::optional<JournalWriter> writer_;
+};
+
+/// How far the run of a journal came. Throws InputError for a record that is none of a run.
+struct JournalledWork {
+  std::uint64_t cells = 0;  ///< finished, or
+  std::uint64_t poses = 0;
+};
+JournalledWork journalled_work(const JournalReader& journal);
+
+}  // namespace clearway

@@ -1,0 +1,114 @@
+#include "core/sweep/model_field.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/geometry/predicate.hpp"
+
+using namespace clearway;
+
+namespace {
+
+double brute_squared(const std::vector<Vec3>& model, const Vec3& x) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& m : model) least = std::min(least, squared_distance(m, x));
+  return least;
+}
+
+/// Lower bounds hold everywhere, and near the model they are tight. Returns the worst looseness of
+/// the distance within the band.
+double check_field(const std::vector<Vec3>& model, double radius, double voxel) {
+  const ModelTree tree(model);
+  const ModelField field(tree, radius, {.voxel = voxel}, 1);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Box& box = tree.box();
+  double worst = 0;
+  std::uint64_t wrong = 0, near = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    Vec3 x;
+    const Vec3& m = model[i % model.size()];
+    for (int k = 0; k < 3; ++k) {
+      const double wide = box.hi[k] - box.lo[k] + 8 * radius;
+      x[k] = i % 2 == 0 ? box.lo[k] + (unit(random) * 2 - 0.5) * wide
+                        : m[k] + (unit(random) - 0.5) * 4 * radius;
+    }
+    const double squared = brute_squared(model, x);
+    const ModelField::Bounds bounds = field.bounds(x);
+    // The slack that the caller adds for roundings of positions.
+    const double slack = 1e-12 * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z) + radius);
+    wrong += std::sqrt(bounds.squared_lower) > std::sqrt(squared) + slack;
+    if (squared < radius * radius) {
+      ++near;
+      wrong += bounds.near == ModelField::kNone;
+      worst = std::max(worst, std::sqrt(squared) - std::sqrt(bounds.squared_lower));
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(near > 100);
+  return worst;
+}
+
+std::vector<Vec3> shell(std::size_t count, const Vec3& centre) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 v{normal(random), normal(random), normal(random)};
+    const double scale = 1 / std::sqrt(squared_length(v.x, v.y, v.z));
+    points.push_back({centre.x + 2 * v.x * scale, centre.y + v.y * scale, centre.z + v.z * scale});
+  }
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE("the nearest model point is the one that brute force finds") {
+  const auto model = shell(3000, {1, 2, 3});
+  const ModelTree tree(model);
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit(-3, 7);
+  bool equal = true;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 x{unit(random), unit(random), unit(random)};
+    const ModelTree::Nearest nearest = tree.nearest(x, static_cast<std::uint32_t>(i) % 3000);
+    equal &= nearest.squared_distance == brute_squared(model, x) &&
+             squared_distance(tree.point(nearest.point), x) == nearest.squared_distance;
+    const double squared_radius = nearest.squared_distance;
+    equal &= tree.ref().any_within(x, squared_radius, [](const Vec3&) { return true; });
+    equal &= !tree.ref().any_within(x, std::nextafter(squared_radius, 0),
+                                    [](const Vec3&) { return true; });
+  }
+  CHECK(equal);
+}
+
+TEST_CASE("field bounds hold and are tight near the model") {
+  SECTION("a shell, voxel of half the radius") {
+    CHECK(check_field(shell(2000, {0, 0, 0}), 0.1, 0.05) < 0.04);
+  }
+  SECTION("a shell far from its origin") { check_field(shell(500, {5e6, 2e6, 1e3}), 0.1, 0); }
+  SECTION("a fine voxel") { CHECK(check_field(shell(500, {0, 0, 0}), 0.2, 0.02) < 0.01); }
+  SECTION("a radius below the voxel") { check_field(shell(500, {0, 0, 0}), 0.01, 0.05); }
+  SECTION("a radius larger than the model") { check_field(shell(500, {0, 0, 0}), 20, 0); }
+  SECTION("one point") { check_field({{1, 2, 3}}, 0.1, 0); }
+  SECTION("duplicates") { check_field(std::vector<Vec3>(100, {1, 2, 3}), 0.1, 0); }
+  SECTION("a plane") {
+    std::vector<Vec3> plane;
+    for (int i = 0; i < 2500; ++i) plane.push_back({i % 50 * 0.02, i / 50 * 0.02, 0});
+    check_field(plane, 0.1, 0);
+  }
+}
+
+TEST_CASE("a field keeps within its memory by larger voxels") {
+  const auto model = shell(2000, {0, 0, 0});
+  const ModelTree tree(model);
+  for (const double voxel : {0.0, 1e-3, 1e-9}) {
+    CAPTURE(voxel);
+    const ModelField small(tree, 0.01, {.voxel = voxel, .most_bytes = 1 << 20}, 1);
+    CHECK(small.allocated_bytes() < 3 << 20);
+    CHECK(small.voxel() > 0.005);
+  }
+}

@@ -1,0 +1,173 @@
+#include "core/trajectory/resample_trajectory.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/geometry/predicate.hpp"
+#include "core/trajectory/thin_trajectory.hpp"
+#include "core/trajectory/trajectory_motion.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+using Catch::Contains;
+
+namespace {
+
+const Box kModel{{-2, -1, 0}, {3, 1, 1.5}};
+constexpr double kPi = 3.14159265358979323846;
+
+std::vector<Pose> resampled(const std::vector<Pose>& poses, double max_motion,
+                            const Box& model = kModel) {
+  NoProgress progress;
+  return resample_trajectory(poses, model, max_motion, progress);
+}
+
+/// All given poses are there, in order, and no random point of the model moves too far.
+void check_resampled(const std::vector<Pose>& poses, const std::vector<Pose>& out,
+                     double max_motion) {
+  auto at = out.begin();
+  bool kept = true;
+  for (const Pose& pose : poses) {
+    at = std::find(at, out.end(), pose);
+    kept &= at != out.end();
+    if (kept) ++at;
+  }
+  CHECK(kept);
+  CHECK(at == out.end());
+  CHECK(largest_motion(kModel, out) <= max_motion);
+  Random random(5);
+  bool bounded = true;
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    const Vec3 m = random_point(random, kModel);
+    const double d2 = squared_distance(transform(out[i - 1], m), transform(out[i], m));
+    bounded &= std::sqrt(d2) <= max_motion;
+  }
+  CHECK(bounded);
+}
+
+}  // namespace
+
+TEST_CASE("resampling bounds the motion and keeps the poses") {
+  Random random(21);
+  std::vector<Pose> poses;
+  const auto add = [&](std::size_t count, double step, double far, double turn) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 d = random_direction(random);
+      const double by = static_cast<double>(i) * step;
+      poses.push_back(rotation(random_direction(random), uniform(random, 0, turn),
+                               {far + by + d.x, far + d.y, d.z}));
+    }
+  };
+  SECTION("a smooth path") { poses = smooth_path(random, {{0, 0, 0}, {50, 50, 5}}, 100); }
+  SECTION("wild turns") { add(60, 0.5, 0, kPi); }
+  SECTION("far from the origin") { add(60, 2, 5e6, 0.5); }
+  SECTION("printed with six digits") {
+    add(60, 1, 1e3, 1);
+    std::transform(poses.begin(), poses.end(), poses.begin(), printed_with_six_digits);
+  }
+  SECTION("scaled and sheared") {
+    add(30, 1, 0, 1);
+    for (Pose& pose : poses) pose = stretched(pose, {uniform(random, 0.5, 2), 1, 1});
+  }
+  SECTION("half turns") {
+    for (int i = 0; i < 20; ++i) poses.push_back(rotation({0, 0, 1}, i * kPi, {i * 0.1, 0, 0}));
+  }
+  SECTION("stops, repeats and jumps") {
+    add(5, 1, 0, 1);
+    poses.insert(poses.end(), 30, poses.back());
+    add(5, 1, 700, 1);
+    poses.insert(poses.end(), 30, poses.back());
+    poses.push_back(poses[0]);
+  }
+  SECTION("equal poses far away") { poses.assign(50, rotation({1, 0, 0}, 1, {5e6, 2e6, 1e9})); }
+  SECTION("one pose") { add(1, 0, 0, 1); }
+  SECTION("two poses") { add(2, 1, 0, 1); }
+  SECTION("none") {}
+  for (const double max_motion : {0.03, 1.0}) {
+    check_resampled(poses, resampled(poses, max_motion), max_motion);
+  }
+}
+
+TEST_CASE("resampling adds hardly more poses than the way needs") {
+  Random random(22);
+  const auto poses = smooth_path(random, {{0, 0, 0}, {50, 50, 5}}, 20);
+  const auto out = resampled(poses, 0.01);
+  const auto finest = resampled(poses, 0.001);
+  double length = 0, shortest = 1;
+  for (std::size_t i = 1; i < finest.size(); ++i) {
+    length += motion_bound(kModel, finest[i - 1], finest[i]);
+  }
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    shortest = std::min(shortest, motion_bound(kModel, out[i - 1], out[i]));
+  }
+  CHECK(static_cast<double>(out.size()) <= 1.05 * length / 0.01 + 40);
+  CHECK(shortest >= 0.009);
+}
+
+TEST_CASE("resampling is steady in steps on a straight jump between slow poses") {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 10; ++i) poses.push_back(translation({i * 0.001 + (i < 5 ? 0 : 300), 0, 0}));
+  const auto out = resampled(poses, 0.01);
+  CHECK(out.size() < 31000);
+  check_resampled(poses, out, 0.01);
+}
+
+TEST_CASE("what is dense enough already is left alone") {
+  Random random(23);
+  const auto poses = smooth_path(random, {{0, 0, 0}, {1, 1, 1}}, 1000);
+  const double motion = largest_motion(kModel, poses);
+  CHECK(resampled(poses, motion) == poses);
+  const auto once = resampled(poses, motion / 3);
+  CHECK(once.size() > 2 * poses.size());
+  CHECK(resampled(once, motion / 3) == once);
+}
+
+TEST_CASE("a model of one point may turn about itself") {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 40; ++i) {
+    poses.push_back(rotation({0, 0, 1}, i, {i / 10 * 1.0, 0, 0}));
+  }
+  const Vec3 origin{0, 0, 0};
+  const auto out = resampled(poses, 0.1, {origin, origin});
+  CHECK(largest_motion({origin, origin}, out) <= 0.1);
+  CHECK(out.size() < 100);
+}
+
+TEST_CASE("resampling refuses what takes too many poses and says what does not") {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 10; ++i) poses.push_back(translation({i * 0.1, i < 7 ? 0.0 : 5000, 0}));
+  NoProgress progress;
+  CHECK_THROWS_WITH(resample_trajectory(poses, kModel, 0.01, progress, 1000),
+                    Contains("poses 6 and 7") && Contains("expected 5."));
+  const auto out = resample_trajectory(poses, kModel, 5.07, progress, 1000);
+  CHECK(out.size() <= 1000 + poses.size());
+  CHECK_THROWS_AS(resampled(poses, 1e-5), UsageError);
+}
+
+TEST_CASE("resampling refuses a bound below the rounding far from the origin") {
+  const std::vector<Pose> poses{translation({5e6, 0, 0}), translation({5e6 + 1e-6, 0, 0})};
+  CHECK_THROWS_WITH(resampled(poses, 1e-9), Contains("rounding"));
+}
+
+TEST_CASE("resampling refuses motion that is no number") {
+  const std::vector<Pose> poses{translation({1e300, 0, 0}), translation({-1e300, 0, 0})};
+  CHECK_THROWS_AS(resampled(poses, 0.1), InputError);
+}
+
+TEST_CASE("thinning and resampling stays near the poses that were dropped") {
+  Random random(24);
+  const auto poses = smooth_path(random, {{0, 0, 0}, {50, 50, 5}}, 5000);
+  std::vector<Pose> kept;
+  for (const std::size_t i : thin_trajectory(poses, kModel, 0.5)) kept.push_back(poses[i]);
+  const auto out = resampled(kept, 0.01);
+  check_resampled(kept, out, 0.01);
+  double worst = 0;
+  for (std::size_t i = 0; i < poses.size(); i += 50) {
+    double nearest = 1e300;
+    for (const Pose& pose : out) nearest = std::min(nearest, motion_bound(kModel, pose, poses[i]));
+    // What follows the last kept pose is within the bound of thinning alone.
+    worst = std::max(worst, i + 100 < poses.size() ? nearest : 0);
+  }
+  CHECK(worst < 0.01);
+}

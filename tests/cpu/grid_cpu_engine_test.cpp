@@ -1,0 +1,165 @@
+// What only the grid engine has: its options, its work list, its pages, its statistics.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "core/grid/grid_cell.hpp"
+#include "core/grid/grid_search.hpp"
+#include "core/grid/grid_size.hpp"
+#include "cpu/brute_force.hpp"
+#include "support/grid_runs.hpp"
+#include "support/memory_cloud.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+
+namespace {
+
+const Quantisation kMillimetre{{1e-3, 1e-3, 1e-3}, {500, -200, 0}};
+
+struct Scene {
+  Random random{9};
+  std::vector<Quantum> points;
+  std::vector<Vec3> model = random_points(random, {{-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}}, 300);
+  std::vector<Pose> poses = smooth_path(random, {{498, -203, -1}, {505, -197, 2}}, 70);
+  double radius = 0.15;
+
+  explicit Scene(std::size_t count = 5000) {
+    points = quantise(random_points(random, {{496, -205, -1}, {506, -195, 2}}, count), kMillimetre);
+  }
+
+  Query query(bool first_pose = false) const {
+    return {model, poses, {.radius = radius, .first_pose = first_pose}};
+  }
+
+  /// How many points the run answers wrongly.
+  std::uint64_t wrong(const GridRun& run, const MemoryCloudOptions& packing,
+                      GridStatistics* statistics = nullptr) const {
+    const auto expected = brute_force_first_poses(positions_of(points, kMillimetre), query());
+    const MemoryCloud cloud(points, kMillimetre, packing);
+    std::uint64_t count = 0;
+    for (const bool first_pose : {false, true}) {
+      const HitSet hits = run_grid(cloud, query(first_pose), run, statistics);
+      for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
+        const bool used = cloud.is_used(slot);
+        const std::uint32_t pose = used ? expected[cloud.source(slot)] : HitSet::kNever;
+        count += hits.contains(slot) != (pose != HitSet::kNever);
+        if (first_pose) count += hits.first_pose(slot) != pose;
+      }
+    }
+    return count;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("grid cells from tiny to huge") {
+  const Scene scene;
+  for (double size = 1e-9; size < 1e9; size *= 10) {
+    CAPTURE(size);
+    CHECK(scene.wrong({.options = {.grid_cell = size}}, {1000, 0}) == 0);
+  }
+}
+
+TEST_CASE("a work list of one pair, and of few") {
+  const Scene scene;
+  for (const std::uint32_t work_list : {0, 1, 2, 31, 513}) {
+    CAPTURE(work_list);
+    CHECK(scene.wrong({.work_list = work_list}, {1000, 0}) == 0);
+  }
+}
+
+TEST_CASE("pages of one cell and of all, one slot and many") {
+  const Scene scene;
+  for (const std::uint32_t cells : {1, 2, 100}) {
+    for (const std::uint32_t slots : {1, 5}) {
+      CHECK(scene.wrong({.slots = slots, .cells_a_page = cells}, {256, 700}) == 0);
+    }
+  }
+}
+
+TEST_CASE("a model of several tasks") {
+  // More parts than one task looks at, the last one short.
+  Scene scene(300);
+  scene.model = random_points(scene.random, {{-1, -1, -0.3}, {1, 1, 0.3}},
+                              kTaskParts * kPartGroups * kGroupPoints + 5000);
+  scene.poses.resize(3);
+  GridStatistics statistics;
+  CHECK(scene.wrong({}, {128, 0}, &statistics) == 0);
+  CHECK(statistics.searches > 0);
+}
+
+TEST_CASE("a sparse cell takes no more memory, and its clusters are searched in grid cells") {
+  // Clusters of a metre over 100 km: a dense grid would have 1e18 cells.
+  Scene scene(0);
+  const double distances[] = {0, 40'000, 100'000};
+  for (const double far : distances) {
+    for (const Vec3& p : random_points(scene.random, {{498, -203, -1}, {502, -199, 2}}, 2000)) {
+      scene.points.push_back(quantise(std::vector{Vec3{p.x + far, p.y, p.z}}, kMillimetre)[0]);
+    }
+  }
+  GridStatistics statistics;
+  CHECK(scene.wrong({}, {65536, 0}, &statistics) == 0);
+  CHECK(statistics.searches > 0);
+  // A third of the points would be 2,000 a search.
+  CHECK(statistics.point_tests < 100 * statistics.searches);
+}
+
+TEST_CASE("most searches end at a bit, and few pairs need the predicate") {
+  const Scene scene;
+  GridStatistics statistics;
+  scene.wrong({}, {1000, 0}, &statistics);
+  CHECK(statistics.points_moved < 2 * 2 * scene.model.size() * scene.poses.size());
+  CHECK(statistics.searches < statistics.points_moved);
+  CHECK(statistics.exact_tests * 1000 < statistics.point_tests);
+}
+
+TEST_CASE("every pose of a page's nodes belongs to one task") {
+  const Scene scene(2000);
+  const MemoryCloud cloud(scene.points, kMillimetre, {256, 0});
+  const Query query = scene.query();
+  const MotionTree motion(scene.poses, ModelGroups(scene.model).box());
+  const GridScene grid(query, motion, cloud);
+  std::vector<int> times(scene.poses.size());
+  for (const std::uint32_t run : grid.runs()) {
+    CHECK(grid.nodes()[run].count <= kRunPoses);
+    for (std::uint32_t i = 0; i < grid.nodes()[run].count; ++i)
+      ++times[grid.nodes()[run].first + i];
+  }
+  CHECK(times == std::vector<int>(scene.poses.size(), 1));
+  for (const GridNode& node : grid.nodes()) {
+    if (node.count <= kRunPoses) continue;
+    const GridNode& first = grid.nodes()[grid.runs()[node.first_run]];
+    const GridNode& last = grid.nodes()[grid.runs()[node.first_run + node.runs - 1]];
+    CHECK(first.first == node.first);
+    CHECK(last.first + last.count == node.first + node.count);
+  }
+}
+
+TEST_CASE("what the grid engine does not offer is refused") {
+  const Scene scene(100);
+  const MemoryCloud cloud(scene.points, kMillimetre);
+  const MotionTree motion(scene.poses, ModelGroups(scene.model).box());
+  Query query = scene.query();
+  query.between_poses = true;
+  CHECK_THROWS_AS(GridScene(query, motion, cloud), UsageError);
+  query.between_poses = false;
+  query.clearance = 1;
+  CHECK_THROWS_AS(GridScene(query, motion, cloud), UsageError);
+}
+
+TEST_CASE("the grid cell chosen follows radius and density") {
+  CHECK(cheapest_grid_cell(0.1, 0) >= 0.2);     // looking up is all the cost
+  CHECK(cheapest_grid_cell(0.1, 1e7) <= 0.05);  // testing points is
+  CHECK(cheapest_grid_cell(1, 100) == 10 * cheapest_grid_cell(0.1, 10'000));
+  for (double density = 1; density < 1e7; density *= 3) {
+    CHECK(cheapest_grid_cell(0.1, density) >= cheapest_grid_cell(0.1, 3 * density));
+  }
+  Random random(2);
+  const auto plane =
+      quantise(random_points(random, {{500, -200, 0}, {510, -190, 0}}, 100'000), kMillimetre);
+  const double density = surface_density(MemoryCloud(plane, kMillimetre));
+  CHECK(density > 700);  // of 1000 a square metre
+  CHECK(density < 2000);
+  CHECK(surface_density(MemoryCloud({}, kMillimetre)) == 0);
+}

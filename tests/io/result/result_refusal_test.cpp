@@ -1,0 +1,157 @@
+#include <hdf5.h>
+
+#include <catch2/catch.hpp>
+
+#include "clearway/error.hpp"
+#include "io/hdf5/hdf5.hpp"
+#include "io/result/result.hpp"
+#include "support/leaks_of_hdf5.hpp"
+#include "support/result_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// Reads everything. True when it is what was written; throws InputError when damage was seen.
+bool reads_as(const std::filesystem::path& path, const ResultHeader& header,
+              const ResultRows& rows) {
+  const ResultReader reader(path);
+  return reader.header() == header && same_rows(read_rows(reader), rows);
+}
+
+void put_byte(const std::filesystem::path& path, std::size_t at, int byte) {
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(static_cast<std::streamoff>(at));
+  file.put(static_cast<char>(byte));
+}
+
+/// Opens a written result for changing it behind the reader's back.
+hdf5::Id open_to_change(const std::filesystem::path& path) {
+  return {H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "open"};
+}
+
+template <typename Number>
+void replace_dataset(const std::filesystem::path& path, const std::string& name,
+                     const std::vector<Number>& values, std::uint64_t columns) {
+  const hdf5::Id file = open_to_change(path);
+  REQUIRE(H5Ldelete(file.get(), name.c_str(), H5P_DEFAULT) >= 0);
+  hdf5::write_dataset(file, name, std::span<const Number>(values), columns);
+}
+
+}  // namespace
+
+TEST_CASE("what is not a result is refused") {
+  const ScratchFolder folder;
+  CHECK_THROWS_WITH(ResultReader(folder / "missing.h5"), Contains("No such file"));
+  put_bytes(folder / "empty.h5", "");
+  CHECK_THROWS_WITH(ResultReader(folder / "empty.h5"), Contains("not an HDF5 file"));
+  put_bytes(folder / "text.h5", "x y z\n1 2 3\n");
+  CHECK_THROWS_AS(ResultReader(folder / "text.h5"), InputError);
+  { const hdf5::Id other = hdf5::create_file(folder / "other.h5"); }
+  CHECK_THROWS_WITH(ResultReader(folder / "other.h5"),
+                    Contains("other.h5") && Contains("not a result of clearway run"));
+}
+
+TEST_CASE("a result cut at any byte is refused") {
+  const ScratchFolder folder;
+  const ResultHeader header = sample_header(true);
+  write_result(folder / "out.h5", header, sample_rows(header, 5));
+  const std::string bytes = bytes_of(folder / "out.h5");
+  for (std::size_t size = bytes.size() - 1; size < bytes.size(); --size) {
+    std::filesystem::resize_file(folder / "out.h5", size);
+    CHECK_THROWS_AS(reads_as(folder / "out.h5", header, {}), InputError);
+  }
+}
+
+TEST_CASE("a flipped byte anywhere is noticed or changes nothing") {
+  const LeaksOfHdf5 ignored;
+  const ScratchFolder folder;
+  ResultHeader header = sample_header(true);
+  // A CRS of several kilobytes: such attributes must be as well guarded as short ones.
+  header.crs_wkt = GENERATE(std::string("EPSG"), std::string(6000, 'w'));
+  const ResultRows rows = sample_rows(header, 5);
+  write_result(folder / "out.h5", header, rows);
+  const std::string bytes = bytes_of(folder / "out.h5");
+  std::size_t noticed = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    put_byte(folder / "out.h5", at, bytes[at] ^ (at % 2 == 0 ? 0xff : 1 << at / 2 % 8));
+    INFO("byte " << at);
+    bool same = false;
+    try {
+      same = reads_as(folder / "out.h5", header, rows);
+    } catch (const InputError&) {
+      ++noticed;
+      same = true;
+    }
+    CHECK(same);
+    put_byte(folder / "out.h5", at, bytes[at]);
+  }
+  CHECK(noticed > bytes.size() / 2);
+}
+
+TEST_CASE("datasets of another type or shape, or with impossible values, are refused") {
+  const ScratchFolder folder;
+  const ResultHeader header = sample_header(true);
+  const ResultRows rows = sample_rows(header, 3);
+  const auto path = folder / "out.h5";
+  write_result(path, header, rows);
+  const auto refused = [&](const std::string& expectation) {
+    CHECK_THROWS_AS(reads_as(path, header, rows), InputError);
+    CHECK_THROWS_WITH(reads_as(path, header, rows), Contains("out.h5") && Contains(expectation));
+  };
+
+  SECTION("type of source") {
+    replace_dataset<std::uint32_t>(path, "/collisions/source", {1, 2, 3}, 0);
+    refused("collisions/source");
+  }
+  SECTION("shape of xyz") {
+    replace_dataset<double>(path, "/collisions/xyz", {1, 2, 3, 4, 5, 6}, 2);
+    refused("collisions/xyz");
+  }
+  SECTION("rows of first_pose") {
+    replace_dataset<std::uint32_t>(path, "/collisions/first_pose", {1, 2}, 0);
+    refused("rows");
+  }
+  SECTION("no first_pose") {
+    REQUIRE(H5Ldelete(open_to_change(path).get(), "/collisions/first_pose", H5P_DEFAULT) >= 0);
+    refused("collisions/first_pose");
+  }
+  SECTION("sources not ascending") {
+    replace_dataset<std::uint64_t>(path, "/collisions/source", {1, 3, 3}, 0);
+    refused("row 2");
+  }
+  SECTION("a source past the environment") {
+    replace_dataset<std::uint64_t>(path, "/collisions/source", {1, 2, 5'000'000'000}, 0);
+    refused("row 2");
+  }
+  SECTION("a coordinate that is not a number") {
+    replace_dataset<double>(path, "/collisions/xyz", {1, 2, 3, 4, NAN, 6, 7, 8, 9}, 3);
+    refused("row 1");
+  }
+  SECTION("a pose past the trajectory") {
+    replace_dataset<std::uint32_t>(path, "/collisions/first_pose", {1, 2, 4'000'000'000}, 0);
+    refused("row 2");
+  }
+  SECTION("another version") {
+    {
+      const hdf5::Id file = open_to_change(path);
+      REQUIRE(H5Adelete(file.get(), "version") >= 0);
+      const std::uint32_t version = 3;
+      hdf5::write_attribute(file, "version", std::span<const std::uint32_t>(&version, 1));
+    }
+    refused("'version' is 3");
+  }
+}
+
+TEST_CASE("sources that do not ascend from one batch to the next are refused") {
+  const ScratchFolder folder;
+  const ResultHeader header = sample_header(false);
+  ResultRows rows = sample_rows(header, 65'537);
+  write_result(folder / "out.h5", header, rows);
+  rows.source.back() = rows.source[65'535];
+  replace_dataset<std::uint64_t>(folder / "out.h5", "/collisions/source", rows.source, 0);
+  const ResultReader reader(folder / "out.h5");
+  CHECK_THROWS_WITH(read_rows(reader), Contains("row 65536"));
+}

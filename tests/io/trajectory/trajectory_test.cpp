@@ -1,0 +1,159 @@
+#include "io/trajectory/trajectory.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+std::vector<Pose> poses_of(const std::string& text,
+                           TrajectoryFormat format = TrajectoryFormat::kAuto, bool any = false) {
+  ReaderScratch scratch;
+  return read_trajectory(scratch.write("path.txt", text), {format, any});
+}
+
+std::string refusal_of_text(const std::string& text,
+                            TrajectoryFormat format = TrajectoryFormat::kAuto, bool any = false) {
+  ReaderScratch scratch;
+  const auto path = scratch.write("path.txt", text);
+  try {
+    read_trajectory(path, {format, any});
+  } catch (const InputError& error) {
+    CHECK_THAT(error.what(), Contains(path.string()));
+    return error.what();
+  }
+  return {};
+}
+
+/// A quarter turn about z, to (7, 8, 9).
+const Pose kTurn{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {7, 8, 9}};
+const std::string kIdentity = "1 0 0 0 0 1 0 0 0 0 1 0";
+const std::string kTurnRow = "0 -1 0 7 1 0 0 8 0 0 1 9";
+const std::string kHalf = "0.70710678118654752";  // quaternion (0, 0, kHalf, kHalf)
+
+void check_turn(const std::vector<Pose>& poses) {
+  REQUIRE(poses.size() == 1);
+  for (int k = 0; k < 9; ++k) CHECK(std::abs(poses[0].rotation[k] - kTurn.rotation[k]) < 1e-15);
+  for (int k = 0; k < 3; ++k) CHECK(poses[0].translation[k] == kTurn.translation[k]);
+}
+
+}  // namespace
+
+TEST_CASE("matrices of 12 and 16 numbers stay as read") {
+  CHECK(poses_of(kTurnRow + "\n") == std::vector<Pose>{kTurn});
+  CHECK(poses_of("# any\n\n" + kTurnRow + " 0 0 0 1\r\n" + kTurnRow + " 0 0 -0.0 1.0") ==
+        std::vector<Pose>{kTurn, kTurn});
+  CHECK(poses_of("0,-1,0,7,1,0,0,8,0,0,1,9\n") == std::vector<Pose>{kTurn});
+  CHECK(poses_of("0.99999 0 0 0 0 1 0 0 0 0 1 0\n").at(0).rotation[0] == 0.99999);
+  CHECK(poses_of("").empty());
+  CHECK(poses_of("# nothing\n").empty());
+}
+
+TEST_CASE("TUM: time, position, quaternion x y z w") {
+  const std::string row = "12.5 7 8 9 0 0 " + kHalf + " " + kHalf + "\n";
+  check_turn(poses_of("# time tx ty tz\n" + row));
+  check_turn(poses_of("# timestamp tx ty tz qx qy qz qw\n" + row));
+  check_turn(poses_of(row, TrajectoryFormat::kTum));
+  check_turn(poses_of("12.5,7,8,9,0,0," + kHalf + "," + kHalf));
+}
+
+TEST_CASE("EuRoC: nanoseconds, position, quaternion w x y z, and more") {
+  const std::string header =
+      "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+      "q_RS_z [], v_RS_R_x [m s^-1]\n";
+  const std::string row = "1403715524907143168,7,8,9," + kHalf + ",0,0," + kHalf + ",0.1\n";
+  check_turn(poses_of(header + row));
+  check_turn(poses_of(header + row, TrajectoryFormat::kEuroc));
+  check_turn(poses_of(row, TrajectoryFormat::kEuroc));
+  check_turn(poses_of(header.substr(1) + row, TrajectoryFormat::kEuroc));
+  check_turn(poses_of(header.substr(1) + row));
+}
+
+TEST_CASE("a CSV header names the columns, in any order") {
+  check_turn(poses_of("qw,qx,qy,qz,t,x,y,z\n" + kHalf + ",0,0," + kHalf + ",1,7,8,9\n"));
+  check_turn(
+      poses_of("name;q_x;q_y;q_z;q_w;p_x;p_y;p_z\na;0;0;" + kHalf + ";" + kHalf + ";7;8;9\n"));
+  check_turn(poses_of("\"Pos_X (m)\", pos_y, pos_z, QW, QX, QY, QZ\n7, 8, 9, " + kHalf +
+                      ", 0, 0, " + kHalf));
+  check_turn(poses_of("r00,r01,r02,r10,r11,r12,r20,r21,r22,tx,ty,tz\n0,-1,0,1,0,0,0,0,1,7,8,9\n"));
+  check_turn(poses_of("r11,r12,r13,r21,r22,r23,r31,r32,r33,tx,ty,tz\n0,-1,0,1,0,0,0,0,1,7,8,9\n",
+                      TrajectoryFormat::kCsv));
+  check_turn(poses_of("# t x y z qw qx qy qz\n1 7 8 9 " + kHalf + " 0 0 " + kHalf + "\n"));
+  CHECK_THAT(refusal_of_text("x,y,z,qx,qy,qz\n1,2,3,0,0,0\n"),
+             Contains("line 1") && Contains("qw"));
+  CHECK_THAT(refusal_of_text("x,tx,y,z,qx,qy,qz,qw\n"), Contains("line 1"));
+  CHECK_THAT(refusal_of_text("x,y,z,qx,qy,qz,qw\n1,2,3,0,0,0,1\n1,2,3,0,0,0,1,5\n"),
+             Contains("line 3") && Contains("8 columns; expected 7"));
+  CHECK_THAT(refusal_of_text("x,y,z,qx,qy,qz,qw\n1,2,,0,0,0,1\n"),
+             Contains("line 2") && Contains("column 3"));
+  CHECK_THAT(refusal_of_text("1,2,3,0,0,0,1\n", TrajectoryFormat::kCsv), Contains("header"));
+}
+
+TEST_CASE("a quaternion is normalised, and refused far from norm 1") {
+  const auto poses = poses_of("0 0 0 0 0 0 0 0.995\n");
+  REQUIRE(poses.size() == 1);
+  CHECK(poses[0].rotation[0] == 1);
+  CHECK_THAT(refusal_of_text("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1.02\n"),
+             Contains("line 2") && Contains("norm 1.02"));
+  CHECK_THAT(refusal_of_text("0 0 0 0 0 0 0 0\n"), Contains("norm 0"));
+  CHECK_THAT(refusal_of_text("0 nan 0 0 0 0 0 1\n"), Contains("finite"));
+  CHECK_THAT(refusal_of_text("0 0 0 0 0 0 0 1\ninf 0 0 0 0 0 0 1\n"), Contains("finite"));
+}
+
+TEST_CASE("a matrix that is not rigid is refused with its line and singular values") {
+  const std::string stretched = "1.001 0 0 0 0 1 0 0 0 0 1 0";
+  const std::string message = refusal_of_text(kIdentity + "\n" + stretched + "\n");
+  CHECK_THAT(message, Contains("line 2") && Contains("1.001") && Contains("--allow-non-rigid"));
+  CHECK(poses_of(stretched, TrajectoryFormat::kMatrix, true).size() == 1);
+  const std::string mirrored = "-1 0 0 0 0 1 0 0 0 0 1 0";
+  CHECK_THAT(refusal_of_text(mirrored), Contains("determinant -1"));
+  CHECK(poses_of(mirrored, TrajectoryFormat::kAuto, true).size() == 1);
+  for (const std::string singular : {"1 0 0 0 0 1 0 0 1 1 0 0", "0 0 0 0 0 0 0 0 0 0 0 0"}) {
+    CHECK_THAT(refusal_of_text(singular), Contains("line 1") && Contains("invertible"));
+    CHECK_THAT(refusal_of_text(singular, TrajectoryFormat::kAuto, true), Contains("invertible"));
+  }
+  CHECK_FALSE(
+      refusal_of_text("1e308 1e308 0 0 1e308 1e308 0 0 0 0 1 0", TrajectoryFormat::kAuto, true)
+          .empty());
+  CHECK_THAT(refusal_of_text("1 0 0 nan 0 1 0 0 0 0 1 0", TrajectoryFormat::kAuto, true),
+             Contains("finite"));
+}
+
+TEST_CASE("rotations printed with six digits are rigid") {
+  for (int i = 0; i < 100; ++i) {
+    char row[200];
+    const double a = 0.0628 * i;
+    std::snprintf(row, sizeof row, "%.6f %.6f 0 0 %.6f %.6f 0 0 0 0 1 0", std::cos(a), -std::sin(a),
+                  std::sin(a), std::cos(a));
+    CHECK(poses_of(row).size() == 1);
+  }
+}
+
+TEST_CASE("malformed trajectories are refused with their line") {
+  CHECK_THAT(refusal_of_text(kIdentity + "\n" + kIdentity + " 0 0 0 1\n"),
+             Contains("line 2") && Contains("16 numbers; expected 12"));
+  CHECK_THAT(refusal_of_text(kIdentity + "\n" + kIdentity + " x\n"), Contains("line 2"));
+  CHECK_THAT(refusal_of_text(kIdentity + "\n1 0 0 0 0 1 0 0 0 0 1\n"), Contains("11 numbers"));
+  CHECK_THAT(refusal_of_text(kIdentity + " 0 0 1 0\n"), Contains("last row"));
+  CHECK_THAT(refusal_of_text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"),
+             Contains("line 1") && Contains("several lines"));
+  CHECK_THAT(refusal_of_text("0 0 0 0 0 0 0 1\n" + kIdentity + "\n"), Contains("line 2"));
+  CHECK_THAT(refusal_of_text("1 2 3 4 5 6 7\n"), Contains("7 numbers"));
+  CHECK_THAT(refusal_of_text("1,0,0,0,0,1,0,0,0,0,1,\n"), Contains("line 1"));
+  CHECK_THAT(refusal_of_text("1,,0,0,0,1,0,0,0,0,1,0\n"), Contains("line 1"));
+  CHECK_THAT(refusal_of_text("hello\n"), Contains("line 1") && Contains("hello"));
+  CHECK_THAT(refusal_of_text("hello\n", TrajectoryFormat::kMatrix), Contains("line 1"));
+  CHECK_THAT(refusal_of_text(kIdentity, TrajectoryFormat::kTum),
+             Contains("12 numbers; expected 8"));
+  CHECK_THAT(refusal_of_text("0 0 0 0 0 0 0 1", TrajectoryFormat::kMatrix), Contains("8 numbers"));
+  CHECK_THAT(refusal_of_text("1,2,3\n", TrajectoryFormat::kEuroc), Contains("3 columns"));
+  CHECK_THAT(refusal_of_text("1403715524907143168,0,0,0,1,0,0,0\n"),
+             Contains("--trajectory-format"));
+  CHECK_THAT(refusal_of_text(std::string(70'000, '1')), Contains("65536"));
+}

@@ -1,0 +1,280 @@
+#include "stream/search_journal.hpp"
+
+#include <sys/resource.h>
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <limits>
+#include <optional>
+
+#include "clearway/error.hpp"
+#include "cpu/kdtree_engine.hpp"
+#include "cpu/sweep_engine.hpp"
+#include "planned_scene.hpp"
+#include "stream/run_pages.hpp"
+#include "support/result_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+const JournalIdentity kIdentity{{"query", "a test"}};
+constexpr double kNever = 1e9;  // seconds
+
+/// Asks to stop after as many calls of advance().
+class StoppingProgress final : public Progress {
+ public:
+  explicit StoppingProgress(std::uint64_t most) : most_(most) {}
+  void begin(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override { ++calls; }
+  void end() override {}
+  bool stop_requested() const override { return calls >= most_; }
+
+  std::atomic<std::uint64_t> calls{0};
+
+ private:
+  std::uint64_t most_;
+};
+
+constexpr auto kNoStop = std::numeric_limits<std::uint64_t>::max();
+
+std::uint64_t difference(const PackedCloud& cloud, const SearchResult& a, const SearchResult& b,
+                         const Query& query) {
+  std::uint64_t differ = 0;
+  for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
+    differ += a.hits.contains(slot) != b.hits.contains(slot);
+    if (query.first_pose) differ += a.hits.first_pose(slot) != b.hits.first_pose(slot);
+    if (query.clearance > 0) differ += a.clearances.at(slot) != b.clearances.at(slot);
+  }
+  return differ;
+}
+
+/// One query, answered with a journal from run to run.
+class JournalledScene {
+ public:
+  JournalledScene(bool first_pose, double clearance)
+      : scene({64, 0}, 9000, 150, first_pose, clearance) {}
+
+  /// Goes on with the journal, where there is one, until the progress asks to stop or it is done.
+  std::optional<SearchResult> sweep(std::uint64_t most_pages) {
+    const auto run = [&](SearchJournal& journal, Progress& progress) {
+      std::vector<PlannedCell> cells = scene.cells;
+      std::erase_if(cells,
+                    [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
+      const SlotLayout layout{3, smallest_page_bytes(scene.cloud, scene.cells), 1};
+      SweepEngine engine(scene.cloud, scene.filter, layout);
+      PageEngine* const engines[] = {&engine};
+      StageTimes times;
+      const auto pages = paginate(scene.cloud, cells, layout.page_bytes, 1);
+      return run_pages(scene.cloud, cells, pages, engines, scene.query, 2, progress, times,
+                       &journal);
+    };
+    return resume(most_pages, run);
+  }
+
+  std::optional<SearchResult> kdtree(std::uint64_t most_runs) {
+    const auto run = [&](SearchJournal& journal, Progress& progress) {
+      return SearchResult{run_kdtree(scene.cloud, scene.query, {2, &journal}, progress),
+                          ClearanceSet()};
+    };
+    return resume(most_runs, run);
+  }
+
+  template <typename Run>
+  std::optional<SearchResult> resume(std::uint64_t most, const Run& run) {
+    std::optional<JournalReader> read;
+    if (is_journal(path)) read.emplace(path);
+    SearchJournal journal(path, kIdentity, read ? &*read : nullptr, scene.cloud, scene.query,
+                          kNever);
+    StoppingProgress progress(most);
+    try {
+      SearchResult answer = run(journal, progress);
+      begun += progress.calls;
+      return answer;
+    } catch (const Interrupted&) {
+      begun += progress.calls;
+      return std::nullopt;
+    }
+  }
+
+  PlannedScene scene;
+  ScratchFolder folder;
+  std::filesystem::path path = folder / "a.journal";
+  std::uint64_t begun = 0;  ///< calls of advance() over all runs
+};
+
+/// No file of this process grows beyond this while it lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+/// Writes a journal with one record of these bytes, and opens it for the scene.
+void open_with(const JournalledScene& s, const std::string& bytes) {
+  std::filesystem::remove(s.path);
+  {
+    JournalWriter writer = JournalWriter::create(s.path, kIdentity, kNever);
+    JournalRecord record;
+    for (const char byte : bytes) record.put(byte);
+    writer.append(record);
+  }
+  const JournalReader read(s.path);
+  SearchJournal(s.path, kIdentity, &read, s.scene.cloud, s.scene.query, kNever);
+}
+
+}  // namespace
+
+TEST_CASE("a sweep stopped again and again gives the answer of one that was not") {
+  for (const bool first_pose : {false, true}) {
+    for (const double clearance : {0.0, 0.3}) {
+      CAPTURE(first_pose, clearance);
+      JournalledScene whole(first_pose, clearance), parts(first_pose, clearance);
+      const std::optional<SearchResult> expected = whole.sweep(kNoStop);
+      REQUIRE(expected);
+      REQUIRE(expected->hits.count() > 100);
+      std::optional<SearchResult> answer;
+      int runs = 0;
+      while (!answer) {
+        answer = parts.sweep(5);
+        REQUIRE(++runs < 200);
+      }
+      CHECK(runs > 5);
+      CHECK(parts.begun == whole.scene.cells.size());  // none twice
+      CHECK(difference(whole.scene.cloud, *answer, *expected, whole.scene.query) == 0);
+      const std::optional<SearchResult> again = parts.sweep(0);  // nothing is left to do
+      REQUIRE(again);
+      CHECK(difference(whole.scene.cloud, *again, *expected, whole.scene.query) == 0);
+      CHECK(journalled_work(JournalReader(parts.path)).cells == whole.scene.cells.size());
+    }
+  }
+}
+
+TEST_CASE("a kdtree search stopped again and again gives the answer of one that was not") {
+  for (const bool first_pose : {false, true}) {
+    CAPTURE(first_pose);
+    JournalledScene parts(first_pose, 0);
+    NoProgress progress;
+    const Query& query = parts.scene.query;
+    const SearchResult expected{run_kdtree(parts.scene.cloud, query, {2}, progress),
+                                ClearanceSet()};
+    REQUIRE(expected.hits.count() > 100);
+    std::optional<SearchResult> answer;
+    int runs = 0;
+    while (!answer) {
+      answer = parts.kdtree(5 * static_cast<std::uint64_t>(runs + 1));
+      REQUIRE(++runs < 200);
+    }
+    CHECK(runs > 2);
+    CHECK(difference(parts.scene.cloud, *answer, expected, query) == 0);
+    CHECK(journalled_work(JournalReader(parts.path)).poses == query.poses.size());
+  }
+}
+
+TEST_CASE("a kdtree search goes on from a journal cut at any record") {
+  JournalledScene s(true, 0);
+  NoProgress progress;
+  const SearchResult expected{run_kdtree(s.scene.cloud, s.scene.query, {2}, progress),
+                              ClearanceSet()};
+  REQUIRE(s.kdtree(kNoStop));
+  const std::string whole = bytes_of(s.path);
+  std::uint64_t records = 0;
+  for (std::size_t bytes = whole.size(); bytes > 200; bytes -= whole.size() / 50) {
+    put_bytes(s.path, whole.substr(0, bytes));
+    records += JournalReader(s.path).records();
+    const std::optional<SearchResult> answer = s.kdtree(kNoStop);
+    REQUIRE(answer);
+    CHECK(difference(s.scene.cloud, *answer, expected, s.scene.query) == 0);
+  }
+  CHECK(records > 100);
+}
+
+TEST_CASE("records that are not of the cloud and the query are refused") {
+  const JournalledScene set(false, 0), poses(true, 0), clearances(false, 0.3);
+  const std::string bits("\1\0\0\0\0\0\0\0", 8), none(8, '\0');
+  const std::string cell0("\1\0\1\0", 4);  // cell 0, one word, the first
+  CHECK_NOTHROW(open_with(set, cell0 + bits));
+  CHECK_NOTHROW(open_with(poses, cell0 + bits + '\5'));
+  CHECK_NOTHROW(open_with(set, std::string("\2\1\0", 3) + bits));
+  CHECK_NOTHROW(open_with(set, std::string("\3\0\5", 3)));
+  const auto refused = [](const JournalledScene& scene, const std::string& bytes,
+                          const std::string& what) {
+    CHECK_THROWS_WITH(open_with(scene, bytes), Contains("record 1 at byte") && Contains(what));
+  };
+  refused(set, "", "ends too early");
+  refused(set, "\7", "unknown kind");
+  refused(set, cell0 + none, "points that the store does not have");
+  refused(set, cell0 + bits + "x", "longer than what it holds");
+  refused(set, cell0 + bits.substr(1), "ends too early");
+  refused(set, std::string("\1\xff\xff\x7f\0", 5), "a cell that the store does not have");
+  refused(set, std::string("\1\0\1\1", 4) + bits, "a block past its cell's end");
+  refused(set, std::string("\1\0\2\0", 4) + bits + '\0' + bits, "a block past its cell's end");
+  refused(poses, cell0 + bits + "\xff\x7f", "a pose past the trajectory's end");
+  refused(set, std::string("\2\1\xff\xff\x7f", 5) + bits, "a block that the store does not have");
+  refused(set, std::string("\3\0\xff\x7f", 4), "poses past the trajectory's end");
+  refused(set, std::string("\3\xff\xff\xff\xff\xff\xff\xff\xff\xff\1\2", 12),
+          "poses past the trajectory's end");
+  const std::string clearance = std::string("\1\0\0\1\0", 5) + bits;
+  const auto distance = [](double squared) {
+    return std::string(reinterpret_cast<const char*>(&squared), sizeof squared);
+  };
+  CHECK_NOTHROW(open_with(clearances, clearance + distance(0.01) + '\5'));
+  for (const double squared :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    refused(clearances, clearance + distance(squared) + '\5', "a distance that is none");
+  }
+}
+
+TEST_CASE("a cell without hits costs a few bytes") {
+  const JournalledScene s(true, 0.3);
+  const std::uint64_t empty = [&] {
+    JournalWriter::create(s.path, kIdentity, kNever);
+    return std::filesystem::file_size(s.path);
+  }();
+  std::filesystem::remove(s.path);
+  {
+    SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+    const std::vector<std::uint64_t> hits(s.scene.cloud.blocks_per_cell());
+    const std::vector<std::uint32_t> poses(s.scene.cloud.cell_entries(), HitSet::kNever);
+    const std::vector<Clearance> clearances(s.scene.cloud.cell_entries());
+    journal.append_page(std::span(s.scene.cells).first(1), {hits, poses, clearances});
+  }
+  CHECK(std::filesystem::file_size(s.path) <= empty + 32 + 5);
+}
+
+TEST_CASE("a journal that cannot grow ends the run with its error") {
+  const JournalledScene s(false, 0);
+  SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+  const SlotLayout layout{3, smallest_page_bytes(s.scene.cloud, s.scene.cells), 1};
+  SweepEngine engine(s.scene.cloud, s.scene.filter, layout);
+  PageEngine* const engines[] = {&engine};
+  const auto pages = paginate(s.scene.cloud, s.scene.cells, layout.page_bytes, 1);
+  StageTimes times;
+  NoProgress progress;
+  {
+    const FileSizeLimit limit(300);
+    CHECK_THROWS_WITH(run_pages(s.scene.cloud, s.scene.cells, pages, engines, s.scene.query, 2,
+                                progress, times, &journal),
+                      Contains("a.journal: cannot write"));
+  }
+  const JournalReader read(s.path);  // the record that was not written whole is a torn tail
+  CHECK(read.records() > 0);
+  CHECK(read.records() < pages.size());
+  CHECK_FALSE(read.torn().empty());
+}

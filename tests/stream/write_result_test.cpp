@@ -1,0 +1,95 @@
+#include "stream/write_result.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
+
+#include "io/result/verify_result.hpp"
+#include "support/clouds.hpp"
+#include "support/store_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+constexpr std::uint64_t kPoints = 230'000;  // passes take 65,536 rows at the least
+
+/// A store whose order is far from that of the sources.
+class Site {
+ public:
+  Site() {
+    write_las(folder_ / "a.las", cube_cloud(kPoints, -100'000, 100'000, 1));
+    convert_quietly(conversion_of({folder_ / "a.las"}, folder_ / "a.h5", 1000));
+    store_.emplace(folder_ / "a.h5");
+  }
+
+  const StoreReader& store() const { return *store_; }
+
+  /// The result file's bytes.
+  std::string written(const SearchResult& answer, const ResultHeader& header,
+                      std::uint64_t memory_bytes) const {
+    NoProgress progress;
+    write_result(*store_, answer, header, folder_ / "out.h5", memory_bytes, progress);
+    CHECK_FALSE(verify_result(ResultReader(folder_ / "out.h5"), progress));
+    return bytes_of(folder_ / "out.h5");
+  }
+
+  ResultReader result() const { return ResultReader(folder_ / "out.h5"); }
+
+ private:
+  ScratchFolder folder_;
+  std::optional<StoreReader> store_;
+};
+
+ResultHeader header_of(const StoreReader& store) {
+  ResultHeader header = sample_header(true);
+  header.environment_points = store.point_count();
+  header.quantisation = store.quantisation();
+  header.clearance = 0.75;
+  return header;
+}
+
+double squared_of(std::uint64_t source) { return 1 / (4 + static_cast<double>(source)); }
+
+/// Most points have a clearance and a hit, both computed from the source's index.
+SearchResult answer_for(const StoreReader& store) {
+  SearchResult answer{HitSet(store.entry_count(), true), ClearanceSet(store.entry_count())};
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    const auto sources = store.sources(cell);
+    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
+      const std::uint64_t slot = std::uint64_t{cell} * store.cell_entries() + i;
+      const auto pose = static_cast<std::uint32_t>(sources[i] * 7);
+      if (sources[i] % 11 != 3) answer.hits.mark(slot, pose);
+      if (sources[i] % 5 != 2) answer.clearances.set(slot, {squared_of(sources[i]), pose});
+    }
+  }
+  return answer;
+}
+
+}  // namespace
+
+TEST_CASE("collisions and clearances written in several passes give the bytes of one") {
+  const Site site;
+  const SearchResult answer = answer_for(site.store());
+  const ResultHeader header = header_of(site.store());
+  const std::string once = site.written(answer, header, std::uint64_t{1} << 30);
+  for (const std::uint64_t memory : {0, 1, 5'000'000, 12'000'000}) {
+    CAPTURE(memory);
+    CHECK((site.written(answer, header, memory) == once));
+  }
+
+  const ResultReader result = site.result();
+  ClearanceRows batch;
+  std::uint64_t wrong = 0, source = 0;
+  for (ClearanceRowStream stream(result); stream.read(batch);) {
+    for (std::size_t i = 0; i < batch.size(); ++i, ++source) {
+      if (source % 5 == 2) ++source;
+      wrong += batch.source[i] != source ||
+               batch.pose[i] != static_cast<std::uint32_t>(source * 7) ||
+               batch.distance[i] != std::sqrt(squared_of(source));
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(source == kPoints);
+}

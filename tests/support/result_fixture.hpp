@@ -1,0 +1,124 @@
+#pragma once
+
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "io/result/result.hpp"
+#include "io/result/result_rows.hpp"
+
+namespace clearway::test {
+
+/// A folder of its own, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "clearway-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = pattern;
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error("cannot read " + path.string());
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void put_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream out(path, std::ios::binary);
+  out << bytes;
+  if (!out.flush()) throw std::runtime_error("cannot write " + path.string());
+}
+
+/// A header of a large environment, far from the origin, with unlike axes.
+inline ResultHeader sample_header(bool first_pose) {
+  ResultHeader header;
+  header.environment_points = 5'000'000'000;
+  header.environment_hash = 0xfedcba9876543210;
+  header.model_points = 1234;
+  header.model_hash = 0x0123456789abcdef;
+  header.poses = 4'000'000'000;
+  header.trajectory_hash = 0xffffffffffffffff;
+  header.radius = 0.1;
+  header.first_pose = first_pose;
+  header.quantisation = {{0.001, 0.0001, 0.01}, {5e6, -2e6 + 0.5, 1e3}};
+  return header;
+}
+
+/// Rows with gaps, negative quanta and first poses above 2^31; `count` of them.
+inline ResultRows sample_rows(const ResultHeader& header, std::size_t count) {
+  ResultRows rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto q = static_cast<std::int32_t>(i * 2654435761u);
+    rows.source.push_back(3 * i + i % 3 + (i > count / 2 ? 4'000'000'000 : 0));
+    rows.xyz.push_back(position(header.quantisation, q, -(q / 2), q ^ 0x55555555));
+    if (header.first_pose)
+      rows.first_pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
+  }
+  return rows;
+}
+
+inline ClearanceRows sample_clearances(const ResultHeader& header, std::size_t count) {
+  ClearanceRows rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    rows.source.push_back(2 * i + 1);
+    rows.distance.push_back(header.clearance / static_cast<double>(1 + i % 7));
+    rows.pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
+  }
+  return rows;
+}
+
+/// Writes `rows` by append() calls of `step` rows.
+inline void write_result(const std::filesystem::path& path, const ResultHeader& header,
+                         const ResultRows& rows, std::size_t step = 1000,
+                         const ClearanceRows& clearances = {}) {
+  ResultWriter writer(path, header, rows.size(), clearances.size());
+  for (std::size_t from = 0; from < rows.size(); from += step) {
+    const std::size_t count = std::min(step, rows.size() - from);
+    writer.append(std::span(rows.source).subspan(from, count),
+                  std::span(rows.xyz).subspan(from, count),
+                  header.first_pose ? std::span(rows.first_pose).subspan(from, count)
+                                    : std::span<const std::uint32_t>());
+  }
+  for (std::size_t from = 0; from < clearances.size(); from += step) {
+    const std::size_t count = std::min(step, clearances.size() - from);
+    writer.append_clearances(std::span(clearances.source).subspan(from, count),
+                             std::span(clearances.distance).subspan(from, count),
+                             std::span(clearances.pose).subspan(from, count));
+  }
+  writer.finish();
+}
+
+inline ResultRows read_rows(const ResultReader& reader) {
+  ResultRows all, batch;
+  ResultRowStream stream(reader);
+  while (stream.read(batch)) {
+    all.source.insert(all.source.end(), batch.source.begin(), batch.source.end());
+    all.xyz.insert(all.xyz.end(), batch.xyz.begin(), batch.xyz.end());
+    all.first_pose.insert(all.first_pose.end(), batch.first_pose.begin(), batch.first_pose.end());
+  }
+  return all;
+}
+
+inline bool same_rows(const ResultRows& a, const ResultRows& b) {
+  return a.source == b.source && a.xyz == b.xyz && a.first_pose == b.first_pose;
+}
+
+}  // namespace clearway::test

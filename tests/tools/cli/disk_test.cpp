@@ -1,0 +1,175 @@
+// Disks that are really full or read-only: exit code 4, the file named, nothing that looks
+// finished, and what was done is gone on with once there is room.
+#include <catch2/catch.hpp>
+
+#include "io/journal/journal.hpp"
+#include "tools/cli/hall.hpp"
+#include "tools/cli/small_disk.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+using Names = std::vector<std::string>;
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kPage = 4096;
+constexpr std::uint64_t kRoom = 64 << 20;
+
+/// Whether disks can be made here; says so where not.
+bool disks_can_be_made() {
+  if (may_mount()) return true;
+  WARN("not tested: this user may not mount file systems here");
+  return false;
+}
+
+const Hall& hall_of_small_cells() {
+  const Hall& hall = Hall::get();
+  const ScratchFolder log;
+  if (!fs::exists(hall.path("small_cells.h5")) &&
+      run_program(log, "convert " + hall / "environment.las" + " --cell-points 256 -o " +
+                           hall / "small_cells.h5")
+              .exit_code != 0) {
+    throw std::runtime_error("no store");
+  }
+  return hall;
+}
+
+struct Place {
+  Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
+  /// A run in the hall, of which every cell leaves some bytes in the journal.
+  std::string search(const std::string& engine, const fs::path& output) const {
+    return "run --env " + hall / "small_cells.h5" + " --model " + hall / "model.ply" +
+           " --trajectory " + hall / "trajectory.txt" +
+           " --radius 0.1 --first-pose --threads 2 --device cpu --engine " + engine + " -o " +
+           quoted(output);
+  }
+
+  const Hall& hall = hall_of_small_cells();
+  ScratchFolder folder;
+};
+
+void check_failed(const Outcome& outcome, const SmallDisk& disk) {
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 4);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains(disk.path().string()));
+}
+
+}  // namespace
+
+TEST_CASE("a run on a disk that is full goes on once there is room") {
+  if (!disks_can_be_made()) return;
+  const Place place;
+  const std::string engine = GENERATE("sweep", "grid", "kdtree");
+  CAPTURE(engine);
+  REQUIRE(place.run(place.search(engine, place.folder / "expected.h5")).exit_code == 0);
+  const std::string expected = bytes_of(place.folder / "expected.h5");
+  bool done = false;
+  int with_journal = 0, without_room_for_the_result = 0;
+  for (std::uint64_t bytes = kPage; !done; bytes += bytes < 8 * kPage ? kPage : bytes / 2) {
+    SmallDisk disk(bytes);
+    const fs::path output = disk / "out.h5";
+    CAPTURE(bytes);
+    const Outcome outcome = place.run(place.search(engine, output));
+    done = outcome.exit_code == 0;
+    if (done) {
+      CHECK(disk.files() == Names{"out.h5"});
+      continue;
+    }
+    check_failed(outcome, disk);
+    without_room_for_the_result += outcome.err.find("out.h5.journal") == std::string::npos;
+    if (!disk.files().empty()) {
+      REQUIRE(disk.files() == Names{"out.h5.journal"});
+      with_journal += JournalReader(journal_of(output)).records() > 0;
+      check_failed(place.run(place.search(engine, output) + " --resume"), disk);  // still full
+    }
+    disk.resize(kRoom);
+    const Outcome resumed = place.run(place.search(engine, output) + " --resume");
+    INFO(resumed.err);
+    REQUIRE(resumed.exit_code == 0);
+    CHECK((bytes_of(output) == expected));
+    CHECK(disk.files() == Names{"out.h5"});
+  }
+  CHECK(with_journal > 0);
+  CHECK(without_room_for_the_result > 0);
+}
+
+TEST_CASE("a conversion and an export on a disk that is full leave nothing, and work with room") {
+  if (!disks_can_be_made()) return;
+  const Place place;
+  REQUIRE(place.run(place.search("sweep", place.folder / "made.h5")).exit_code == 0);
+  const std::string made = quoted(place.folder / "made.h5");
+  const std::vector<std::pair<std::string, std::string>> commands{
+      {"convert " + place.hall / "environment.las", "out.h5"},
+      {"export " + made, "out.las"},
+      {"export " + made, "out.csv"},
+      {"export " + made, "out.ply"}};
+  for (const auto& [command, name] : commands) {
+    const std::string to_expected = command + " -o " + quoted(place.folder / ("expected" + name));
+    REQUIRE(place.run(to_expected).exit_code == 0);
+    const std::string expected = bytes_of(place.folder / ("expected" + name));
+    int failed = 0;
+    bool done = false;
+    for (std::uint64_t bytes = kPage; !done; bytes *= 2) {
+      SmallDisk disk(bytes);
+      const std::string to_disk = command + " -o " + quoted(disk / name);
+      CAPTURE(to_disk, bytes);
+      const Outcome outcome = place.run(to_disk);
+      done = outcome.exit_code == 0;
+      if (done) continue;
+      ++failed;
+      check_failed(outcome, disk);
+      CHECK(disk.files().empty());
+      disk.resize(kRoom);
+      REQUIRE(place.run(to_disk).exit_code == 0);
+      CHECK((bytes_of(disk / name) == expected));
+    }
+    CHECK(failed > 2);
+  }
+}
+
+TEST_CASE("a read-only disk: inputs are read from it, outputs are refused at once") {
+  if (!disks_can_be_made()) return;
+  const Place place;
+  SmallDisk disk(kRoom);
+  REQUIRE(place.run(place.search("sweep", disk / "made.h5")).exit_code == 0);
+  for (const char* name : {"environment.las", "model.ply", "trajectory.txt", "site.h5"}) {
+    fs::copy_file(place.hall.path(name), disk / name);
+  }
+  {
+    JournalWriter writer = JournalWriter::create(disk / "out.h5.journal", {{"radius", "1"}}, 1e9);
+    JournalRecord record;
+    record.put(std::uint8_t{3});
+    record.put_count(0);
+    record.put_count(1);
+    writer.append(record);
+  }
+  const Names before = disk.files();
+  const std::string bytes = bytes_of(disk / "made.h5");
+  const auto path = [&](const std::string& name) { return quoted(disk / name); };
+  disk.make_read_only(kRoom);
+  const std::string search = "run --env " + path("site.h5") + " --model " + path("model.ply") +
+                             " --trajectory " + path("trajectory.txt") + " --radius 0.1 -o ";
+  CHECK(place.run("convert " + path("environment.las") + " -o " + quoted(place.folder / "a.h5"))
+            .exit_code == 0);
+  CHECK(place.run(search + quoted(place.folder / "b.h5")).exit_code == 0);
+  CHECK(
+      place.run("export " + path("made.h5") + " -o " + quoted(place.folder / "c.csv")).exit_code ==
+      0);
+  for (const std::string command : {"verify ", "info "}) {
+    for (const std::string name : {"site.h5", "made.h5", "out.h5.journal"}) {
+      CHECK(place.run(command + path(name)).exit_code == 0);
+    }
+  }
+  for (const std::string options : {"", " --resume", " --force"}) {
+    check_failed(place.run(search + path("out.h5") + options), disk);
+  }
+  check_failed(place.run(search + path("made.h5") + " --force"), disk);
+  check_failed(place.run("convert " + path("environment.las") + " -o " + path("new.h5")), disk);
+  check_failed(place.run("export " + path("made.h5") + " -o " + path("new.csv")), disk);
+  CHECK(disk.files() == before);
+  CHECK((bytes_of(disk / "made.h5") == bytes));
+}

@@ -1,0 +1,171 @@
+// Disks that fill or fail, calls that do less than asked, files that shrink: exit code 4, the file
+// named, and nothing that looks finished.
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tools/cli/hall.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of inputs, from the hall, and of what commands make of them.
+struct Site {
+  Site() {
+    fs::create_directory(folder / "files");
+    for (const char* name : {"environment.las", "model.ply", "trajectory.txt", "site.h5"}) {
+      restore(name);
+    }
+    const Outcome made = run_program(folder, search() + " --first-pose -o " + path("made.h5"));
+    if (made.exit_code != 0) throw std::runtime_error("no result");
+  }
+
+  void restore(const char* name) const {
+    fs::copy_file(hall.path(name), file(name), fs::copy_options::overwrite_existing);
+  }
+  fs::path file(const std::string& name) const { return folder / "files" / name; }
+  std::string path(const std::string& name) const { return quoted(file(name)); }
+  std::string search() const {
+    return "run --env " + path("site.h5") + " --model " + path("model.ply") + " --trajectory " +
+           path("trajectory.txt") + " --radius 0.1 --threads 2";
+  }
+
+  /// Runs with calls going wrong (faulty_calls.cpp); `went_wrong` tells whether one did.
+  Outcome run(const std::string& arguments, const char* kind, int call, bool& went_wrong) const {
+    const auto mark = folder / "mark";
+    fs::remove(mark);
+    ::setenv("LD_PRELOAD", FAULTY_CALLS, 1);
+    ::setenv("FAULT_FOLDER", (folder / "files/").c_str(), 1);
+    ::setenv("FAULT_KIND", kind, 1);
+    ::setenv("FAULT_CALL", std::to_string(call).c_str(), 1);
+    ::setenv("FAULT_MARK", mark.c_str(), 1);
+    const Outcome outcome = run_program(folder, arguments);
+    ::unsetenv("LD_PRELOAD");
+    went_wrong = fs::exists(mark);
+    return outcome;
+  }
+
+  const Hall& hall = Hall::get();
+  ScratchFolder folder;
+};
+
+struct Command {
+  std::string name, arguments, output;
+};
+
+std::vector<Command> commands(const Site& site) {
+  const auto to = [&](const std::string& name) { return " -o " + site.path(name); };
+  return {
+      {"convert",
+       "convert " + site.path("environment.las") + " --cell-points 4096 --threads 2" + to("out.h5"),
+       "out.h5"},
+      {"convert text", "convert " + site.path("scan.xyz") + " --threads 2" + to("text.h5"),
+       "text.h5"},
+      {"sweep", site.search() + " --force --first-pose" + to("sweep.h5"), "sweep.h5"},
+      {"kdtree", site.search() + " --force --engine kdtree" + to("kdtree.h5"), "kdtree.h5"},
+      {"grid", site.search() + " --force --engine grid --device cpu" + to("grid.h5"), "grid.h5"},
+      {"thin",
+       "trajectory thin " + site.path("trajectory.txt") + " --model " + site.path("model.ply") +
+           " --max-motion 0.01" + to("thin.txt"),
+       "thin.txt"},
+      {"export las", "export " + site.path("made.h5") + to("out.las"), "out.las"},
+      {"export csv", "export " + site.path("made.h5") + to("out.csv"), "out.csv"}};
+}
+
+/// A scan as text, so that readers of lines are among the commands.
+void write_text(const Site& site) {
+  std::string text;
+  for (int i = 0; i < 4000; ++i) text += std::to_string(i % 50) + " " + std::to_string(i) + " 1\n";
+  put_bytes(site.file("scan.xyz"), text);
+}
+
+/// The journal of a run that stopped may stay.
+std::size_t files_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::count_if(
+      fs::directory_iterator(folder), {},
+      [](const fs::directory_entry& entry) { return entry.path().extension() != ".journal"; }));
+}
+
+}  // namespace
+
+TEST_CASE("every call that fails in turn ends with exit code 4 and without an output") {
+  const Site site;
+  write_text(site);
+  for (const Command& command : commands(site)) {
+    const std::size_t files = files_in(site.folder / "files");
+    int call = 1;
+    for (;; ++call) {
+      bool went_wrong = false;
+      const Outcome outcome = site.run(command.arguments, "fail", call, went_wrong);
+      if (!went_wrong) {
+        CHECK(outcome.exit_code == 0);
+        break;
+      }
+      INFO(command.name << ", call " << call << ": " << outcome.err);
+      REQUIRE(outcome.exit_code == 4);
+      CHECK_THAT(outcome.err, Contains((site.folder / "files").string()));
+      CHECK(outcome.out.empty());
+      // A failing fsync of the folder is told although the output has its name already.
+      fs::remove(site.file(command.output));
+      CHECK(files_in(site.folder / "files") == files);
+    }
+    INFO(command.name);
+    CHECK(call > 4);
+  }
+}
+
+TEST_CASE("short and interrupted calls change nothing") {
+  const Site site;
+  write_text(site);
+  const std::string kind = GENERATE("short", "interrupt");
+  for (const Command& command : commands(site)) {
+    INFO(kind << ", " << command.name);
+    REQUIRE(run_program(site.folder, command.arguments).exit_code == 0);
+    const std::string expected = bytes_of(site.file(command.output));
+    fs::remove(site.file(command.output));
+    bool went_wrong = false;
+    const Outcome outcome = site.run(command.arguments, kind.c_str(), 0, went_wrong);
+    INFO(outcome.err);
+    CHECK(went_wrong);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK((bytes_of(site.file(command.output)) == expected));
+  }
+}
+
+TEST_CASE("an input that shrinks while it is read is noticed") {
+  const Site site;
+  write_text(site);
+  const std::string made = bytes_of(site.file("made.h5"));
+  for (const Command& command : commands(site)) {
+    REQUIRE(run_program(site.folder, command.arguments).exit_code == 0);
+    const std::string expected = bytes_of(site.file(command.output));
+    fs::remove(site.file(command.output));
+    int call = 1;
+    for (bool went_wrong = true; went_wrong; ++call) {
+      const Outcome outcome = site.run(command.arguments, "shrink", call, went_wrong);
+      INFO(command.name << ", call " << call << ": " << outcome.err);
+      const bool finished = outcome.exit_code == 0;  // what was cut off had been read before
+      CHECK(fs::exists(site.file(command.output)) == finished);
+      if (finished) {
+        CHECK((bytes_of(site.file(command.output)) == expected));
+        fs::remove(site.file(command.output));
+      } else {
+        // 3: HDF5 no longer finds its metadata.
+        CHECK((outcome.exit_code == 4 || outcome.exit_code == 3));
+        CHECK_THAT(outcome.err, Contains((site.folder / "files").string()));
+      }
+      for (const char* name : {"environment.las", "model.ply", "trajectory.txt", "site.h5"}) {
+        site.restore(name);
+      }
+      write_text(site);
+      put_bytes(site.file("made.h5"), made);
+    }
+    CHECK(call > 4);
+  }
+}

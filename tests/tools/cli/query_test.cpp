@@ -1,0 +1,225 @@
+// The built program's answers to the queries beyond the set, and their export.
+#include <catch2/catch.hpp>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/query/hit_set.hpp"
+#include "cpu/brute_force.hpp"
+#include "io/formats/model.hpp"
+#include "io/trajectory/trajectory.hpp"
+#include "support/store_fixture.hpp"
+#include "tools/cli/hall.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+constexpr double kClearance = 0.4;
+
+/// The hall's inputs, read back.
+struct Inputs {
+  Inputs() {
+    const Hall& hall = Hall::get();
+    const StoreReader store(hall.path("site.h5"));
+    for (const Quantum& q : points_by_source(store)) {
+      environment.push_back(position(store.quantisation(), q[0], q[1], q[2]));
+    }
+    model = read_model(hall.path("model.ply"));
+    poses = read_trajectory(hall.path("trajectory.txt"), {});
+  }
+  Query query() const { return {model, poses, {0.1, true}}; }
+
+  std::vector<Vec3> environment, model;
+  std::vector<Pose> poses;
+};
+
+ClearanceRows brute_clearances(const Inputs& inputs) {
+  const auto all = brute_force_clearances(inputs.environment, inputs.query());
+  ClearanceRows rows;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!(all[i].squared < kClearance * kClearance)) continue;
+    rows.source.push_back(i);
+    rows.distance.push_back(std::sqrt(all[i].squared));
+    rows.pose.push_back(all[i].pose);
+  }
+  return rows;
+}
+
+ResultRows brute_collisions(const Inputs& inputs, Query query) {
+  const auto first = brute_force_first_poses(inputs.environment, query);
+  ResultRows rows;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (first[i] == HitSet::kNever) continue;
+    rows.source.push_back(i);
+    rows.xyz.push_back(inputs.environment[i]);
+    if (query.first_pose) rows.first_pose.push_back(first[i]);
+  }
+  return rows;
+}
+
+ClearanceRows clearances_of(const std::filesystem::path& path) {
+  const ResultReader result(path);
+  ClearanceRows rows;
+  REQUIRE(result.clearances() <= 65'536);  // one batch
+  ClearanceRowStream(result).read(rows);
+  return rows;
+}
+
+/// As `export --what clearance` writes them.
+std::string csv_of(const ClearanceRows& rows) {
+  std::string text = "source,distance,pose\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    char distance[40];
+    const auto end = std::to_chars(distance, distance + sizeof distance, rows.distance[i]).ptr;
+    text += std::to_string(rows.source[i]) + "," + std::string(distance, end) + "," +
+            std::to_string(rows.pose[i]) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("clearances are those of brute force, beside the same collisions") {
+  const Work work;
+  const Inputs inputs;
+  const bool first_pose = GENERATE(false, true);
+  const Outcome run =
+      work.run_hall(work.hall / "site.h5", "out.h5",
+                    std::string("--clearance 0.4 --json") + (first_pose ? " --first-pose" : ""));
+  REQUIRE(run.exit_code == 0);
+  const ClearanceRows expected = brute_clearances(inputs);
+  const ClearanceRows rows = clearances_of(work.folder / "out.h5");
+  CHECK(rows.source == expected.source);
+  CHECK(rows.distance == expected.distance);
+  CHECK(rows.pose == expected.pose);
+  Query query = inputs.query();
+  query.first_pose = first_pose;
+  const ResultRows collisions = brute_collisions(inputs, query);
+  CHECK(collisions.size() > 100);
+  CHECK(expected.size() > collisions.size() + 100);
+  CHECK(same_rows(read_rows(ResultReader(work.folder / "out.h5")), collisions));
+  CHECK(nlohmann::json::parse(run.out)["clearance_points"] == expected.size());
+  CHECK_THAT(run.err, Contains("points are closer than 0.4 m"));
+  CHECK(work.run("verify " + work.path("out.h5")).exit_code == 0);
+
+  // The set is kdtree's; compare says that only one side has clearances.
+  REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5",
+                        std::string("--engine kdtree") + (first_pose ? " --first-pose" : ""))
+              .exit_code == 0);
+  const Outcome compare = work.run("compare " + work.path("out.h5") + " " + work.path("set.h5"));
+  CHECK(compare.exit_code == 0);
+  CHECK_THAT(compare.out, Contains("clearance"));
+}
+
+TEST_CASE("clearances below the radius leave the set as it is") {
+  const Work work;
+  REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5", "--clearance 0.05").exit_code == 0);
+  REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5").exit_code == 0);
+  CHECK(work.run("compare " + work.path("out.h5") + " " + work.path("set.h5")).exit_code == 0);
+  const ResultReader result(work.folder / "out.h5");
+  CHECK(result.clearances() > 0);
+  CHECK(result.clearances() < result.collisions());
+}
+
+TEST_CASE("export --what chooses the table") {
+  const Work work;
+  REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5", "--clearance 0.4").exit_code == 0);
+  const std::string clearances = "export --what clearance " + work.path("out.h5") + " -o ";
+  const Outcome outcome = work.run(clearances + work.path("near.csv"));
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains(" clearances"));
+  CHECK(work.bytes("near.csv") == csv_of(clearances_of(work.folder / "out.h5")));
+  check_refused(work.run(clearances + work.path("near.csv")), 2, "--force");
+  CHECK(work.run(clearances + work.path("near.csv") + " --force").exit_code == 0);
+  for (const char* ending : {"las", "ply", "xyz"}) {
+    check_refused(work.run(clearances + work.path(std::string("near.") + ending)), 2, ".csv only");
+  }
+
+  const std::string collisions = "export " + work.path("out.h5") + " -o ";
+  REQUIRE(work.run(collisions + work.path("a.csv")).exit_code == 0);
+  REQUIRE(work.run(collisions + work.path("b.csv") + " --what collisions").exit_code == 0);
+  CHECK(work.bytes("a.csv") == work.bytes("b.csv"));
+  CHECK_THAT(work.bytes("a.csv"), Catch::StartsWith("source,x,y,z\n"));
+  check_refused(work.run(collisions + work.path("c.csv") + " --what distances"), 2, "--what");
+
+  REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5").exit_code == 0);
+  check_refused(
+      work.run("export --what clearance " + work.path("set.h5") + " -o " + work.path("none.csv")),
+      2, "run with --clearance");
+  CHECK_FALSE(std::filesystem::exists(work.folder / "none.csv"));
+}
+
+TEST_CASE("an export does not overwrite the result it is of") {
+  const Work work;
+  REQUIRE(work.run_hall(work.hall / "site.h5", "out.csv", "--clearance 0.4").exit_code == 0);
+  const std::string result = work.bytes("out.csv");
+  for (const char* what : {"collisions", "clearance"}) {
+    check_refused(work.run("export " + work.path("out.csv") + " --force -o " +
+                           work.path("out.csv") + " --what " + what),
+                  2, "an input too");
+    CHECK((work.bytes("out.csv") == result));
+  }
+}
+
+TEST_CASE("between poses both engines find what brute force finds") {
+  const Work work;
+  const std::string site = work.hall / "site.h5";
+  const std::string sweep = work.path("sweep.h5"), kdtree = work.path("kdtree.h5");
+  for (const std::string& options :
+       {std::string("--between-poses"), std::string("--between-poses --first-pose")}) {
+    REQUIRE(work.run_hall(site, "sweep.h5", "--force --engine sweep " + options).exit_code == 0);
+    REQUIRE(work.run_hall(site, "kdtree.h5", "--force --engine kdtree " + options).exit_code == 0);
+    CHECK(work.run("compare " + sweep + " " + kdtree).exit_code == 0);
+    CHECK((work.bytes("sweep.h5") == work.bytes("kdtree.h5")));
+  }
+  const Inputs inputs;
+  Query query = inputs.query();
+  const std::size_t at_poses = brute_collisions(inputs, query).size();
+  query.between_poses = true;
+  const ResultRows expected = brute_collisions(inputs, query);
+  CHECK(expected.size() > at_poses);
+  CHECK(same_rows(read_rows(ResultReader(work.folder / "sweep.h5")), expected));
+
+  REQUIRE(work.run_hall(site, "set.h5", "--first-pose").exit_code == 0);
+  const Outcome compare = work.run("compare " + work.path("set.h5") + " " + sweep);
+  CHECK(compare.exit_code == 1);
+  CHECK_THAT(compare.out, Contains("between poses"));
+}
+
+TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
+  const Work work;
+  const std::string site = work.hall / "site.h5";
+  for (const char* engine : {"", " --engine sweep", " --engine kdtree"}) {
+    check_refused(
+        work.run_hall(site, "out.h5", std::string("--clearance 0.4 --between-poses") + engine), 2,
+        "--between-poses");
+  }
+  check_refused(work.run_hall(site, "out.h5", "--clearance 0.4 --engine kdtree"), 2,
+                "--engine sweep");
+  for (const char* value : {"0", "-1", "x", "nan", "inf"}) {
+    CAPTURE(value);
+    check_refused(work.run_hall(site, "out.h5", std::string("--clearance ") + value), 2,
+                  "--clearance");
+    check_refused(work.run_hall(site, "out.h5", std::string("--field-voxel ") + value), 2,
+                  "--field-voxel");
+  }
+  CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5"));
+  CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5.partial"));
+}
+
+TEST_CASE("the result is the same whatever the field's voxel") {
+  const Work work;
+  const std::string site = work.hall / "site.h5";
+  const std::string query = "--first-pose --clearance 0.4 --force --field-voxel ";
+  REQUIRE(work.run_hall(site, "out.h5", "--first-pose --clearance 0.4").exit_code == 0);
+  const std::string expected = work.bytes("out.h5");
+  for (const char* voxel : {"0.02", "0.07", "0.5", "30", "1e9"}) {
+    CAPTURE(voxel);
+    CHECK(work.run_hall(site, "out.h5", query + voxel).exit_code == 0);
+    CHECK((work.bytes("out.h5") == expected));
+  }
+}

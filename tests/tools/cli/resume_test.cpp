@@ -1,0 +1,404 @@
+// Journals, --resume and --force of the program, after signals too.
+#include <signal.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "io/journal/journal.hpp"
+#include "io/system/pending_file.hpp"
+#include "tools/cli/process.hpp"
+#include "tools/cli/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+using std::chrono::steady_clock;
+
+namespace {
+
+/// A hall that engine grid searches for a second, made once.
+class SlowHall {
+ public:
+  static const SlowHall& get() {
+    static const SlowHall hall;
+    return hall;
+  }
+  std::string path(const std::string& name) const { return quoted(folder_ / name); }
+
+ private:
+  SlowHall() {
+    const std::string folder = quoted(folder_ / "");
+    if (run_program(folder_,
+                    "scene hall --points 500000 --model-points 10000 --poses 3000 -o " + folder)
+                .exit_code != 0 ||
+        run_program(folder_, "convert " + path("environment.las") + " --cell-points 500 -o " +
+                                 path("site.h5"))
+                .exit_code != 0) {
+      throw std::runtime_error("no hall");
+    }
+  }
+
+  ScratchFolder folder_;
+};
+
+struct Work {
+  std::string command(const std::string& options, const std::string& radius = "0.1",
+                      const std::string& engine = "grid") const {
+    return "run --env " + hall.path("site.h5") + " --model " + hall.path("model.ply") +
+           " --trajectory " + hall.path("trajectory.txt") + " --engine " + engine +
+           " --device cpu --first-pose --radius " + radius + " -o " + quoted(output) + " " +
+           options;
+  }
+  Outcome run(const std::string& options, const std::string& radius = "0.1",
+              const std::string& engine = "grid") const {
+    return run_program(folder, command(options, radius, engine));
+  }
+  /// A run with a file of these bytes instead of one of the hall's.
+  Outcome run_with(const std::string& name, const std::string& bytes) const {
+    put_bytes(folder / "other.txt", bytes);
+    std::string changed = command("--resume");
+    const std::string before = hall.path(name);
+    changed.replace(changed.find(before), before.size(), quoted(folder / "other.txt"));
+    return run_program(folder, changed);
+  }
+  /// Starts a run and lets it finish a few cells.
+  void start_and(int signal, const std::string& options = "") const {
+    Process process(command(options), folder / "log.txt");
+    wait_for_records(process, 20);
+    process.send(signal);
+    REQUIRE(process.wait() == (signal == SIGKILL ? -SIGKILL : 5));
+  }
+  void wait_for_records(Process& process, std::uint64_t records) const {
+    while (!std::filesystem::exists(journal) || JournalReader(journal).records() < records) {
+      REQUIRE(process.running());
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(output.parent_path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  const SlowHall& hall = SlowHall::get();
+  ScratchFolder folder;
+  std::filesystem::path output =
+      (std::filesystem::create_directory(folder / "out"), folder / "out" / "out.h5");
+  std::filesystem::path journal = journal_of(output);
+};
+
+using Names = std::vector<std::string>;
+
+void check_refused(const Outcome& outcome, int exit_code, const std::string& message) {
+  CHECK(outcome.exit_code == exit_code);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains(message));
+}
+
+}  // namespace
+
+TEST_CASE("a run that is asked to stop says how to resume, and resumes") {
+  const Work work;
+  for (const int signal : {SIGTERM, SIGINT}) {
+    CAPTURE(signal);
+    Process process(work.command(""), work.folder / "log.txt");
+    work.wait_for_records(process, 20);
+    const auto begin = steady_clock::now();
+    process.send(signal);
+    CHECK(process.wait() == 5);
+    CHECK(steady_clock::now() - begin < std::chrono::seconds(5));
+    CHECK_THAT(process.log(), Contains("interrupted") && Contains("--resume"));
+    CHECK(work.files() == Names{"out.h5.journal"});
+    CHECK(JournalReader(work.journal).torn().empty());
+    std::filesystem::remove(work.journal);
+  }
+  work.start_and(SIGTERM);
+  const Outcome resumed = work.run("--resume --json");
+  REQUIRE(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with") && Contains("cells finished"));
+  const json report = json::parse(resumed.out);
+  CHECK(report["pages"].get<int>() + report["resumed_cells"].get<int>() > 0);
+  CHECK(report["resumed_cells"].get<int>() >= 20);
+  CHECK(work.files() == Names{"out.h5"});
+  const std::string bytes = bytes_of(work.output);
+  REQUIRE(work.run("--force").exit_code == 0);
+  CHECK((bytes_of(work.output) == bytes));
+}
+
+TEST_CASE("a second signal ends a run at once") {
+  const Work work;
+  Process process(work.command(""), work.folder / "log.txt");
+  work.wait_for_records(process, 20);
+  process.send(SIGSTOP);  // both are there when it goes on
+  process.send(SIGTERM);
+  process.send(SIGINT);
+  process.send(SIGCONT);
+  CHECK(process.wait() == 5);
+  CHECK_THAT(process.log(), Contains("before what was in flight was finished"));
+  CHECK(work.run("--resume").exit_code == 0);
+}
+
+TEST_CASE("an unfinished journal is neither used nor dropped unasked") {
+  const Work work;
+  work.start_and(SIGKILL);
+  const std::string found = bytes_of(work.journal);
+  check_refused(work.run(""), 2, "--resume goes on with it, --force starts afresh");
+  check_refused(work.run(""), 2, "an unfinished run with engine grid on cpu, radius 0.1");
+  check_refused(work.run("--resume --force"), 2, "--force");
+  check_refused(work.run("--resume", "0.2"), 2, "its radius is 0.1, expected 0.2");
+  check_refused(work.run("--resume", "0.1", "kdtree"), 2, "its engine is grid, expected kdtree");
+  check_refused(work.run("--resume --precision float"), 2, "its precision is missing");
+  check_refused(work.run("--resume --between-poses", "0.1", "sweep"), 2, "between_poses is no");
+  check_refused(work.run_with("model.ply", "1 2 3\n"), 2, "its model is ");
+  check_refused(work.run_with("trajectory.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"), 2,
+                "its trajectory is ");
+  CHECK((bytes_of(work.journal) == found));
+
+  const Outcome info = run_program(work.folder, "info --json " + quoted(work.journal));
+  REQUIRE(info.exit_code == 0);
+  CHECK(json::parse(info.out)["kind"] == "journal");
+  CHECK(json::parse(info.out)["finished_cells"] >= 19);
+  CHECK(json::parse(info.out)["radius"] == "0.1");
+
+  const Outcome forced = work.run("--force");
+  CHECK(forced.exit_code == 0);
+  CHECK_THAT(forced.err, Contains("journal of an unfinished run removed"));
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("a run with other threads and memory resumes") {
+  const Work work;
+  work.start_and(SIGKILL, "--threads 1");
+  const Outcome resumed = work.run("--resume --threads 3 --memory 1G");
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with"));
+}
+
+TEST_CASE("resuming without a journal starts afresh and says so") {
+  const Work work;
+  const Outcome outcome = work.run("--resume");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("no journal to resume, starts afresh"));
+  put_bytes(work.journal, "CLWYJ");
+  CHECK_THAT(work.run("--force").err, Contains("removed, starts afresh"));
+  std::filesystem::remove(work.output);
+  put_bytes(work.journal, "CLWYJ");
+  CHECK_THAT(work.run("").err, Contains("nothing in it yet"));
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("a resumed run leaves a result alone that answers its query, and no other") {
+  const Work work;
+  const Outcome first = work.run("--json");
+  REQUIRE(first.exit_code == 0);
+  const std::string bytes = bytes_of(work.output);
+  const Outcome again = work.run("--resume --json", "0.1", "sweep");
+  CHECK(again.exit_code == 0);
+  CHECK_THAT(again.err, Contains("is the answer already"));
+  const json found = json::parse(first.out), kept = json::parse(again.out);
+  for (const char* same : {"environment_points", "colliding_points", "cells_total"}) {
+    CHECK(kept[same] == found[same]);
+  }
+  CHECK(kept["engine"].is_null());
+  put_bytes(work.journal, "CLWYJ");  // nothing in it yet
+  CHECK(work.run("--resume").exit_code == 0);
+  CHECK(work.files() == Names{"out.h5"});
+  CHECK(kept["cells_read"] == 0);
+  CHECK(kept["seconds"].size() == found["seconds"].size());
+  check_refused(work.run("--resume", "0.2"), 2, "exists already");
+  check_refused(work.run(""), 2, "exists already");
+  CHECK((bytes_of(work.output) == bytes));
+
+  std::string damaged = bytes;
+  damaged[damaged.size() / 2] ^= 1;
+  put_bytes(work.output, damaged);
+  check_refused(work.run("--resume"), 2, "exists already");
+
+  REQUIRE(work.run("--force --precision float").exit_code == 0);
+  check_refused(work.run("--resume"), 2, "exists already");
+  check_refused(work.run("--resume --precision float"), 2, "exists already");
+}
+
+TEST_CASE("an existing result stays until a resumed run replaces it, and only where asked for") {
+  const Work work;
+  REQUIRE(work.run("", "0.05").exit_code == 0);
+  const std::string old = bytes_of(work.output);
+  work.start_and(SIGKILL, "--force");
+  CHECK((bytes_of(work.output) == old));
+  CHECK(work.run("--resume").exit_code == 0);
+  const std::string done = bytes_of(work.output);
+  CHECK((done != old));
+  CHECK(work.files() == Names{"out.h5"});
+
+  std::filesystem::remove(work.output);
+  work.start_and(SIGKILL);
+  put_bytes(work.output, "of somebody else");
+  check_refused(work.run("--resume"), 2, "exists already");
+  CHECK(bytes_of(work.output) == "of somebody else");
+  put_bytes(work.output, done);  // as if killed between the result's name and its journal's end
+  const Outcome outcome = work.run("--resume");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("is the answer already"));
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("an unfinished run over an existing result is reported, and kept until one replaces it") {
+  const Work work;
+  REQUIRE(work.run("", "0.05").exit_code == 0);
+  work.start_and(SIGKILL, "--force");
+  const std::string found = bytes_of(work.journal);
+  check_refused(work.run(""), 2, "an unfinished run with engine grid on cpu");
+  std::string mistyped = work.command("--force");
+  mistyped.replace(mistyped.find("model.ply"), 9, "modle.ply");
+  check_refused(run_program(work.folder, mistyped), 4, "modle.ply");
+  CHECK((bytes_of(work.journal) == found));
+  CHECK(work.run("--resume").exit_code == 0);
+}
+
+TEST_CASE("a run does not remove the journal of the next one") {
+  const Work work;
+  work.start_and(SIGKILL);
+  Process finishing(work.command("--resume"), work.folder / "log.txt");
+  work.wait_for_records(finishing, JournalReader(work.journal).records() + 5);
+  const std::string of_another = "CLWYJRNL of another run";
+  std::filesystem::remove(work.journal);
+  put_bytes(work.journal, of_another);
+  CHECK(finishing.wait() == 0);
+  CHECK(bytes_of(work.journal) == of_another);
+}
+
+TEST_CASE("an automatic choice of the device goes on where it was") {
+  const Work work;
+  work.start_and(SIGKILL);
+  std::string command = work.command("--resume --device-memory 1G");
+  command.replace(command.find("--device cpu"), 12, "--device auto");
+  const Outcome resumed = run_program(work.folder, command);
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with") && Contains("on the CPU"));
+}
+
+TEST_CASE("poses that were divided otherwise are counted once") {
+  const Work work;
+  Process process(work.command("--threads 1", "0.1", "kdtree"), work.folder / "log.txt");
+  work.wait_for_records(process, 3);
+  process.send(SIGKILL);
+  process.wait();
+  for (const char* threads : {"3", "2"}) {
+    const Outcome resumed =
+        work.run(std::string("--resume --json --threads ") + threads, "0.1", "kdtree");
+    if (resumed.exit_code != 0 || !json::parse(resumed.out).contains("resumed_poses")) continue;
+    CHECK(json::parse(resumed.out)["resumed_poses"] <= 3000);
+  }
+}
+
+TEST_CASE("a run that is refused leaves no journal") {
+  const Work work;
+  check_refused(work.run("--memory 1K"), 4, "too little");
+  CHECK(work.files().empty());
+  check_refused(work.run("--between-poses"), 2, "--engine sweep");
+  CHECK(work.files().empty());
+}
+
+TEST_CASE("what is no journal is left alone") {
+  const Work work;
+  put_bytes(work.journal, "a diary");
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 2, "move it away");
+  }
+  CHECK(bytes_of(work.journal) == "a diary");
+  std::filesystem::remove(work.journal);
+  std::filesystem::create_symlink(work.folder / "elsewhere", work.journal);
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 2, "move it away");
+  }
+  CHECK_FALSE(std::filesystem::exists(work.folder / "elsewhere"));
+}
+
+TEST_CASE("a flipped byte of a journal is detected or does no harm") {
+  const Work work;
+  work.start_and(SIGKILL);
+  const std::string whole = bytes_of(work.journal).substr(0, 700);
+  put_bytes(work.journal, whole);
+  REQUIRE(run_program(work.folder, "verify " + quoted(work.journal)).exit_code <= 1);
+  std::filesystem::remove(work.journal);
+  REQUIRE(work.run("").exit_code == 0);
+  const std::string expected = bytes_of(work.output);
+  for (std::size_t at = 0; at < whole.size(); at += 7) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 8);
+    put_bytes(work.journal, bytes);
+    CAPTURE(at);
+    const Outcome verified = run_program(work.folder, "verify " + quoted(work.journal));
+    CHECK(verified.exit_code <= 1);
+    if (at >= 16) CHECK_THAT(verified.out, Contains("record "));
+    if (at % 13 != 0) continue;
+    std::filesystem::remove(work.output);
+    const Outcome outcome = work.run("--resume");
+    if (outcome.exit_code != 2) CHECK(outcome.exit_code == (verified.exit_code == 0 ? 0 : 3));
+    if (outcome.exit_code == 0) {
+      CHECK((bytes_of(work.output) == expected));
+    } else {
+      CHECK((outcome.exit_code == 2 || outcome.exit_code == 3));
+      CHECK_FALSE(std::filesystem::exists(work.output));
+    }
+  }
+}
+
+TEST_CASE("verify tells a torn tail, which resuming cuts off, from damage") {
+  const Work work;
+  work.start_and(SIGKILL, "--journal-interval 0");
+  const std::string whole =
+      bytes_of(work.journal).substr(0, JournalReader(work.journal).whole_bytes());
+  const auto verify = [&](const std::string& bytes) {
+    put_bytes(work.journal, bytes);
+    return run_program(work.folder, "verify " + quoted(work.journal));
+  };
+  const Outcome sound = verify(whole);
+  CHECK(sound.exit_code == 0);
+  CHECK(sound.out == work.journal.string() + ": sound\n");
+  const Outcome empty = verify(whole.substr(0, 5));
+  CHECK(empty.exit_code == 0);
+  CHECK_THAT(empty.out, Contains("it ends before its first record"));
+  CHECK(verify("").exit_code == 0);
+
+  std::string bytes = whole;
+  bytes[100] = static_cast<char>(bytes[100] ^ 1);
+  const Outcome damaged = verify(bytes);
+  CHECK(damaged.exit_code == 1);
+  CHECK_THAT(damaged.out, Contains("record 0 at byte 16 is damaged") && Contains(": damaged\n"));
+  check_refused(work.run("--resume"), 3, "record 0 at byte 16 is damaged");
+
+  const Outcome torn = verify(whole.substr(0, whole.size() - 3));
+  CHECK(torn.exit_code == 0);
+  CHECK_THAT(torn.out, Contains(" is torn, with ") && Contains("--resume cuts that off") &&
+                           Contains(": sound\n"));
+  const Outcome resumed = work.run("--resume");
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains(" is torn, with ") && Contains("resumes with"));
+}
+
+TEST_CASE("two runs of one output: the second is refused and leaves the first's journal alone") {
+  const Work work;
+  Process first(work.command(""), work.folder / "log.txt");
+  work.wait_for_records(first, 5);
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 4, "another process is writing it");
+  }
+  CHECK(first.wait() == 0);
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("options of the journal that make no sense are refused") {
+  const Work work;
+  for (const char* seconds : {"-1", "nan", "x", "4000"}) {
+    check_refused(work.run(std::string("--journal-interval ") + seconds), 2, "--journal-interval");
+  }
+  CHECK(work.run("--journal-interval 0").exit_code == 0);
+}

@@ -1,0 +1,124 @@
+// What a run may take of the machine: memory, devices, and how it reports them.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+/// A small hall in cells of 1,000 points.
+class SmallHall {
+ public:
+  SmallHall() {
+    const std::string folder = quoted(folder_ / "");
+    if (run("scene hall --points 40000 --model-points 2000 --poses 400 -o " + folder).exit_code !=
+            0 ||
+        run("convert " + path("environment.las") + " --cell-points 1000 -o " + path("site.h5"))
+                .exit_code != 0) {
+      throw std::runtime_error("no hall");
+    }
+  }
+  Outcome run(const std::string& arguments) const { return run_program(folder_, arguments); }
+  Outcome search(const std::string& options, const std::string& output = "out.h5") const {
+    return run("run --env " + path("site.h5") + " --model " + path("model.ply") + " --trajectory " +
+               path("trajectory.txt") + " --radius 0.1 --force -o " + path(output) + " " + options);
+  }
+  std::string path(const std::string& name) const { return quoted(folder_ / name); }
+  std::string bytes(const std::string& name) const { return bytes_of(folder_ / name); }
+
+ private:
+  ScratchFolder folder_;
+};
+
+void check_refused(const Outcome& outcome, int exit_code, const std::string& message) {
+  CHECK(outcome.exit_code == exit_code);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains(message));
+}
+
+/// The smallest budget that a refusal names.
+std::uint64_t smallest_budget(const std::string& refusal) {
+  const std::string before = "(--memory ";
+  const auto at = refusal.find(before);
+  REQUIRE(at != std::string::npos);
+  return std::stoull(refusal.substr(at + before.size()));
+}
+
+}  // namespace
+
+TEST_CASE("the smallest memory that a refusal names works, and a byte less is refused") {
+  const SmallHall hall;
+  for (const std::string options :
+       {"", "--first-pose", "--clearance 0.3 --first-pose", "--between-poses", "--threads 9",
+        "--threads 1", "--field-voxel 0.05", "--engine kdtree --first-pose"}) {
+    CAPTURE(options);
+    REQUIRE(hall.search(options, "expected.h5").exit_code == 0);
+    const Outcome refused = hall.search(options + " --memory 1K");
+    check_refused(refused, 4, "too little");
+    const std::uint64_t smallest = smallest_budget(refused.err);
+    CHECK(smallest < (std::uint64_t{100} << 20));
+    check_refused(hall.search(options + " --memory " + std::to_string(smallest - 1)), 4,
+                  std::to_string(smallest));
+    const Outcome least = hall.search(options + " --json --memory " + std::to_string(smallest));
+    REQUIRE(least.exit_code == 0);
+#ifndef CLEARWAY_SANITIZED  // sanitizers take memory of their own
+    CHECK(json::parse(least.out)["peak_host_bytes"] <= smallest);
+#endif
+    CHECK(json::parse(least.out)["needed_host_bytes"] <= smallest);
+    CHECK((hall.bytes("out.h5") == hall.bytes("expected.h5")));
+  }
+}
+
+TEST_CASE("run --json tells of pages and stages") {
+  const SmallHall hall;
+  const Outcome outcome = hall.search("--json --threads 3");
+  REQUIRE(outcome.exit_code == 0);
+  const json report = json::parse(outcome.out);
+  CHECK(report["device"] == "cpu");
+  CHECK(report["pages"] == report["cells_read"]);
+  CHECK(report["cells_read"] <= report["cells_total"]);
+  CHECK(report["page_bytes"].get<std::uint64_t>() > 1000);
+  CHECK(report["slots"] == 5);
+  const json& seconds = report["seconds"];
+  for (const char* stage : {"read", "compute"}) {
+    CAPTURE(stage);
+    CHECK(seconds[stage] > 0);
+    CHECK(seconds[stage] <= seconds["search"]);
+  }
+  CHECK(seconds["upload"] == 0);
+  CHECK(seconds["search"] < seconds["total"]);
+  CHECK(seconds["inputs"] > 0);
+}
+
+TEST_CASE("CUDA where there is none exits with 4 and says what to do") {
+  const SmallHall hall;
+  for (const char* options : {"--device cuda", "--gpus 900,901", "--device cuda --gpus 1000"}) {
+    CAPTURE(options);
+    const Outcome outcome = hall.search(options);
+    if (outcome.exit_code == 0) continue;  // a machine with a GPU
+    check_refused(outcome, 4, "--device cpu");
+  }
+  CHECK(hall.search("--device auto").exit_code == 0);
+  CHECK(hall.search("--device cpu").exit_code == 0);
+}
+
+TEST_CASE("options of devices and engines that do not fit are refused") {
+  const SmallHall hall;
+  check_refused(hall.search("--gpus 0,x"), 2, "--gpus");
+  check_refused(hall.search("--gpus -1"), 2, "--gpus");
+  check_refused(hall.search("--gpus 1,0,1"), 2, "--gpus");
+  check_refused(hall.search("--device gpu"), 2, "--device");
+  check_refused(hall.search("--device-memory 2X"), 2, "--device-memory");
+  check_refused(hall.search("--device cpu --gpus 0"), 2, "--device cuda");
+  check_refused(hall.search("--device cpu --device-memory 2G"), 2, "--device cuda");
+  check_refused(hall.search("--engine kdtree --device cuda"), 2, "--engine sweep");
+  check_refused(hall.search("--precision double"), 2, "--precision");
+  check_refused(hall.search("--engine sweep --precision float"), 2, "--engine grid");
+  check_refused(hall.search("--engine sweep --grid-cell 0.2"), 2, "--engine grid");
+  check_refused(hall.search("--grid-cell 0"), 2, "--grid-cell");
+}

@@ -1,0 +1,127 @@
+// What a process of the program is started with: its standard descriptors, its limits, and files
+// that are not what their names say.
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+
+#include "tools/cli/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+struct Hall {
+  Hall() {
+    REQUIRE(
+        run("scene hall --points 5000 --model-points 200 --poses 50 -o " + path("")).exit_code ==
+        0);
+    REQUIRE(run("convert " + path("environment.las") + " -o " + path("site.h5")).exit_code == 0);
+    REQUIRE(run(query() + "-o " + path("expected.h5")).exit_code == 0);
+    expected = bytes_of(folder / "expected.h5");
+  }
+
+  Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
+  std::string path(const std::string& name) const { return quoted(folder / name); }
+  std::string query(const std::string& store = "site.h5") const {
+    return "run --env " + path(store) + " --model " + path("model.ply") + " --trajectory " +
+           path("trajectory.txt") + " --radius 0.1 ";
+  }
+  /// Exit code of the program in a shell that sets its surroundings: "{}" stands for the program.
+  int shell(std::string command) const {
+    command.replace(command.find("{}"), 2, std::string("'") + CLEARWAY_PROGRAM + "'");
+    const int status =
+        std::system(("exec 2>'" + (folder / "stderr.txt").string() + "'; " + command).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string messages() const { return bytes_of(folder / "stderr.txt"); }
+
+  ScratchFolder folder;
+  std::string expected;
+};
+
+}  // namespace
+
+TEST_CASE("closed standard descriptors do not become an output's") {
+  const Hall hall;
+  const auto out = hall.folder / "out.h5";
+  for (const char* closed : {"<&- 2>&-", "<&- >&- 2>&-", ">&- 2>&-", "2>&-"}) {
+    CAPTURE(closed);
+    for (const char* engine : {"kdtree", "sweep"}) {
+      CHECK(hall.shell("{} " + hall.query() + "--device cpu --force --engine " + engine + " -o " +
+                       quoted(out) + " " + closed) == 0);
+      CHECK((bytes_of(out) == hall.expected));
+      std::filesystem::remove(out);
+    }
+    const std::string scene = quoted(hall.folder / "again");
+    CHECK(hall.shell("{} scene hall --points 5000 --model-points 200 --poses 50 --force -o " +
+                     scene + " " + closed) == 0);
+    for (const char* file : {"model.ply", "trajectory.txt", "environment.las"}) {
+      CHECK((bytes_of(hall.folder / "again" / file) == bytes_of(hall.folder / file)));
+    }
+  }
+}
+
+TEST_CASE("what cannot be printed is an error, and the output is whole") {
+  const Hall hall;
+  const auto out = hall.folder / "out.h5";
+  for (const char* nowhere : {">&-", ">/dev/full", "| true"}) {
+    CAPTURE(nowhere);
+    hall.shell("({} " + hall.query() + "--force --json -o " + quoted(out) + "; echo $? >" +
+               hall.path("code.txt") + ") " + nowhere);
+    CHECK(bytes_of(hall.folder / "code.txt") == "4\n");
+    CHECK_THAT(hall.messages(), Contains("standard output: cannot write"));
+    CHECK((bytes_of(out) == hall.expected));
+  }
+  CHECK(hall.shell("{} scene hall --environment - --points 500 --model-points 20 --poses 5 -o " +
+                   quoted(hall.folder / "piped") + " >&-") == 4);
+  CHECK_FALSE(std::filesystem::exists(hall.folder / "piped/model.ply"));
+}
+
+TEST_CASE("a pipe instead of a store, a result or a journal is refused at once") {
+  const Hall hall;
+  REQUIRE(::mkfifo((hall.folder / "pipe").c_str(), 0600) == 0);
+  const std::string pipe = hall.path("pipe");
+  for (const std::string& arguments :
+       {"verify " + pipe, "info " + pipe, "export " + pipe + " -o " + hall.path("x.csv"),
+        "compare " + pipe + " " + hall.path("expected.h5"),
+        hall.query("pipe") + "-o " + hall.path("x.h5")}) {
+    CAPTURE(arguments);
+    const Outcome outcome = hall.run(arguments);
+    CHECK(outcome.exit_code == 4);
+    CHECK_THAT(outcome.err, Contains("pipe: is a directory, pipe or device"));
+  }
+}
+
+TEST_CASE("a file with another name in the place of a temporary file or journal is left alone") {
+  const Hall hall;
+  for (const char* place : {"out.h5.partial", "out.h5.journal"}) {
+    CAPTURE(place);
+    put_bytes(hall.folder / "kept.txt", "");
+    std::filesystem::create_hard_link(hall.folder / "kept.txt", hall.folder / place);
+    for (const char* options : {"", "--force ", "--resume "}) {
+      const Outcome outcome = hall.run(hall.query() + options + "-o " + hall.path("out.h5"));
+      CHECK(outcome.exit_code == 2);
+      CHECK_THAT(outcome.err, Contains("move it away"));
+    }
+    CHECK(std::filesystem::exists(hall.folder / place));
+    CHECK(std::filesystem::is_empty(hall.folder / "kept.txt"));
+    std::filesystem::remove(hall.folder / place);
+  }
+}
+
+#ifndef CLEARWAY_SANITIZED  // a sanitizer needs more address space than that
+TEST_CASE("more threads than there may be are refused") {
+  const Hall hall;
+  for (const char* engine : {"kdtree", "sweep"}) {
+    CAPTURE(engine);
+    CHECK(hall.shell("ulimit -v 3000000; {} " + hall.query() +
+                     "--device cpu --threads 1024 "
+                     "--memory 8G --engine " +
+                     engine + " -o " + hall.path("out.h5")) == 4);
+    CHECK_THAT(hall.messages(), Contains("1024 threads cannot be started"));
+    CHECK_FALSE(std::filesystem::exists(hall.folder / "out.h5.partial"));
+  }
+}
+#endif

@@ -1,0 +1,165 @@
+#include "io/trajectory/trajectory.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/trajectory/trajectory_motion.hpp"
+#include "io/trajectory/trajectory_writer.hpp"
+#include "support/scenes.hpp"
+#include "tools/cli/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+const Box kModel{{-1, -2, 0}, {3, 2, 1}};
+
+/// model.xyz, whose box is kModel, and path.txt.
+struct Files {
+  Files() {
+    put_bytes(folder / "model.xyz", "-1 -2 0.5\n3 1 0\n0 2 1\n");
+    Random random(51);
+    for (int i = 0; i < 30; ++i) {
+      poses.push_back(rotation(random_direction(random), uniform(random, 0, 1),
+                               {5e5 + i, uniform(random, 0, 1), 0}));
+    }
+    poses.insert(poses.begin() + 10, 5, poses[10]);
+    NoProgress progress;
+    write_trajectory(poses, File::create(folder / "path.txt"), progress);
+  }
+
+  std::string path(const std::string& name) const { return quoted(folder / name); }
+  Outcome run(const std::string& what, const std::string& in, const std::string& out,
+              const std::string& more) const {
+    return run_program(folder, "trajectory " + what + " " + path(in) + " -o " + path(out) +
+                                   " --model " + path("model.xyz") + " " + more);
+  }
+  std::vector<Pose> read(const std::string& name) const {
+    return read_trajectory(folder / name, {TrajectoryFormat::kMatrix, true});
+  }
+
+  ScratchFolder folder;
+  std::vector<Pose> poses;
+};
+
+bool has_in_order(const std::vector<Pose>& all, const std::vector<Pose>& some) {
+  auto at = all.begin();
+  for (const Pose& pose : some) {
+    at = std::find(at, all.end(), pose);
+    if (at == all.end()) return false;
+    ++at;
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("trajectory resample bounds the motion of the poses as read back") {
+  const Files files;
+  const Outcome outcome = files.run("resample", "path.txt", "out.txt", "--max-motion 0.05 --json");
+  REQUIRE(outcome.exit_code == 0);
+  const auto out = files.read("out.txt");
+  CHECK(largest_motion(kModel, out) <= 0.05);
+  CHECK(has_in_order(out, files.poses));
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["poses_in"] == files.poses.size());
+  CHECK(json["poses_out"] == out.size());
+  CHECK(json["max_motion"] == 0.05);
+  CHECK(json["largest_motion_before"] == largest_motion(kModel, files.poses));
+  CHECK(json["largest_motion_after"] == largest_motion(kModel, out));
+}
+
+TEST_CASE("trajectory thin keeps some of the poses, and what it wrote can be resampled") {
+  const Files files;
+  const Outcome outcome = files.run("thin", "path.txt", "thin.txt", "--max-motion 3 --json");
+  REQUIRE(outcome.exit_code == 0);
+  const auto kept = files.read("thin.txt");
+  CHECK(kept.size() < files.poses.size());
+  CHECK(kept.front() == files.poses.front());
+  CHECK(has_in_order(files.poses, kept));
+  CHECK(nlohmann::json::parse(outcome.out)["poses_out"] == kept.size());
+  CHECK_THAT(outcome.err, Contains(std::to_string(kept.size()) + " poses, from 35"));
+  REQUIRE(files.run("resample", "thin.txt", "again.txt", "--max-motion 0.1").exit_code == 0);
+  const auto again = files.read("again.txt");
+  CHECK(has_in_order(again, kept));
+  CHECK(largest_motion(kModel, again) <= 0.1);
+}
+
+TEST_CASE("trajectory reads the formats that run reads") {
+  const Files files;
+  put_bytes(files.folder / "tum.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 1 0\n");
+  put_bytes(files.folder / "euroc.csv", "0,0,0,0,1,0,0,0\n1,1,0,0,0,0,0,1\n");
+  REQUIRE(files.run("resample", "tum.txt", "a.txt", "--max-motion 0.1").exit_code == 0);
+  REQUIRE(files.run("resample", "euroc.csv", "b.txt", "--max-motion 0.1 --trajectory-format euroc")
+              .exit_code == 0);
+  CHECK(files.read("a.txt").size() > 30);
+  CHECK(bytes_of(files.folder / "a.txt") == bytes_of(files.folder / "b.txt"));
+}
+
+TEST_CASE("trajectory overwrites neither outputs nor inputs") {
+  const Files files;
+  const std::string what = GENERATE("resample", "thin");
+  put_bytes(files.folder / "out.txt", "mine");
+  const Outcome existing = files.run(what, "path.txt", "out.txt", "--max-motion 1");
+  CHECK(existing.exit_code == 2);
+  CHECK_THAT(existing.err, Contains("--force"));
+  CHECK(bytes_of(files.folder / "out.txt") == "mine");
+  CHECK(files.run(what, "path.txt", "out.txt", "--max-motion 1 --force").exit_code == 0);
+  CHECK(bytes_of(files.folder / "out.txt") != "mine");
+  for (const std::string input : {"path.txt", "model.xyz"}) {
+    const std::string before = bytes_of(files.folder / input);
+    CHECK(files.run(what, "path.txt", input, "--max-motion 1 --force").exit_code == 2);
+    CHECK(bytes_of(files.folder / input) == before);
+  }
+  CHECK(files.run(what, "path.txt", "no/folder.txt", "--max-motion 1").exit_code == 4);
+}
+
+TEST_CASE("trajectory refuses what it cannot use and leaves no output") {
+  const Files files;
+  const std::string what = GENERATE("resample", "thin");
+  for (const std::string bad : {"0", "-1", "nan", "inf", "far"}) {
+    CHECK(files.run(what, "path.txt", "out.txt", "--max-motion " + bad).exit_code == 2);
+  }
+  CHECK(files.run(what, "path.txt", "out.txt", "").exit_code == 2);
+  CHECK(files.run(what, "missing.txt", "out.txt", "--max-motion 1").exit_code == 4);
+  put_bytes(files.folder / "scaled.txt", "2 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n");
+  const Outcome scaled = files.run(what, "scaled.txt", "out.txt", "--max-motion 1");
+  CHECK(scaled.exit_code == 3);
+  CHECK_THAT(scaled.err, Contains("line 1") && Contains("--allow-non-rigid"));
+  CHECK_FALSE(std::filesystem::exists(files.folder / "out.txt"));
+  CHECK_FALSE(std::filesystem::exists(files.folder / "out.txt.partial"));
+  CHECK(files.run(what, "scaled.txt", "out.txt", "--max-motion 1 --allow-non-rigid").exit_code ==
+        0);
+}
+
+TEST_CASE("trajectory resample refuses a jump that takes too many poses") {
+  const Files files;
+  put_bytes(files.folder / "jump.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 9e6 0 1 0 0 0 0 1 0\n");
+  const Outcome outcome = files.run("resample", "jump.txt", "out.txt", "--max-motion 0.01");
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("poses 0 and 1") && Contains("expected 0.909 or more"));
+  CHECK_FALSE(std::filesystem::exists(files.folder / "out.txt"));
+}
+
+TEST_CASE("trajectory resample names poses that mirror the model by turns") {
+  const Files files;
+  put_bytes(files.folder / "mirror.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n-1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const Outcome outcome =
+      files.run("resample", "mirror.txt", "out.txt", "--max-motion 0.1 --allow-non-rigid");
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, Contains("mirror.txt: poses 0 and 1") && Contains("mirrors"));
+}
+
+TEST_CASE("an empty trajectory stays one, with a warning") {
+  const Files files;
+  const std::string what = GENERATE("resample", "thin");
+  put_bytes(files.folder / "empty.txt", "");
+  const Outcome outcome = files.run(what, "empty.txt", "out.txt", "--max-motion 1 --json");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("no poses"));
+  CHECK(bytes_of(files.folder / "out.txt").empty());
+  CHECK(nlohmann::json::parse(outcome.out)["poses_out"] == 0);
+}

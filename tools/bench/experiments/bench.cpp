@@ -1,0 +1,260 @@
+#include "bench/experiments/bench.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bench/measure/machine.hpp"
+#include "bench/measure/program.hpp"
+#include "bench/variants/variants.hpp"
+#include "clearway/error.hpp"
+#ifdef CLEARWAY_CUDA
+#include "gpu/devices.hpp"
+#endif
+
+namespace clearway::tool {
+namespace {
+
+bool use_cuda(const std::string& device) {
+#ifdef CLEARWAY_CUDA
+  const bool found = cuda_device_count() > 0;
+#else
+  const bool found = false;
+#endif
+  if (device == "cuda" && !found) throw ResourceError("no GPU; --device cpu measures without");
+  return found && device != "cpu";
+}
+
+Json header_of(const std::string& experiment, const BenchOptions& options, bool cuda) {
+  return {{"experiment", experiment},
+          {"size", options.size},
+          {"machine", machine_description()},
+          {"clearway", program_description()},
+          {"parameters",
+           {{"device", cuda ? "cuda" : "cpu"},
+            {"repetitions", options.repetitions},
+            {"scenes", options.scenes},
+            {"memory", options.memory},
+            {"device_memory", options.device_memory},
+            {"limit", options.limit_seconds}}}};
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// Locked, and noted as of this program.
+WorkFolder work_folder_at(const std::filesystem::path& path) {
+  WorkFolder folder(path);
+  const Json program = program_description();
+  const auto remark = folder.note_program({{"version", program["version"]},
+                                           {"commit", program["commit"]},
+                                           {"build", program["build"]}});
+  if (remark) spdlog::warn("{}", *remark);
+  return folder;
+}
+
+/// A case that has taken so long is not repeated.
+constexpr double kEnoughSeconds = 30;
+
+/// Beyond the radius by more than any method is expected to err, metres.
+constexpr const char* kTruthClearance = "0.3";
+
+}  // namespace
+
+scene::Sizes scene_size(const std::string& name, const std::string& size) {
+  static const std::map<std::string, scene::Sizes> kSmall{{"mine", {4'000'000, 10'000, 1'800}},
+                                                          {"hall", {1'110'000, 20'000, 1'700}},
+                                                          {"plant", {2'000'000, 40'000, 8'000}},
+                                                          {"tunnel", {500'000, 5'000, 1'900}}};
+  if (size == "smoke") return {20'000, 500, 100};
+  if (size == "small") return kSmall.at(name);
+  scene::Sizes sizes = scene::full_sizes(scene::kind_named(name));
+  if (size == "tenth") sizes.points /= 10;
+  return sizes;
+}
+
+EngineChoice EngineChoice::with(const std::vector<std::string>& more) const {
+  return {name, joined(options, more), exact};
+}
+
+Bench::Bench(const std::string& experiment, const BenchOptions& options)
+    : options_(options),
+      work_(work_folder_at(options.work)),
+      cuda_(use_cuda(options.device)),
+      record_(options_.output, header_of(experiment, options, cuda_), options.resume,
+              options.force) {
+  const Json program = program_description();
+  if (record_.empty() || !may_have_changed(program)) return;
+  spdlog::warn("{}: its cases are of commit {} too, but the source may have changed since",
+               options_.output.string(), program["commit"].get<std::string>());
+}
+
+SceneFiles Bench::scene(const std::string& name) { return scene(name, options_.size); }
+
+SceneFiles Bench::scene(const std::string& name, const std::string& of_size) {
+  const std::filesystem::path folder = work() / (name + "-" + of_size);
+  SceneFiles files{.environment = folder / "environment.las",
+                   .store = {},
+                   .model = folder / "model.ply",
+                   .trajectory = folder / "trajectory.txt"};
+  if (!std::filesystem::exists(files.trajectory)) {
+    const scene::Sizes size = scene_size(name, of_size);
+    spdlog::info("{}: making the scene", folder.string());
+    output_of_program({"scene", name, "-o", folder.string(), "--points",
+                       std::to_string(size.points), "--model-points",
+                       std::to_string(size.model_points), "--poses", std::to_string(size.poses),
+                       "--force"});
+  }
+  files.store = store(name + "-" + of_size, files.environment);
+  return files;
+}
+
+std::filesystem::path Bench::store(const std::string& name,
+                                   const std::filesystem::path& environment,
+                                   const std::vector<std::string>& options) {
+  std::filesystem::path path = work() / (name + ".h5");
+  if (!std::filesystem::exists(path)) {
+    spdlog::info("{}: converting", path.string());
+    output_of_program(joined({"convert", environment.string(), "-o", path.string(), "--memory",
+                              options_.memory, "--force"},
+                             options));
+  }
+  return path;
+}
+
+std::filesystem::path Bench::answer(const std::string& name, const SceneFiles& files,
+                                    const std::vector<std::string>& run_options) {
+  std::filesystem::path path = work_.answers() / (name + "-" + options_.size + ".h5");
+  std::filesystem::create_directories(work_.answers());
+  if (!std::filesystem::exists(path)) output_of_program(command(files, path, run_options));
+  return path;
+}
+
+std::filesystem::path Bench::truth(const std::string& name, const SceneFiles& files) {
+  const EngineChoice sweep = engine_here("sweep").with({"--clearance", kTruthClearance});
+  return answer("truth-" + name, files, sweep.options);
+}
+
+SceneFiles Bench::shifted(const std::string& name, const SceneFiles& files, const Vec3& shift) {
+  const std::string of_shift = name + "-" + options_.size + "-shifted-" +
+                               std::to_string(std::llround(shift.x)) + "-" +
+                               std::to_string(std::llround(shift.y));
+  SceneFiles moved = files;
+  moved.environment = work() / "shifted.las";
+  moved.trajectory = work() / (of_shift + ".txt");
+  moved.store = work() / (of_shift + ".h5");
+  if (!std::filesystem::exists(moved.store)) {
+    write_shifted_poses(files.trajectory, moved.trajectory, shift);
+    shift_environment(files.environment, moved.environment, shift);
+    store(of_shift, moved.environment);
+    std::filesystem::remove(moved.environment);
+  }
+  return moved;
+}
+
+Json Bench::convert(const std::string& key, const std::filesystem::path& environment,
+                    const std::filesystem::path& path,
+                    const std::vector<std::string>& convert_options) {
+  const ProgramRun run = run_program(joined({"convert", environment.string(), "-o", path.string(),
+                                             "--memory", options_.memory, "--force"},
+                                            convert_options),
+                                     options_.limit_seconds);
+  if (run.exit_code != 0) return {{"failed", finding(key, run, Refusal::kMemory)}};
+  return {{"convert_seconds", run.wall_seconds},
+          {"convert_peak_bytes", run.peak_bytes},
+          {"store_bytes", std::filesystem::file_size(path)}};
+}
+
+EngineChoice Bench::engine(const std::string& name) const {
+  const std::string engine = name.substr(0, name.find(' '));
+  const std::string device = name.ends_with("cuda") ? "cuda" : "cpu";
+  std::vector<std::string> run_options{"--engine", engine, "--device", device};
+  const bool exact = name.find("float") == std::string::npos;
+  if (!exact) run_options = joined(std::move(run_options), {"--precision", "float"});
+  return {name, run_options, exact};
+}
+
+EngineChoice Bench::engine_here(const std::string& name) const {
+  return engine(name + (cuda_ ? " cuda" : " cpu"));
+}
+
+std::vector<EngineChoice> Bench::exact_engines() const {
+  std::vector<EngineChoice> engines{engine("kdtree cpu"), engine("sweep cpu")};
+  if (!full() || !cuda_) engines.push_back(engine("grid cpu"));
+  if (cuda_) {
+    engines.push_back(engine("grid cuda"));
+    engines.push_back(engine("sweep cuda"));
+  }
+  return engines;
+}
+
+std::vector<std::string> Bench::command(const SceneFiles& files,
+                                        const std::filesystem::path& result,
+                                        const std::vector<std::string>& run_options) const {
+  std::vector<std::string> arguments{"run",
+                                     "--env",
+                                     files.store.string(),
+                                     "--model",
+                                     files.model.string(),
+                                     "--trajectory",
+                                     files.trajectory.string(),
+                                     "-o",
+                                     result.string(),
+                                     "--force",
+                                     "--json"};
+  const auto given = [&](const char* word) {
+    return std::find(run_options.begin(), run_options.end(), word) != run_options.end();
+  };
+  if (!given("--radius")) arguments = joined(std::move(arguments), {"--radius", kRadius});
+  if (given("cuda") && !given("--device-memory")) {
+    arguments = joined(std::move(arguments), {"--device-memory", options_.device_memory});
+  }
+  if (!given("--memory")) arguments = joined(std::move(arguments), {"--memory", options_.memory});
+  return joined(std::move(arguments), run_options);
+}
+
+Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& files,
+                    const std::vector<std::string>& run_options, const Judge& judge,
+                    std::optional<int> repetitions, Refusal expected) {
+  if (const Json* known = record_.find(key)) return *known;
+  spdlog::info("{}", key);
+  const std::filesystem::path result = work() / "result.h5";
+  Json one{{"key", key}, {"parameters", std::move(parameters)}, {"runs", Json::array()}};
+  double seconds = 0;
+  for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
+    if (seconds > kEnoughSeconds) break;
+    const ProgramRun run = run_program(command(files, result, run_options), options_.limit_seconds);
+    if (run.exit_code != 0) {
+      one["failed"] = finding(key, run, expected);
+      return record_.add(std::move(one));
+    }
+    seconds += run.wall_seconds;
+    Json report = Json::parse(run.output);
+    report["wall_seconds"] = run.wall_seconds;
+    report["peak_resident_bytes"] = run.peak_bytes;
+    one["runs"].push_back(std::move(report));
+  }
+  if (judge) one["findings"] = judge(result);
+  return record_.add(std::move(one));
+}
+
+Json Bench::finding(const std::string& key, const ProgramRun& failed, Refusal expected) const {
+  Json failure = failure_of(failed, options_.limit_seconds);
+  if (!is_finding(failed, expected)) throw ResourceError(key + ": " + failed.log);
+  spdlog::warn("{}: counted as failed: {}", key, reason_of(failure));
+  return failure;
+}
+
+Json Bench::keep(const std::string& key, Json parameters, const std::function<Json()>& findings) {
+  if (const Json* known = record_.find(key)) return *known;
+  spdlog::info("{}", key);
+  Json found = findings();
+  return record_.add(
+      {{"key", key}, {"parameters", std::move(parameters)}, {"findings", std::move(found)}});
+}
+
+}  // namespace clearway::tool

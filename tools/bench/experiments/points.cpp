@@ -1,0 +1,48 @@
+// Fig. 4: time by the number of environment points, 111 random samples of the hall.
+#include "bench/experiments/bench.hpp"
+#include "bench/variants/variants.hpp"
+
+namespace clearway::tool {
+namespace {
+
+constexpr int kSamples = 111;
+constexpr int kSlowEvery = 10;  ///< forward engines: every tenth sample
+constexpr int kStride = 40;     ///< order of the samples: a part of them covers the range
+constexpr std::uint64_t kSeed = 4;
+
+}  // namespace
+
+void bench_points(Bench& bench) {
+  const SceneFiles hall = bench.scene("hall");
+  const std::uint64_t all = scene_size("hall", bench.options().size).points;
+  const std::uint64_t step = bench.full() ? 500'000 : all / kSamples;
+  const std::filesystem::path sample = bench.work() / "sample.las";
+  for (int k = 0; k < kSamples; ++k) {
+    const int i = 1 + k * kStride % kSamples;
+    const std::uint64_t points = step * static_cast<std::uint64_t>(i);
+    SceneFiles files = hall;
+    files.store = bench.work() / "sample.h5";
+    bool made = false;
+    for (const EngineChoice& engine : bench.exact_engines()) {
+      const bool forward = !engine.name.starts_with("sweep");
+      if (forward && i % kSlowEvery != 1 && i != kSamples) continue;
+      const std::string key = engine.name + "/" + std::to_string(points);
+      if (bench.find(key)) continue;
+      if (!made) {
+        std::filesystem::remove(files.store);
+        sample_environment(hall.environment, sample, points, kSeed + static_cast<std::uint64_t>(i));
+        bench.store("sample", sample);
+        made = true;
+      }
+      bench.measure(key,
+                    {{"scene", "hall"},
+                     {"engine", engine.name},
+                     {"points", points},
+                     {"every", forward ? kSlowEvery : 1}},
+                    files, engine.options);
+    }
+  }
+  std::filesystem::remove(sample);
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,127 @@
+#include "bench/measure/program.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <span>
+
+#include "clearway/error.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/signals.hpp"
+#include "core/util/stopwatch.hpp"
+#include "io/system/file.hpp"
+
+namespace clearway::tool {
+namespace {
+
+/// How often a signal to this program, and the limit, are looked at.
+constexpr int kLookMilliseconds = 50;
+
+/// Of a system call that gave `descriptor`. Throws ResourceError where it failed.
+File opened(int descriptor, const char* name) {
+  if (descriptor < 0) throw ResourceError(std::string(name) + ": " + std::strerror(errno));
+  return File::adopt(descriptor, name);
+}
+
+File memory_file(const char* name) { return opened(::memfd_create(name, MFD_CLOEXEC), name); }
+
+std::string text_of(const File& file) {
+  std::string text(file.size_bytes(), '\0');
+  if (!text.empty()) file.read_at(0, std::as_writable_bytes(std::span(text)));
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& arguments) {
+  std::string line = "clearway";
+  for (const std::string& argument : arguments) line += " " + argument;
+  return line;
+}
+
+/// In the child: this program, with these files as standard output and error. Asked to stop when
+/// its parent dies. Does not return.
+[[noreturn]] void become_program(char** words, int output, int log) {
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(log, STDERR_FILENO) >= 0) {
+    ::execv("/proc/self/exe", words);
+  }
+  ::_exit(kResource);
+}
+
+/// Waits for the end of the process that `handle` is of, or until it has taken longer than the
+/// limit or this program is to stop; then it is asked to stop. Whether the limit was it.
+bool wait_within(pid_t process, const File& handle, double limit_seconds, const Stopwatch& wall) {
+  pollfd ended{.fd = handle.descriptor(), .events = POLLIN, .revents = 0};
+  for (;;) {
+    if (::poll(&ended, 1, kLookMilliseconds) > 0) return false;
+    const bool late = limit_seconds > 0 && wall.seconds() > limit_seconds;
+    if (!late && !stop_requested()) continue;
+    ::kill(process, SIGTERM);
+    return late;
+  }
+}
+
+struct Ending {
+  int status = 0;
+  struct rusage usage {};
+};
+
+Ending reaped(pid_t process) {
+  Ending ending;
+  while (::wait4(process, &ending.status, 0, &ending.usage) < 0 && errno == EINTR) {
+  }
+  return ending;
+}
+
+}  // namespace
+
+ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds) {
+  const std::string line = joined(arguments);
+  arguments.insert(arguments.begin(), "clearway");
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  const File output = memory_file("standard output"), log = memory_file("standard error");
+  const Stopwatch wall;
+  const pid_t child = ::fork();
+  if (child < 0) throw ResourceError(line + ": cannot start: " + std::strerror(errno));
+  if (child == 0) become_program(words.data(), output.descriptor(), log.descriptor());
+  bool timed_out = false;
+  try {
+    const File handle = opened(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)), "pidfd_open");
+    timed_out = wait_within(child, handle, limit_seconds, wall);
+  } catch (...) {
+    ::kill(child, SIGTERM);
+    reaped(child);
+    throw;
+  }
+  const auto [status, usage] = reaped(child);
+  ProgramRun run{.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+                 .timed_out = timed_out,
+                 .output = text_of(output),
+                 .log = text_of(log),
+                 .wall_seconds = wall.seconds(),
+                 .peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
+  if (stop_requested()) throw Interrupted(line + ": interrupted");
+  if (timed_out) return run;
+  if (run.exit_code == kInterrupted) throw Interrupted(line + ": interrupted");
+  if (run.exit_code < 0) {
+    throw ResourceError(line + ": ended by signal " + std::to_string(WTERMSIG(status)));
+  }
+  return run;
+}
+
+std::string output_of_program(const std::vector<std::string>& arguments) {
+  ProgramRun run = run_program(arguments);
+  if (run.exit_code != 0) throw ResourceError(joined(arguments) + ": " + run.log);
+  return std::move(run.output);
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+#include "io/system/file.hpp"
+#include "io/system/pending_file.hpp"
+
+namespace clearway::tool {
+
+/// Has write(const File&) fill a file that replaces `out` once it is complete. Throws UsageError
+/// where `out` is `in`, and what PendingFile, File and `write` throw; then `out` is as it was.
+template <typename Write>
+void publish(const std::filesystem::path& in, const std::filesystem::path& out, Write write) {
+  refuse_overwriting(out, {in});
+  PendingFile pending(out, true);
+  write(File::create(pending.partial()));
+  pending.publish();
+}
+
+}  // namespace clearway::tool

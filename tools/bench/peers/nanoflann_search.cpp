@@ -1,0 +1,74 @@
+#include "bench/peers/nanoflann_search.hpp"
+
+#include <atomic>
+#include <nanoflann.hpp>
+
+#include "core/geometry/predicate.hpp"
+
+namespace clearway {
+namespace {
+
+struct Adaptor {
+  std::span<const Vec3> points;
+
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return points[index][static_cast<int>(axis)];
+  }
+  template <typename Bounds>
+  bool kdtree_get_bbox(Bounds&) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>,
+                                                 Adaptor, 3, std::uint32_t>;
+
+}  // namespace
+
+struct NanoflannSearch::Index {
+  Adaptor adaptor;
+  Tree tree;
+
+  Index(std::span<const Vec3> points, std::size_t leaf_points)
+      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(leaf_points)) {
+    tree.buildIndex();
+  }
+};
+
+NanoflannSearch::NanoflannSearch(std::span<const Vec3> points, std::size_t leaf_points)
+    : index_(std::make_unique<Index>(points, leaf_points)) {}
+
+NanoflannSearch::~NanoflannSearch() = default;
+
+NanoflannSearch::SearchResult NanoflannSearch::run(const Query& query, int threads) const {
+  SearchResult answer;
+  answer.words.resize((index_->adaptor.points.size() + 63) / 64);
+  const double radius_squared = rounded_product(query.radius, query.radius);
+  nanoflann::SearchParams unsorted;
+  unsorted.sorted = false;
+  std::uint64_t empty = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : empty)
+  {
+    std::vector<std::pair<std::uint32_t, double>> found;
+#pragma omp for schedule(dynamic, 1)
+    for (std::size_t i = 0; i < query.poses.size(); ++i) {
+      for (const Vec3& m : query.model) {
+        const Vec3 moved = transform(query.poses[i], m);
+        const double position[3] = {moved.x, moved.y, moved.z};
+        if (index_->tree.radiusSearch(position, radius_squared, found, unsorted) == 0) ++empty;
+        for (const auto& [point, squared] : found) {
+          std::atomic_ref word(answer.words[point / 64]);
+          const std::uint64_t bit = std::uint64_t{1} << (point % 64);
+          if ((word.load(std::memory_order_relaxed) & bit) == 0) {
+            word.fetch_or(bit, std::memory_order_relaxed);
+          }
+        }
+      }
+    }
+  }
+  answer.empty_searches = empty;
+  return answer;
+}
+
+}  // namespace clearway

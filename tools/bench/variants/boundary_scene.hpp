@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "bench/measure/record.hpp"
+
+/// A scene whose points lie at the decision boundary: a model of one point in the origin, a pose
+/// that leaves it there, and points on the x axis that are `radius` and a few ulps away, exactly.
+namespace clearway::tool {
+
+/// By how many ulps of the radius each point lies beyond it: 0, and random numbers of every octave
+/// from 1 to 2^31, of both signs.
+std::vector<std::int32_t> steps_beside_boundary();
+
+/// Existing files are replaced. radius: such that radius + k ulps is a double for all those k.
+void write_boundary_scene(const std::filesystem::path& las, const std::filesystem::path& model,
+                          const std::filesystem::path& trajectory, double radius);
+
+/// How a result about that scene decides: false hits and misses and, element i of "points" and
+/// "wrong", how many points there are 2^i to 2^(i+1) - 1 ulps beside the boundary (0 among the
+/// first), and how many of them are decided wrongly.
+Json decided_at_boundary(const std::filesystem::path& result);
+
+}  // namespace clearway::tool

@@ -1,0 +1,95 @@
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "bench/measure/publish.hpp"
+#include "bench/variants/variants.hpp"
+#include "clearway/error.hpp"
+#include "core/util/progress.hpp"
+#include "io/system/input_error.hpp"
+#include "io/trajectory/trajectory.hpp"
+#include "io/trajectory/trajectory_writer.hpp"
+#include "scene/random.hpp"
+
+namespace clearway::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+void write_poses(const fs::path& in, const fs::path& out, const std::vector<Pose>& poses) {
+  NoProgress progress;
+  publish(in, out, [&](const File& file) { write_trajectory(poses, file, progress); });
+}
+
+/// Writes the poses after change(pose, index) of each.
+template <typename Change>
+void write_changed(const fs::path& in, const fs::path& out, Change change) {
+  auto poses = read_trajectory(in, {.allow_non_rigid = true});
+  for (std::size_t i = 0; i < poses.size(); ++i) change(poses[i], i);
+  write_poses(in, out, poses);
+}
+
+void turn(Pose& pose, const Eigen::Vector3d& rotation_vector) {
+  const Eigen::AngleAxisd rotation(rotation_vector.norm(), rotation_vector.normalized());
+  Eigen::Map<RowMajor> matrix(pose.rotation);
+  matrix = (rotation.toRotationMatrix() * matrix).eval();
+}
+
+void check_sigma(double sigma) {
+  if (sigma >= 0 && std::isfinite(sigma)) return;
+  throw UsageError("noise of " + shown(sigma) + "; expected 0 or more");
+}
+
+}  // namespace
+
+void write_every_nth_pose(const fs::path& in, const fs::path& out, std::uint64_t n) {
+  if (n == 0) throw UsageError("every 0th pose; expected 1 or more");
+  const auto poses = read_trajectory(in, {.allow_non_rigid = true});
+  std::vector<Pose> kept;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i % n == 0 || i + 1 == poses.size()) kept.push_back(poses[i]);
+  }
+  write_poses(in, out, kept);
+}
+
+void write_shifted_poses(const fs::path& in, const fs::path& out, const Vec3& shift) {
+  for (int k = 0; k < 3; ++k) {
+    if (!std::isfinite(shift[k])) {
+      throw UsageError("a shift of " + shown(shift[k]) + " m; expected a finite length");
+    }
+  }
+  write_changed(in, out, [&](Pose& pose, std::size_t) {
+    for (int k = 0; k < 3; ++k) pose.translation[k] += shift[k];
+  });
+}
+
+void write_noisy_poses(const fs::path& in, const fs::path& out, double sigma_m, double sigma_rad,
+                       std::uint64_t seed) {
+  check_sigma(sigma_m);
+  check_sigma(sigma_rad);
+  const scene::Random random(seed, 0);
+  const auto normal = [&random](std::uint64_t counter) {
+    return scene::Random::to_normal(random.bits(counter));
+  };
+  write_changed(in, out, [&](Pose& pose, std::size_t i) {
+    Eigen::Vector3d rotation_vector;
+    for (int k = 0; k < 3; ++k) {
+      pose.translation[k] += sigma_m * normal(6 * i + k);
+      rotation_vector[k] = sigma_rad * normal(6 * i + 3 + k);
+    }
+    turn(pose, rotation_vector);
+  });
+}
+
+void write_non_rigid_poses(const fs::path& in, const fs::path& out, double stretch) {
+  if (!(stretch > -1 && std::isfinite(stretch))) {
+    throw UsageError("a stretch of " + shown(stretch) + "; expected more than -1");
+  }
+  write_changed(in, out, [&](Pose& pose, std::size_t) {
+    for (int row = 0; row < 3; ++row) pose.rotation[3 * row] *= 1 + stretch;
+  });
+}
+
+}  // namespace clearway::tool

@@ -1,9 +1,0 @@
-#pragma once
-
-namespace clearway::tool {
-
-/// Throws ResourceError where this process may not have that many threads. OpenMP would end the
-/// program instead.
-void check_threads(int threads);
-
-}  // namespace clearway::tool

@@ -1,0 +1,54 @@
+#include <filesystem>
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/comparison_text.hpp"
+#include "cli/standard_output.hpp"
+#include "io/result/compare_results.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct Options {
+  std::filesystem::path a, b;
+  std::size_t show = 10;
+  bool json = false;
+};
+
+bool run_compare(const Options& options) {
+  const ResultReader a(options.a), b(options.b);
+  const Comparison comparison = compare_results(a, b, options.show);
+  print(options.json ? comparison_json(comparison, a.name(), b.name())
+                     : comparison_text(comparison, a.name(), b.name()));
+  return comparison.equal();
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("compare", "Say how the colliding points of two results differ");
+  command->add_option("A", options->a, "Result of clearway run")->type_name("FILE")->required();
+  command->add_option("B", options->b, "Another one about the same environment")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--show", options->show, "Print the first N differing points with coordinates")
+      ->type_name("N")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->footer(
+      "Prints how many points are in both, only in A, only in B and, where both have first poses,\n"
+      "how many of those differ, likewise clearances; and what was asked differently (model, "
+      "trajectory, radius in\n"
+      "metres).\n"
+      "Exit code 0: the same points, first poses and clearances, whatever was asked;\n"
+      "1: they differ; 3: a file is not a result, or the results are about different\n"
+      "environments, whose point indices cannot be compared.\n"
+      "Example: clearway compare kdtree.h5 sweep.h5");
+  command->callback([options, &exit_code] { exit_code = run_compare(*options) ? 0 : 1; });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,84 @@
+#include "cli/console.hpp"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "cli/signals.hpp"
+
+namespace clearway::tool {
+namespace {
+
+constexpr auto kRedraw = std::chrono::milliseconds(100);
+
+std::string short_number(double value) {
+  const char* suffixes[] = {"", " k", " M", " G"};
+  int suffix = 0;
+  for (; value >= 1000 && suffix < 3; ++suffix) value /= 1000;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g%s", value, suffixes[suffix]);
+  return text;
+}
+
+std::string short_time(double seconds) {
+  char text[32];
+  const auto whole = static_cast<long>(seconds + 0.5);
+  std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  return text;
+}
+
+}  // namespace
+
+void start_log() {
+  auto logger = spdlog::stderr_logger_mt("clearway");
+  logger->set_pattern("%l: %v");
+  spdlog::set_default_logger(std::move(logger));
+}
+
+ConsoleProgress::ConsoleProgress() : terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+void ConsoleProgress::begin(std::string_view stage, std::uint64_t total, std::string_view unit) {
+  const std::lock_guard lock(mutex_);
+  stage_ = stage;
+  unit_ = unit;
+  total_ = total;
+  done_ = 0;
+  start_ = drawn_ = Clock::now();
+}
+
+void ConsoleProgress::advance(std::uint64_t units) {
+  const std::lock_guard lock(mutex_);
+  done_ += units;
+  const auto now = Clock::now();
+  if (terminal_ && now - drawn_ >= kRedraw) draw(now);
+}
+
+void ConsoleProgress::end() {
+  const std::lock_guard lock(mutex_);
+  if (terminal_ && drawn_ != start_) std::fputs("\r\033[K", stderr);
+}
+
+bool ConsoleProgress::stop_requested() const { return tool::stop_requested(); }
+
+void ConsoleProgress::draw(Clock::time_point now) {
+  drawn_ = now;
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  const double rate = static_cast<double>(done_) / std::max(seconds, 1e-9);
+  std::string line = stage_ + ": " + short_number(static_cast<double>(done_));
+  if (total_ > 0) {
+    const double share = static_cast<double>(done_) / static_cast<double>(total_);
+    const double left =
+        static_cast<double>(total_ - std::min(done_, total_)) / std::max(rate, 1e-9);
+    line += " of " + short_number(static_cast<double>(total_)) + " " + unit_ + ", " +
+            std::to_string(static_cast<int>(100 * share)) + " %, " + short_number(rate) + " " +
+            unit_ + "/s, " + short_time(left) + " left";
+  } else {
+    line += " " + unit_ + ", " + short_number(rate) + " " + unit_ + "/s";
+  }
+  std::fprintf(stderr, "\r%s\033[K", line.c_str());
+}
+
+}  // namespace clearway::tool

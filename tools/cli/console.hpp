@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+
+#include "core/util/progress.hpp"
+
+namespace clearway::tool {
+
+/// Sends the log to standard error: plain lines with a level.
+void start_log();
+
+/// A progress bar with rate and time left on standard error where that is a terminal; nothing
+/// elsewhere. Asks to stop when a signal did (cli/signals.hpp).
+class ConsoleProgress final : public Progress {
+ public:
+  ConsoleProgress();
+  void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override;
+  void advance(std::uint64_t units) override;
+  void end() override;
+  bool stop_requested() const override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(Clock::time_point now);
+
+  bool terminal_;
+  std::mutex mutex_;
+  std::string stage_, unit_;
+  std::uint64_t total_ = 0, done_ = 0;
+  Clock::time_point start_, drawn_;
+};
+
+}  // namespace clearway::tool

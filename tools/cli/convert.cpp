@@ -1,0 +1,122 @@
+#include "io/convert/convert.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <string>
+
+#include "clearway/error.hpp"
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/options.hpp"
+#include "cli/signals.hpp"
+#include "core/util/format.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct Options {
+  ConversionOptions conversion;
+  std::string layout = "adaptive";
+  double scale = 0;
+  bool resume = false;
+};
+
+std::optional<double> regular_size_of(const std::string& layout) {
+  const std::string regular = "regular:";
+  double size = 0;
+  if (layout == "adaptive") return std::nullopt;
+  if (!layout.starts_with(regular) ||
+      !CLI::detail::lexical_cast(layout.substr(regular.size()), size)) {
+    throw UsageError("--layout " + layout + ": expected adaptive or regular:SIZE (metres)");
+  }
+  return size;
+}
+
+void log_report(const ConversionOptions& options, const ConversionReport& report) {
+  for (const std::string& remark : report.remarks) spdlog::warn("{}", remark);
+  if (report.non_finite_points > 0) {
+    spdlog::warn("{} points with NaN or infinite coordinates left out (--strict refuses them)",
+                 format_count(report.non_finite_points));
+  }
+  spdlog::info("{}: {} points in {} cells of {}, {} ({:.2f} bytes a point)",
+               options.output.string(), format_count(report.metadata.point_count),
+               format_count(report.cells), format_count(options.cell_points),
+               format_size(report.output_bytes),
+               static_cast<double>(report.output_bytes) /
+                   static_cast<double>(std::max<std::uint64_t>(1, report.metadata.point_count)));
+  if (report.largest_change > 0) {
+    spdlog::info("coordinates changed by at most {:.3g} (rounded to the scale)",
+                 report.largest_change);
+  }
+  spdlog::info(
+      "seconds: count {:.2f}, distribute {:.2f}, partition {:.2f}, confirm {:.2f}; temporary {}",
+      report.count_seconds, report.distribute_seconds, report.partition_seconds,
+      report.confirm_seconds, format_size(report.temporary_bytes));
+}
+
+void run_convert(Options& options) {
+  ConversionOptions& conversion = options.conversion;
+  conversion.regular_size = regular_size_of(options.layout);
+  if (options.scale != 0) conversion.scale = options.scale;
+  ConsoleProgress progress;
+  if (options.resume && is_converted(conversion, progress)) {
+    spdlog::info("{}: is the store of these inputs already; nothing to do",
+                 conversion.output.string());
+    return;
+  }
+  log_report(conversion, convert(conversion, progress));
+}
+
+}  // namespace
+
+void add_convert(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  ConversionOptions& conversion = options->conversion;
+  CLI::App* command =
+      program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");
+  command
+      ->add_option("INPUT", conversion.inputs,
+                   "Scans (LAS, PLY, XYZ text), folders of scans, or - for LAS on standard input")
+      ->required();
+  command->add_option("-o,--output", conversion.output, "The store, an HDF5 file")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--scale", options->scale,
+                   "Step of the stored integers in metres (default: as the input has it, else "
+                   "the finest power of ten from 1e-6 that fits)")
+      ->type_name("METRES")
+      ->check(positive_length());
+  command->add_option("--cell-points", conversion.cell_points, "Points a cell, 64 to 1048576")
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--layout", options->layout,
+                   "adaptive, or regular:SIZE for cubes of SIZE metres")
+      ->capture_default_str();
+  add_memory_option(*command, conversion.memory_bytes);
+  add_threads_option(*command, conversion.threads);
+  command->add_flag("--ignore-crs", conversion.ignore_crs,
+                    "Take coordinates in degrees, or inputs in different units, as they are");
+  command->add_flag("--strict", conversion.strict, "Refuse points that are not finite");
+  CLI::Option* force =
+      command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
+  command
+      ->add_flag("--resume", options->resume,
+                 "Leave the store of these inputs alone where it is there already; one that was "
+                 "interrupted or killed begins anew")
+      ->excludes(force);
+  command->footer(
+      "Needs temporary disk beside the output: 20 bytes a point, 32 from standard input.\n"
+      "LAZ and other formats by piping LAS: pdal translate in.laz STDOUT --writer las | "
+      "clearway convert - -o site.h5\n"
+      "Example: clearway convert scans/ -o site.h5 --memory 2G");
+  command->callback([options] {
+    run_stoppable(options->conversion.output,
+                  "the same command starts it again, from the beginning",
+                  [&] { run_convert(*options); });
+  });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,93 @@
+#include "cli/options.hpp"
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "core/util/format.hpp"
+
+namespace clearway::tool {
+
+CLI::Validator positive_length() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    if (number && std::isfinite(value) && value > 0) return "";
+    return text + ": expected a finite number of metres above 0, for example 0.1";
+  };
+  return {check, ""};
+}
+
+CLI::Validator seconds_up_to(double most) {
+  const auto check = [most](const std::string& text) -> std::string {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    if (number && value >= 0 && value <= most) return "";
+    return text + ": expected seconds from 0 to " + std::to_string(static_cast<int>(most));
+  };
+  return {check, ""};
+}
+
+std::uint64_t parse_size(const std::string& option, const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::string unit(end, text.data() + text.size());
+  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (unit.ends_with('b')) unit.pop_back();
+  if (unit.size() == 2 && unit[1] == 'i') unit.pop_back();
+  const std::string units = "kmgt";
+  const auto power = unit.empty() ? 0 : units.find(unit) + 1;
+  const double bytes = std::ldexp(value, static_cast<int>(10 * power));
+  const bool known = unit.empty() || (unit.size() == 1 && power != 0);
+  if (error != std::errc() || !known || !(bytes >= 0 && bytes < 0x1p60)) {
+    throw CLI::ValidationError(option,
+                               text +
+                                   ": expected a size in bytes, or with K, M, G or T (powers of "
+                                   "1024), for example 512M or 4G");
+  }
+  return static_cast<std::uint64_t>(bytes);
+}
+
+void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
+                     const std::string& description) {
+  command
+      .add_option_function<std::string>(
+          name, [&bytes, name](const std::string& text) { bytes = parse_size(name, text); },
+          description)
+      ->type_name("SIZE");
+}
+
+void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
+  add_size_option(
+      command, "--memory", bytes,
+      "Bound of the working memory, for example 512M or 4G (default: " + format_size(bytes) + ")");
+}
+
+void add_threads_option(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Threads (default: all cores)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+}
+
+void add_trajectory_options(CLI::App& command, TrajectoryOptions& options) {
+  const std::map<std::string, TrajectoryFormat> formats{{"auto", TrajectoryFormat::kAuto},
+                                                        {"matrix", TrajectoryFormat::kMatrix},
+                                                        {"tum", TrajectoryFormat::kTum},
+                                                        {"euroc", TrajectoryFormat::kEuroc},
+                                                        {"csv", TrajectoryFormat::kCsv}};
+  command
+      .add_option_function<std::string>(
+          "--trajectory-format",
+          [formats, &format = options.format](const std::string& name) {
+            format = formats.at(name);
+          },
+          "Format of the trajectory where a guess could go wrong (default: auto)")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"auto", "matrix", "tum", "euroc", "csv"}));
+  command.add_flag("--allow-non-rigid", options.allow_non_rigid,
+                   "Accept matrices that scale or shear");
+}
+
+}  // namespace clearway::tool

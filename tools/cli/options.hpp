@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+#include "io/trajectory/trajectory.hpp"
+
+namespace clearway::tool {
+
+/// Accepts a finite number of metres above 0.
+CLI::Validator positive_length();
+
+/// Accepts a number of seconds from 0 to `most`.
+CLI::Validator seconds_up_to(double most);
+
+/// An option that takes a size in bytes; "512M" and "4G" are powers of 1024.
+void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
+                     const std::string& description);
+
+/// --memory, in bytes.
+void add_memory_option(CLI::App& command, std::uint64_t& bytes);
+
+/// --threads; 0 stands for all cores.
+void add_threads_option(CLI::App& command, int& threads);
+
+/// --trajectory-format and --allow-non-rigid.
+void add_trajectory_options(CLI::App& command, TrajectoryOptions& options);
+
+/// Bytes of "512M", "1.5G", "4GiB" or "300000000"; throws CLI::ValidationError naming the option.
+std::uint64_t parse_size(const std::string& option, const std::string& text);
+
+}  // namespace clearway::tool

@@ -1,0 +1,172 @@
+#include "cli/run_journal.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "clearway/error.hpp"
+#include "cli/options.hpp"
+#include "core/util/format.hpp"
+#include "io/result/verify_result.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kReplaces = "overwrites";
+
+std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+std::string work_text(const JournalledWork& work) {
+  if (work.poses > 0) return format_count(work.poses) + " poses finished";
+  return format_count(work.cells) + " cells finished";
+}
+
+std::string value_of(const JournalIdentity& identity, const std::string& name) {
+  for (const auto& [field, value] : identity) {
+    if (field == name) return value;
+  }
+  return "unknown";
+}
+
+JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header,
+                            const EngineOptions& options, const std::string& engine,
+                            const std::string& device, bool replaces) {
+  JournalIdentity identity{{"environment", hash_text(store.fingerprint())},
+                           {"model", hash_text(header.model_hash)},
+                           {"trajectory", hash_text(header.trajectory_hash)},
+                           {"radius", fmt::format("{}", header.radius)},
+                           {"first_pose", yes_or_no(header.first_pose)},
+                           {"clearance", fmt::format("{}", header.clearance)},
+                           {"between_poses", yes_or_no(header.between_poses)},
+                           {"tolerance", fmt::format("{}", header.tolerance)},
+                           {"engine", engine},
+                           {"device", device},
+                           {kReplaces, yes_or_no(replaces)}};
+  if (header.tolerance > 0) {  // then the answer depends on the field
+    identity.emplace_back("field_voxel", fmt::format("{}", options.field_voxel));
+  }
+  if (options.float_precision) {  // then the answer depends on the cells
+    identity.emplace_back("precision", "float");
+    identity.emplace_back("grid_cell", fmt::format("{}", options.grid_cell));
+  }
+  return identity;
+}
+
+bool answers(const fs::path& file, const ResultHeader& query, Progress& progress) {
+  try {
+    const ResultReader result(file);
+    return result.header() == query && !verify_result(result, progress);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code failed;
+  fs::remove(path, failed);
+  if (failed) throw ResourceError(path.string() + ": cannot remove: " + failed.message());
+}
+
+}  // namespace
+
+RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
+    : output_(output),
+      options_(options),
+      path_(journal_of(options.output)),
+      replaces_(options.force && fs::exists(options.output)) {
+  std::error_code none;
+  if (!fs::exists(fs::symlink_status(path_, none))) {
+    if (options.resume && !fs::exists(options.output)) {
+      spdlog::info("{}: no journal to resume, starts afresh", path_.string());
+    }
+    return;
+  }
+  if (!fs::is_regular_file(fs::symlink_status(path_)) || fs::hard_link_count(path_) > 1 ||
+      (fs::file_size(path_) > 0 && !is_journal(path_))) {
+    throw UsageError(path_.string() +
+                     ": is in the place of this output's journal and is none; move it away, or "
+                     "choose another output");
+  }
+  if (options.force) {
+    unwanted_ = "journal of an unfinished run removed, starts afresh";
+    return;
+  }
+  JournalReader read(path_);
+  if (!read.identity() || read.records() == 0) {
+    unwanted_ = "nothing in it yet, starts afresh";
+    return;
+  }
+  earlier_ = journalled_work(read);
+  if (!options.resume) {
+    throw UsageError(fmt::format(
+        "{}: an unfinished run with engine {} on {}, radius {}, {}; --resume goes on with it, "
+        "--force starts afresh",
+        path_.string(), value_of(*read.identity(), "engine"), value_of(*read.identity(), "device"),
+        value_of(*read.identity(), "radius"), work_text(earlier_)));
+  }
+  if (!read.torn().empty()) {
+    spdlog::info("{}: {}; it is cut off and computed again", path_.string(), read.torn());
+  }
+  replaces_ = value_of(*read.identity(), kReplaces) == yes_or_no(true);
+  read_.emplace(std::move(read));
+}
+
+bool RunJournal::already_done(const StoreReader& store, const ResultHeader& header,
+                              Progress& progress) {
+  if (replaces_) return false;
+  if (options_.resume && fs::exists(options_.output) && is_of(store, header) &&
+      answers(options_.output, header, progress)) {
+    if (read_ || !unwanted_.empty()) remove_file(path_);
+    return true;
+  }
+  output_.refuse_existing();
+  return false;
+}
+
+bool RunJournal::is_of(const StoreReader& store, const ResultHeader& header) const {
+  if (!read_) return header.tolerance == 0 && !header.float_precision;
+  const JournalIdentity& earlier = *read_->identity();
+  return difference(earlier,
+                    identity_of(store, header, options_.engine, value_of(earlier, "engine"),
+                                value_of(earlier, "device"), false))
+      .empty();
+}
+
+SearchJournal& RunJournal::open(const StoreReader& store, const Query& query,
+                                const ResultHeader& header, const std::string& engine,
+                                const std::string& device) {
+  const JournalIdentity identity =
+      identity_of(store, header, options_.engine, engine, device, replaces_);
+  if (read_) {
+    const std::string differs = difference(*read_->identity(), identity);
+    if (!differs.empty()) {
+      throw UsageError(path_.string() + ": belongs to another run: its " + differs +
+                       "; give the options and files that it was started with, or --force to "
+                       "start afresh");
+    }
+    spdlog::info("{}: resumes with {}", path_.string(), work_text(earlier_));
+  }
+  if (!unwanted_.empty()) {
+    spdlog::info("{}: {}", path_.string(), unwanted_);
+    remove_file(path_);
+  }
+  return results_.emplace(path_, identity, read_ ? &*read_ : nullptr, store, query,
+                          options_.journal_interval_seconds);
+}
+
+std::string RunJournal::earlier_device() const {
+  return read_ ? value_of(*read_->identity(), "device") : "";
+}
+
+void RunJournal::remove_after_publication() {
+  if (!results_->is_in_place()) return;
+  try {
+    remove_file(path_);
+  } catch (const ResourceError& error) {
+    spdlog::warn("{}; the result is complete", error.what());
+  }
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,114 @@
+#include "cli/run_options.hpp"
+
+#include "cli/options.hpp"
+
+namespace clearway::tool {
+namespace {
+
+void add_inputs(CLI::App& command, RunOptions& options) {
+  command.add_option("--env", options.environment, "The environment: a store of clearway convert")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--model", options.model, "The model's points: LAS, PLY or XYZ text, metres")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--radius", options.query.radius, "Search radius in metres, for example 0.1")
+      ->type_name("METRES")
+      ->required()
+      ->check(positive_length());
+  command.add_option("-o,--output", options.output, "The result, an HDF5 file")
+      ->type_name("FILE")
+      ->required();
+  add_trajectory_options(command, options.trajectory_options);
+}
+
+void add_query(CLI::App& command, RunOptions& options) {
+  command.add_flag("--first-pose", options.query.first_pose,
+                   "Also the first pose (0-based) that touches each colliding point");
+  command
+      .add_option("--clearance", options.query.clearance,
+                  "Also distance and pose of the model's nearest approach to every point that it "
+                  "comes closer to than this, for example 0.5; engine sweep only")
+      ->type_name("METRES")
+      ->check(positive_length());
+  command.add_flag("--between-poses", options.query.between_poses,
+                   "Move every model point on a straight segment from each pose to the next");
+  command
+      .add_option("--tolerance", options.query.tolerance,
+                  "Faster: points whose distance differs from the radius by at most this may be "
+                  "answered wrongly, for example 0.001; below the radius, engine sweep only")
+      ->type_name("METRES")
+      ->check(positive_length());
+}
+
+void add_device(CLI::App& command, EngineOptions& options) {
+  command
+      .add_option("--device", options.device,
+                  "cpu or cuda; auto takes a GPU where the engine and the machine have one")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  command
+      .add_option("--gpus", options.gpus,
+                  "Numbers of the GPUs to use, for example 0,1 (default: the first with room)")
+      ->delimiter(',')
+      ->type_name("N,...")
+      ->check(CLI::Range(0, 1023));
+  add_size_option(
+      command, "--device-memory", options.device_memory_bytes,
+      "Bound of the memory of each GPU, without CUDA's own (default: 2G, or what is free)");
+}
+
+void add_engine(CLI::App& command, EngineOptions& options) {
+  command.add_option("--engine", options.engine, "sweep, grid or kdtree; auto takes sweep")
+      ->check(CLI::IsMember({"auto", "sweep", "grid", "kdtree"}))
+      ->capture_default_str();
+  add_device(command, options);
+  add_threads_option(command, options.threads);
+  add_memory_option(command, options.memory_bytes);
+  command
+      .add_option("--field-voxel", options.field_voxel,
+                  "Voxel of the sweep engine's model field in metres (default: chosen)")
+      ->type_name("METRES")
+      ->check(positive_length());
+  command
+      .add_option("--grid-cell", options.grid_cell,
+                  "Grid cell of engine grid in metres (default: chosen)")
+      ->type_name("METRES")
+      ->check(positive_length());
+  command
+      .add_option_function<std::string>(
+          "--precision",
+          [&options](const std::string& name) { options.float_precision = name == "float"; },
+          "exact, or float: engine grid decides in float alone, for comparison (default: exact)")
+      ->type_name("PRECISION")
+      ->check(CLI::IsMember({"exact", "float"}));
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  add_inputs(command, options);
+  add_query(command, options);
+  add_engine(command, options.engine);
+  CLI::Option* force = command.add_flag(
+      "--force", options.force, "Overwrite an existing result; drop the journal of an earlier run");
+  command
+      .add_flag("--resume", options.resume,
+                "Go on with a run of the same query that was interrupted or killed")
+      ->excludes(force);
+  command
+      .add_option("--journal-interval", options.journal_interval_seconds,
+                  "Seconds between two syncs of the journal to the disk: what a crash of the "
+                  "system can cost")
+      ->type_name("SECONDS")
+      ->check(seconds_up_to(3600))
+      ->capture_default_str();
+  command.add_flag("--json", options.json, "Print one JSON object about the run");
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,146 @@
+#include "scene/scene.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "clearway/error.hpp"
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/options.hpp"
+#include "cli/signals.hpp"
+#include "core/util/format.hpp"
+#include "io/system/pending_file.hpp"
+#include "scene/write.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct SceneOptions {
+  std::string kind;
+  std::filesystem::path folder;
+  std::optional<std::uint64_t> points, model_points, poses;
+  std::uint64_t seed = 1;
+  std::string environment;
+  int threads = 0;
+  bool force = false;
+};
+
+constexpr const char* kExamples = R"(
+Scenes (environment points, model points, poses; the defaults):
+  hall      55,872,714   214,489    17,234   a factory hall along a conveyor; a car body
+  plant    350,109,065   434,700   398,999   the same, larger, the path sampled every 2 mm
+  mine     806,183,400   100,000    17,795   galleries scanned stop and go; a front loader
+  tunnel    18,919,000    28,622    19,392   a railway tunnel with open ends; a wagon
+
+Examples:
+  clearway scene hall -o hall --points 5000000
+  clearway scene mine -o mine --environment - | clearway convert - -o mine.h5)";
+
+scene::Sizes sizes_of(const SceneOptions& options) {
+  const scene::Sizes full = scene::full_sizes(scene::kind_named(options.kind));
+  return {options.points.value_or(full.points), options.model_points.value_or(full.model_points),
+          options.poses.value_or(full.poses)};
+}
+
+void write_to_stdout(const scene::Scene& made, const SceneOptions& options, Progress& progress) {
+  if (::isatty(STDOUT_FILENO) == 1) {
+    throw UsageError("--environment - writes LAS, which is binary: pipe or redirect it");
+  }
+  const int descriptor = ::dup(STDOUT_FILENO);
+  if (descriptor < 0) throw ResourceError("standard output: cannot open: it is closed");
+  const File out = File::adopt(descriptor, "standard output");
+  scene::write_environment(made, options.seed, out, options.threads, progress);
+}
+
+/// Better refused at once than after minutes.
+void check_disk_space(const std::filesystem::path& folder, std::uint64_t points) {
+  constexpr std::uint64_t kBytesAPoint = 20;
+  const std::uint64_t free = free_disk_bytes(folder);
+  if (free / kBytesAPoint < points) {
+    throw ResourceError(folder.string() + ": the environment needs " +
+                        format_size(points * kBytesAPoint) + ", the disk has " + format_size(free) +
+                        " free; fewer --points, or --environment - to pipe it on");
+  }
+}
+
+/// All files are whole under temporary names before the first gets its own.
+void make_scene_files(const SceneOptions& options) {
+  const auto sizes = sizes_of(options);
+  const bool to_stdout = options.environment == "-";
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error) {
+    throw ResourceError(options.folder.string() + ": cannot create the folder: " + error.message());
+  }
+  PendingFile model(options.folder / "model.ply", options.force);
+  PendingFile trajectory(options.folder / "trajectory.txt", options.force);
+  std::optional<PendingFile> environment;
+  if (!to_stdout) {
+    environment.emplace(options.folder / "environment.las", options.force);
+    check_disk_space(options.folder, sizes.points);
+  }
+
+  const auto made = scene::make_scene(scene::kind_named(options.kind), sizes, options.seed);
+  scene::write_model(*made, File::create(model.partial()));
+  scene::write_trajectory(*made, File::create(trajectory.partial()));
+  ConsoleProgress progress;
+  if (to_stdout) {
+    write_to_stdout(*made, options, progress);
+  } else {
+    scene::write_environment(*made, options.seed, File::create(environment->partial()),
+                             options.threads, progress);
+    environment->publish();
+  }
+  model.publish();
+  trajectory.publish();
+  spdlog::info("{}: {} environment points, {} model points, {} poses", options.folder.string(),
+               format_count(sizes.points), format_count(sizes.model_points),
+               format_count(sizes.poses));
+}
+
+}  // namespace
+
+void add_scene(CLI::App& program) {
+  CLI::App* command = program.add_subcommand(
+      "scene",
+      "Makes a synthetic scene like those of the paper: environment.las, model.ply and\n"
+      "trajectory.txt, in metres with z up; the same bytes for the same seed.");
+  const auto options = std::make_shared<SceneOptions>();
+  command->add_option("kind", options->kind, "Which scene, see below")
+      ->required()
+      ->check(CLI::IsMember({"hall", "plant", "mine", "tunnel"}));
+  command->add_option("-o,--output", options->folder, "Folder for the files, created if missing")
+      ->required()
+      ->type_name("DIR");
+  const auto count = [&](const char* name, std::optional<std::uint64_t>& value, std::uint64_t most,
+                         const char* help) {
+    command->add_option(name, value, help)
+        ->check(CLI::Range(std::uint64_t{1}, most))
+        ->type_name("N");
+  };
+  count("--points", options->points, 1'000'000'000'000,
+        "Environment points: changes the density, not the extent (default: the paper's)");
+  count("--model-points", options->model_points, 100'000'000,
+        "Model points (default: the paper's)");
+  count("--poses", options->poses, 1'000'000'000, "Poses of the trajectory (default: the paper's)");
+  command->add_option("--seed", options->seed, "Seed of all random numbers")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--environment", options->environment,
+                   "\"-\" writes the environment to standard output instead of a file")
+      ->check(CLI::IsMember({"-"}));
+  add_threads_option(*command, options->threads);
+  command->add_flag("--force", options->force, "Overwrite existing files");
+  command->footer(kExamples);
+  command->callback([options] {
+    run_stoppable(options->folder, kStartsAgain, [&] { make_scene_files(*options); });
+  });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,145 @@
+#include "io/trajectory/trajectory.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "clearway/error.hpp"
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/options.hpp"
+#include "cli/signals.hpp"
+#include "cli/standard_output.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/trajectory/resample_trajectory.hpp"
+#include "core/trajectory/thin_trajectory.hpp"
+#include "core/trajectory/trajectory_motion.hpp"
+#include "core/util/format.hpp"
+#include "io/formats/model.hpp"
+#include "io/system/pending_file.hpp"
+#include "io/trajectory/trajectory_writer.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct Options {
+  std::filesystem::path input, output, model;
+  double max_motion = 0;
+  TrajectoryOptions trajectory;
+  bool force = false;
+  bool json = false;
+};
+
+using Change = std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Box& model,
+                                               double max_motion, Progress& progress)>;
+
+std::vector<Pose> resample(const std::vector<Pose>& poses, const Box& model, double max_motion,
+                           Progress& progress) {
+  return resample_trajectory(poses, model, max_motion, progress);
+}
+
+std::vector<Pose> thin(const std::vector<Pose>& poses, const Box& model, double max_motion,
+                       Progress&) {
+  std::vector<Pose> kept;
+  for (const std::size_t i : thin_trajectory(poses, model, max_motion)) kept.push_back(poses[i]);
+  return kept;
+}
+
+std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model, const Options& options,
+                          const Change& change, Progress& progress) {
+  try {
+    return change(poses, model, options.max_motion, progress);
+  } catch (const InputError& error) {
+    throw InputError(options.input.string() + ": " + error.what());
+  }
+}
+
+void write_changed(const Options& options, const Change& change) {
+  refuse_overwriting(options.output, {options.input, options.model});
+  PendingFile output(options.output, options.force);
+  const std::vector<Pose> before = read_trajectory(options.input, options.trajectory);
+  if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
+  const Box model = box_of(read_model(options.model));
+  const double motion_before = largest_motion(model, before);
+  if (!std::isfinite(motion_before)) {
+    throw InputError(options.input.string() +
+                     ": poses too far apart: the motion from one to the next is no finite number");
+  }
+  ConsoleProgress progress;
+  const std::vector<Pose> after = changed(before, model, options, change, progress);
+  write_trajectory(after, File::create(output.partial()), progress);
+  output.publish();
+
+  const double motion_after = largest_motion(model, after);
+  spdlog::info(
+      "{}: {} poses, from {}; the largest motion from one to the next {:.6g} m, was {:.6g} m",
+      options.output.string(), format_count(after.size()), format_count(before.size()),
+      motion_after, motion_before);
+  if (options.json) {
+    const nlohmann::ordered_json report{{"poses_in", before.size()},
+                                        {"poses_out", after.size()},
+                                        {"max_motion", options.max_motion},
+                                        {"largest_motion_before", motion_before},
+                                        {"largest_motion_after", motion_after}};
+    print(report.dump(2) + "\n");
+  }
+}
+
+void add_change(CLI::App& command, const char* max_motion_help, const Change& change) {
+  const auto options = std::make_shared<Options>();
+  command
+      .add_option("IN", options->input,
+                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("-o,--output", options->output,
+                  "The new trajectory: 16 numbers a line, a row-major 4x4 matrix")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--max-motion", options->max_motion, max_motion_help)
+      ->type_name("METRES")
+      ->required()
+      ->check(positive_length());
+  command
+      .add_option(
+          "--model", options->model,
+          "The model's points: LAS, PLY or XYZ text, metres; its bounding box is what moves")
+      ->type_name("FILE")
+      ->required();
+  add_trajectory_options(command, options->trajectory);
+  command.add_flag("--force", options->force, "Overwrite an existing output");
+  command.add_flag("--json", options->json, "One JSON object on standard output");
+  command.callback([options, change] {
+    run_stoppable(options->output, kStartsAgain, [&] { write_changed(*options, change); });
+  });
+}
+
+}  // namespace
+
+void add_trajectory(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("trajectory", "Make a trajectory denser or sparser");
+  command->require_subcommand(1);
+  CLI::App* resampling = command->add_subcommand(
+      "resample", "Add poses on a smooth curve, so that none is far from the next; keep all given");
+  add_change(*resampling, "The farthest that a model point may move from one pose to the next",
+             resample);
+  resampling->footer(
+      "Example: clearway trajectory resample path.txt -o dense.txt --max-motion 0.05 --model "
+      "car.ply");
+  CLI::App* thinning = command->add_subcommand(
+      "thin", "Keep fewer poses, so that every one given is near one that is kept");
+  add_change(*thinning,
+             "The farthest that a model point may be, at a dropped pose, from where it is at the "
+             "last kept one before it",
+             thin);
+  thinning->footer(
+      "Example: clearway trajectory thin path.txt -o sparse.txt --max-motion 0.01 --model car.ply");
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,80 @@
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "clearway/error.hpp"
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/options.hpp"
+#include "cli/standard_output.hpp"
+#include "io/hdf5/hdf5.hpp"
+#include "io/journal/journal.hpp"
+#include "io/result/verify_result.hpp"
+#include "io/store/verify_store.hpp"
+#include "stream/search_journal.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct Findings {
+  std::vector<std::string> faults;
+  std::string remark{};  ///< of what is no fault
+};
+
+/// As a run leaves it that was killed before the first byte.
+bool is_empty_journal(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return file.extension() == ".journal" && std::filesystem::is_regular_file(file, unknown) &&
+         std::filesystem::is_empty(file, unknown);
+}
+
+/// A torn tail is what a run that was killed leaves: the next one cuts it off.
+Findings verify_journal(const std::filesystem::path& file) {
+  const JournalReader journal(file);
+  journalled_work(journal);
+  if (journal.torn().empty()) return {};
+  return {{},
+          file.string() + ": " + journal.torn() +
+              "; a run with --resume cuts that off and computes it again\n"};
+}
+
+Findings findings_of(const std::filesystem::path& file) {
+  ConsoleProgress progress;
+  try {
+    if (is_journal(file) || is_empty_journal(file)) return verify_journal(file);
+    if (hdf5::holds(file, "collisions")) {
+      if (const auto fault = verify_result(ResultReader(file), progress)) return {{*fault}};
+      return {};
+    }
+    return {verify_store(StoreReader(file), progress)};
+  } catch (const InputError& fault) {
+    return {{fault.what()}};
+  }
+}
+
+bool run_verify(const std::filesystem::path& file) {
+  const Findings found = findings_of(file);
+  for (const std::string& fault : found.faults) print(fault + "\n");
+  print(found.remark);
+  print(found.faults.empty() ? file.string() + ": sound\n" : file.string() + ": damaged\n");
+  return found.faults.empty();
+}
+
+}  // namespace
+
+void add_verify(CLI::App& program, int& exit_code) {
+  auto file = std::make_shared<std::filesystem::path>();
+  CLI::App* command = program.add_subcommand(
+      "verify", "Re-read and check everything in a store, a result or a journal");
+  command->add_option("FILE", *file, "Store, result or journal")->type_name("FILE")->required();
+  command->footer(
+      "Names every damaged cell (at most 20), of a journal the first damaged record. A journal\n"
+      "whose tail is torn, as a killed run leaves it, is sound; the tail is named.\n"
+      "Exit code 0: sound; 1: a fault, or not a complete store or result; 4: the file cannot be\n"
+      "opened.\n"
+      "Example: clearway verify site.h5");
+  command->callback([file, &exit_code] { exit_code = run_verify(*file) ? 0 : 1; });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+
+#include "scene/attitude.hpp"
+#include "scene/sites/kinds.hpp"
+#include "scene/vehicles/models.hpp"
+
+/// Like the Train Tunnel: a curved tunnel between two open stretches, seen from two crossed scan
+/// planes on the back of a train, and a wagon whose bogies follow the track (the paper,
+/// section 4.3).
+namespace clearway::scene {
+namespace {
+
+constexpr double kOpenBefore = 160, kTunnel = 1150;
+constexpr double kOpenShare = 0.06;  // of the sweeps, on each open stretch
+constexpr double kScannerHeight = 3.6;
+constexpr double kRangeNoise = 0.004;
+constexpr double kOpenReach = 45;
+constexpr double kGround = -0.75;  // below the rails' tops, beside the ballast bed
+constexpr double kHeapedShare = 0.8;
+constexpr double kHalfGauge = 0.75;
+constexpr Roughness kMasonry{0.03, 1.5, 0.015, 0.2};
+constexpr Roughness kBallast{0.03, 0.25, 0.03, 0.06};
+constexpr Roughness kTerrain{0.4, 6, 0.06, 0.3};
+
+Path track() {
+  constexpr double kBend = 1 / 320.0;
+  const std::vector<PathPiece> pieces{
+      {180, 0}, {60, kBend},      {320, kBend},     {60, 0}, {80, -kBend}, {280, -kBend},
+      {60, 0},  {150, kBend / 2}, {120, kBend / 2}, {60, 0}, {130, 0}};
+  return Path::from_pieces(pieces, 0.008);
+}
+
+Room tunnel_room() {
+  constexpr double kHalf = 2.75, kSpring = 3.2;
+  Room room{.begin_s = kOpenBefore, .walls = {{0, -1, 0.22, kBallast}}};
+  constexpr int kSides = 16;
+  for (int i = 0; i <= kSides; ++i) {
+    const SineCosine angle = sine_cosine(kPi * i / kSides);
+    room.walls.push_back({angle.cosine, angle.sine, kHalf + angle.sine * kSpring, kMasonry});
+  }
+  return room;
+}
+
+Room open_room(double begin) {
+  return {.begin_s = begin, .walls = {{0, -1, -kGround, kTerrain}}, .open = true};
+}
+
+/// Rails with head and foot, sleepers and ballast up to a little below their tops.
+void add_track(World& world, double length, Dice& dice) {
+  for (const double v : {-kHalfGauge, kHalfGauge}) {
+    world.add_everywhere(v - 0.036, v + 0.036, -0.045, 0);
+    world.add_everywhere(v - 0.01, v + 0.01, -0.15, -0.045);
+    world.add_everywhere(v - 0.07, v + 0.07, -0.17, -0.15);
+  }
+  world.add_everywhere(-1.7, 1.7, kGround - 1, -0.2, kBallast);
+  for (double s = -40; s < length + 40; s += 4) {  // ballast heaped between the rails
+    if (dice.chance(kHeapedShare)) {
+      world.add({.s = s,
+                 .v = 0,
+                 .half_length = 2,
+                 .half_width = 0.62,
+                 .bottom = -0.3,
+                 .top = 0.03,
+                 .rough = kBallast});
+    }
+  }
+  for (double s = -40; s < length + 40; s += 0.6) {
+    world.add(
+        {.s = s, .v = 0, .half_length = 0.12, .half_width = 1.3, .bottom = -0.3, .top = -0.17});
+  }
+}
+
+void add_tunnel_fittings(World& world, Dice& dice) {
+  const double end = kOpenBefore + kTunnel;
+  const auto box = [&](double s, double v, double l, double h, double bottom, double top) {
+    world.add({.s = s, .v = v, .half_length = l, .half_width = h, .bottom = bottom, .top = top});
+  };
+  for (double s = kOpenBefore; s < end; s += 2) {
+    box(s + 1, 2.3, 1, 0.7, -0.5, 0.42);    // walkway
+    box(s + 1, -2.35, 1, 0.4, -0.5, 0.05);  // cable duct
+    box(s + 1, 2.68, 1, 0.04, 1.3, 1.36);   // handrail
+    box(s + 1, -2.66, 1, 0.05, 1.9, 2.05);  // cables
+    box(s + 1, 0, 1, 0.008, 5.2, 5.22);     // contact wire
+  }
+  for (double s = kOpenBefore + 12; s < end; s += 25) {
+    box(s, 0.6, 0.05, 0.6, 5.35, 5.43);  // its cantilevers
+    box(s, 1.2, 0.06, 0.06, 5.2, 6);
+    box(s + 5, -2.6, 0.2, 0.15, 1.2, 1.8);  // boxes on the wall
+  }
+  for (double s = kOpenBefore + 5; s < end; s += dice.between(15, 45)) {  // left behind
+    const double half_length = dice.between(0.2, 0.8);
+    box(s, -1.75, half_length, 0.25, -0.2, dice.between(0.3, 0.7));
+  }
+  for (double s = kOpenBefore + 30; s < end - 40; s += dice.between(40, 90)) {  // platforms
+    const double side = dice.chance(0.5) ? 1 : -1;
+    box(s, side * 2.2, 14, 0.7, -0.5, 0.9);
+  }
+  for (const double s : {kOpenBefore, end}) {  // portals
+    for (const double v : {-7.3, 7.3}) box(s, v, 0.4, 4.5, -2, 8);
+    box(s, 0, 0.4, 2.8, 6.0, 8);
+  }
+}
+
+void add_open_fittings(World& world, double begin, double end, Dice& dice) {
+  for (double s = begin + 10; s < end; s += 45) {
+    world.add({.s = s, .v = 3.2, .half_length = 0.15, .half_width = 0.15, .bottom = -2, .top = 7});
+    world.add(
+        {.s = s, .v = 1.6, .half_length = 0.05, .half_width = 1.6, .bottom = 5.6, .top = 5.7});
+  }
+  for (double s = begin; s < end; s += dice.between(1, 5)) {  // bushes and trees
+    const double side = dice.chance(0.5) ? 1 : -1, radius = dice.between(0.3, 1.6);
+    world.add({.s = s,
+               .v = side * dice.between(6, 24),
+               .half_length = radius,
+               .half_width = radius,
+               .bottom = -2,
+               .top = dice.between(0.3, 6),
+               .round = true,
+               .rough = {0.3 * radius, 0.5, 0.1, 0.15}});
+  }
+}
+
+/// The train runs faster outside: few sweeps for the open stretches.
+double train_position(double share, double length) {
+  if (share < kOpenShare) return share / kOpenShare * kOpenBefore;
+  if (share > 1 - kOpenShare) {
+    return kOpenBefore + kTunnel +
+           (share - (1 - kOpenShare)) / kOpenShare * (length - kOpenBefore - kTunnel);
+  }
+  return kOpenBefore + (share - kOpenShare) / (1 - 2 * kOpenShare) * kTunnel;
+}
+
+ScanPlan train_plan(const Path& path, std::uint64_t points) {
+  ScanPlan plan{.points = points,
+                .rays_a_sweep = rays_a_sweep(points, 0.05),
+                .sweep = {},
+                .reach = kOpenReach,
+                .noise = kRangeNoise,
+                .open_reach = kOpenReach};
+  const std::uint64_t sweeps = plan.sweeps();
+  plan.sweep = [&path, sweeps](std::uint64_t number) {
+    const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
+    const double azimuth = number % 2 == 0 ? kPi / 4 : 3 * kPi / 4;
+    return Sweep{{train_position(share, path.length()), 0, kScannerHeight},
+                 sine_cosine(azimuth),
+                 0,
+                 2 * kPi};
+  };
+  return plan;
+}
+
+/// Both pivots on the track's centreline: the middle swings inwards in a curve, the ends outwards.
+Pose wagon_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
+  constexpr double kEnds = 14;
+  const double front_s =
+      along(kEnds + kBogieDistance / 2, path.length() - kEnds + kBogieDistance / 2, number, count);
+  const Vec3 front = path.to_world({front_s, 0, 0});
+  double rear_s = front_s - kBogieDistance;
+  for (int i = 0; i < 4; ++i) {  // the chord is a little shorter than the arc
+    rear_s -= kBogieDistance - length(front - path.to_world({rear_s, 0, 0}));
+  }
+  const Vec3 rear = path.to_world({rear_s, 0, 0});
+  return pose_along(0.5 * (front + rear), front - rear, {});
+}
+
+/// As one scans a wagon by hand: densest at the height of one's chest, thin at the roof.
+double scanned_density(const Vec3& p) {
+  return p.z < 2.2 ? 1 : std::max(0.35, 1 - 0.5 * (p.z - 2.2));
+}
+
+}  // namespace
+
+std::unique_ptr<const Scene> make_tunnel(const Sizes& sizes, std::uint64_t seed) {
+  World world({open_room(-1e9), tunnel_room(), open_room(kOpenBefore + kTunnel)});
+  auto scene = std::make_unique<Scene>(
+      Scene{Kind::kTunnel, sizes, track(), std::move(world), {}, {}, {}, {}});
+  const double length = scene->path.length();
+  Dice dice(seed, kLayoutStream);
+  add_track(scene->world, length, dice);
+  add_tunnel_fittings(scene->world, dice);
+  add_open_fittings(scene->world, -40, kOpenBefore, dice);
+  add_open_fittings(scene->world, kOpenBefore + kTunnel, length + 40, dice);
+  scene->world.finish(scene->path, kOpenReach);
+  scene->plan = train_plan(scene->path, sizes.points);
+  scene->model = sample_mesh(train_wagon(), sizes.model_points, 0.004, scanned_density,
+                             Random(seed, kModelStream));
+  scene->pose = [&path = scene->path, count = sizes.poses](std::uint64_t number) {
+    return wagon_pose(path, number, count);
+  };
+  return scene;
+}
+
+}  // namespace clearway::scene

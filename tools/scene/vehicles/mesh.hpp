@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "clearway/vec3.hpp"
+#include "scene/random.hpp"
+#include "scene/vector.hpp"
+
+namespace clearway::scene {
+
+/// Triangles in a model's own frame: x forward, y left, z up, metres.
+class Mesh {
+ public:
+  using Triangle = std::array<Vec3, 3>;
+
+  void add_quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+  /// The six faces of the box between two corners.
+  void add_box(const Vec3& low, const Vec3& high);
+  /// A closed cylinder along y: wheels, axles.
+  void add_wheel(const Vec3& centre, double radius, double width);
+  /// A skin through sections of equally many points; where `open` says so of a quad's middle it is
+  /// left out: windows, wheel arches.
+  void add_skin(const std::vector<std::vector<Vec3>>& sections,
+                const std::function<bool(const Vec3&)>& open);
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+
+ private:
+  std::vector<Triangle> triangles_;
+};
+
+/// Exactly `count` points on the mesh, in the order of its triangles, as dense everywhere but for
+/// the factor `density` (of a triangle's middle), each moved by `noise` (standard deviation) per
+/// axis.
+std::vector<Vec3> sample_mesh(const Mesh& mesh, std::uint64_t count, double noise,
+                              const std::function<double(const Vec3&)>& density,
+                              const Random& random);
+
+}  // namespace clearway::scene
