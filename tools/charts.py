@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Draws the JSON files of `clearway bench`, each as SVG and PNG named as its experiment.
+"""Draws the JSON files of `clearway-bench`, each as SVG and PNG named as its experiment.
 
-Needs matplotlib and numpy (Debian: python3-matplotlib). Other JSON files are left out.
+Reads *.json, and *.json.gz as `gzip` makes them. Other JSON files are left out.
+Needs matplotlib and numpy (Debian: python3-matplotlib).
 Example: tools/charts.py figures -o charts
 """
 
@@ -16,18 +17,23 @@ FIGURES = {"table": table, "threads": threads, "grid": grid, "datasets": dataset
            "points": points, "accuracy": accuracy, "stability": stability, "scaling": scaling}
 
 
+def files_in(folder):
+    """The JSON files of a folder, compressed ones too."""
+    return sorted([*folder.glob("*.json"), *folder.glob("*.json.gz")])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, help="with JSON files of clearway bench")
-    parser.add_argument("-o", "--output", type=Path, 
+    parser.add_argument("folder", type=Path, help="with JSON files of clearway-bench")
+    parser.add_argument("-o", "--output", type=Path,
                         help="folder of the charts (default: the same)")
     options = parser.parse_args()
     output = options.output or options.folder
-    records = [read_record(path) for path in sorted(options.folder.glob("*.json"))]
+    records = [read_record(path) for path in files_in(options.folder)]
     records = [record for record in records if record and record.experiment in FIGURES]
     if not records:
-        sys.exit(f"{options.folder}: no JSON file of clearway bench")
+        sys.exit(f"{options.folder}: no JSON file of clearway-bench")
     output.mkdir(parents=True, exist_ok=True)
     for record in records:
         if not record.cases:

@@ -1,8 +1,10 @@
-"""What `clearway bench` wrote."""
+"""What `clearway-bench` wrote."""
 
+import gzip
 import json
 import re
 import sys
+import zlib
 
 import numpy as np
 
@@ -61,10 +63,12 @@ class Record:
 
 
 def read_record(path):
-    """The record in a file; None where it is JSON of something else."""
+    """The record in a file of JSON, compressed if its name ends in .gz; None where the JSON is of
+    something else."""
     try:
-        raw = json.loads(path.read_text())
-    except ValueError as error:
+        data = path.read_bytes()
+        raw = json.loads(gzip.decompress(data) if path.suffix == ".gz" else data)
+    except (ValueError, EOFError, gzip.BadGzipFile, zlib.error) as error:
         sys.exit(f"{path}: is not JSON: {error}")
     if not isinstance(raw, dict) or not {"experiment", "cases"} <= raw.keys():
         return None

@@ -1,6 +1,7 @@
-"""tools/charts.py draws files as `clearway bench` writes them: every experiment becomes an SVG and
+"""tools/charts.py draws files as `clearway-bench` writes them: every experiment becomes an SVG and
 a PNG, no text is outside the page or over another, and what failed is shown with its reason."""
 
+import gzip
 import itertools
 import json
 import random
@@ -268,6 +269,21 @@ def check_bars_of_the_whole():
     assert [list(bar.get_segments()[0][:, 1]) for *_, (bar,) in bars] == [[4, 10]]
 
 
+def check_compressed_records(folder):
+    """A compressed file is drawn like the plain one; one that was cut off is named."""
+    plain = (folder / "threads.json").read_bytes()
+    (folder / "compressed").mkdir()
+    compressed = folder / "compressed" / "threads.json.gz"
+    compressed.write_bytes(gzip.compress(plain))
+    draw = [TOOLS / "charts.py", compressed.parent]
+    subprocess.run(draw, check=True, stdout=subprocess.DEVNULL)
+    assert ((compressed.parent / "threads.png").read_bytes()
+            == (folder / "charts" / "threads.png").read_bytes())
+    compressed.write_bytes(compressed.read_bytes()[:-100])
+    cut = subprocess.run(draw, capture_output=True, text=True)
+    assert cut.returncode == 1 and f"{compressed}: is not JSON" in cut.stderr, cut.stderr
+
+
 def check_missing_reference():
     """Nothing has failed where only the number of threads to relate to was not measured."""
     from charting import threads as chart
@@ -313,6 +329,7 @@ def main():
             if name == "stability":
                 assert "from 1 to 1.001 and determinant 1.001" in shown_in(sheet)
                 assert "singular values within 1e-04 of 1" in shown_in(sheet)
+        check_compressed_records(folder)
         check_bars_of_the_whole()
         check_missing_reference()
         check_stopped_runs()
