@@ -33,5 +33,5 @@ The model comes closer than 0.1 m to $count of $points points. Look at:
   $out/collisions.png   the hall, the path and the colliding points
   $out/colliding.las    the colliding points, for any point cloud viewer
   $out/colliding.csv    the same with the first pose that touches each
-  $out/collisions.h5    the result itself (docs/result-format.md)
+  $out/collisions.h5    the result itself (docs/design/result-format.md)
 END

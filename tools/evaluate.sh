@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds Clearway, measures all experiments of `clearway bench` and draws their charts: the whole
-# evaluation of docs/evaluation.md. Installs missing packages (Debian 12). Run again, it goes on
+# evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12). Run again, it goes on
 # where it was stopped; another commit needs another FOLDER, or --force, which removes the outputs
 # of before.
 # Usage: tools/evaluate.sh [--force] [small|full] FOLDER

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets with clang and runs each for a time: tools/fuzz.sh [SECONDS] [TARGET...]
-# (60 seconds, all targets). A finding ends it with the input's name; docs/testing.md says more.
+# (60 seconds, all targets). A finding ends it with the input's name; docs/design/testing.md says more.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source tools/setup.sh

@@ -11,7 +11,7 @@ namespace clearway {
 
 /// A range of consecutive poses. At any of them (between poses: also on the way to the next one) a
 /// model point within distance d of a model point c lies within stretch * d + spread of
-/// transform(reference pose, c), rounding included (docs/numerics.md, "Motion").
+/// transform(reference pose, c), rounding included (docs/design/numerics.md, "Motion").
 struct PoseNode {
   std::uint32_t first;
   std::uint32_t count;

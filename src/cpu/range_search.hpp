@@ -16,7 +16,7 @@ namespace clearway {
 /// The coherent fixed-range searches of one thread: a descent through poses, model and environment
 /// at once. A range of poses and a sphere of the model inherit from their parents the part of the
 /// environment within reach, so that what is far is dismissed for many searches together. What is
-/// left is decided by the predicate. Filters: docs/numerics.md, "Spheres of the model".
+/// left is decided by the predicate. Filters: docs/design/numerics.md, "Spheres of the model".
 class RangeSearch {
  public:
   /// All arguments must outlive it. Allocates its caches: about 3 MiB, and a little for the largest

@@ -17,7 +17,7 @@
 namespace clearway {
 
 /// The answer of a run as far as it is known, in a journal file: cell by cell from engines that
-/// work on pages, marks and finished poses from the others (docs/journal.md).
+/// work on pages, marks and finished poses from the others (docs/design/journal.md).
 class SearchJournal final : public PoseJournal {
  public:
   /// A new file, made by the first append, or, where `read` is given, the one that it read, to go

@@ -7,6 +7,7 @@
 #include "cli/console.hpp"
 #include "cli/memory_use.hpp"
 #include "cli/options.hpp"
+#include "cli/run_journal.hpp"
 #include "cli/run_options.hpp"
 #include "cli/signals.hpp"
 #include "cli/standard_output.hpp"
@@ -17,7 +18,6 @@
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/engines.hpp"
-#include "cli/run_journal.hpp"
 #include "stream/write_result.hpp"
 
 namespace clearway::tool {

@@ -10,8 +10,8 @@
 #include "clearway/error.hpp"
 
 /// The bytes of one chunk of a store's point datasets, as HDF5's scale-offset filter writes them
-/// for integers with an undefined fill value (docs/store-format.md, "Packed chunks"): a 21-byte
-/// header (minbits, 8, minimum, zeros), then value - minimum in `minbits` bits each, most
+/// for integers with an undefined fill value (docs/design/store-format.md, "Packed chunks"): a
+/// 21-byte header (minbits, 8, minimum, zeros), then value - minimum in `minbits` bits each, most
 /// significant bit first. Value: std::int32_t or std::uint64_t.
 namespace clearway {
 

@@ -19,7 +19,7 @@ CLEARWAY_HD inline Vec3 reach_of(const Box& box) {
 
 /// A value never above the predicate's d2 from m to any point e of the box, and equal to it for a
 /// one-point box. No slack: every operation is the predicate's own and rounds monotonically
-/// (docs/numerics.md, "Boxes").
+/// (docs/design/numerics.md, "Boxes").
 CLEARWAY_HD inline double least_squared_distance(const Box& box, const Vec3& m) {
   double d[3];
   for (int k = 0; k < 3; ++k) {

@@ -28,11 +28,12 @@ bool is_rigid(const Stretch& stretch);
 
 /// An upper bound, rounding included, of |transform(a, m) - transform(b, m)| over every m of the
 /// box `model`, in the predicate's arithmetic. The displacement is an affine map of m, so its norm
-/// is convex and the eight corners suffice (docs/numerics.md, "Motion").
+/// is convex and the eight corners suffice (docs/design/numerics.md, "Motion").
 double displacement_bound(const Box& model, const Pose& a, const Pose& b);
 
 /// An upper bound of the rounding error of each coordinate of transform(pose, m) for every m with
-/// |m_k| <= reach_k, where reach holds the largest coordinates of the model (docs/numerics.md).
+/// |m_k| <= reach_k, where reach holds the largest coordinates of the model
+/// (docs/design/numerics.md).
 double transform_rounding(const Vec3& reach, const Pose& pose);
 
 }  // namespace clearway

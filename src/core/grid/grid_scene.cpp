@@ -100,7 +100,7 @@ void GridScene::choose_group_radius() {
   group_radius_ = (view_.search_radius + greatest.stretch * *at + greatest.spread) * (1 + 1e-12);
 }
 
-/// Where floats decide, a pair is a hit only when it is closer than this (docs/numerics.md,
+/// Where floats decide, a pair is a hit only when it is closer than this (docs/design/numerics.md,
 /// "Floats alone").
 double GridScene::float_search_radius(const PackedCloud& cloud) const {
   double largest = 0;

@@ -8,7 +8,7 @@
 #include "core/query/hit_set.hpp"
 #include "core/util/device_bits.hpp"
 
-/// Bodies of the search. Every bound: docs/numerics.md, "Grid".
+/// Bodies of the search. Every bound: docs/design/numerics.md, "Grid".
 /// Source: Schauer et al. (the paper), section 3.2.
 namespace clearway {
 

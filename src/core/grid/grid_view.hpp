@@ -52,7 +52,7 @@ struct GridSceneView {
 };
 
 /// A cell of a page: what its grid and its filters need. Lengths in metres from `origin`, the lower
-/// corner of the box. Bounds: docs/numerics.md, "Grid".
+/// corner of the box. Bounds: docs/design/numerics.md, "Grid".
 struct GridCell {
   Box box;
   Vec3 origin;

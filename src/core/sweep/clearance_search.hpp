@@ -11,8 +11,9 @@ namespace clearway {
 
 /// The exact clearance of one environment point after the other: branch and bound over the motion
 /// tree. A node is given up only when its bound proves every computed d2 of its poses to be above
-/// the best so far, so that ties reach the lowest pose (docs/numerics.md, "Clearance"). Points that
-/// are neighbours should follow each other: the answer for one is tried first for the next.
+/// the best so far, so that ties reach the lowest pose (docs/design/numerics.md, "Clearance").
+/// Points that are neighbours should follow each other: the answer for one is tried first for the
+/// next.
 class ClearanceSearch {
  public:
   /// The filter, whose query asks for clearances, outlives it.

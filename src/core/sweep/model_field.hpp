@@ -20,8 +20,8 @@ struct ModelFieldOptions {
 /// whole model, and bricks of a fine one (kBrick times finer), with the nearest point too, wherever
 /// a distance within the band can occur. No memory for empty space but the coarse lattice. With a
 /// reach, coarse nodes keep their nearest point too, and every position has one near it. Between
-/// nodes: docs/numerics.md, "Model field". Source of the idea: the inverted trajectory with a
-/// distance field of the tool (Sullivan et al. 2012).
+/// nodes: docs/design/numerics.md, "Model field". Source of the idea: the inverted trajectory with
+/// a distance field of the tool (Sullivan et al. 2012).
 class ModelField {
  public:
   /// Exact for lattice nodes by nearest-neighbour search in `tree`, which must outlive the field.

@@ -29,7 +29,7 @@ InversePose inverse_pose_of(const Pose& pose) {
   std::copy(pose.translation, pose.translation + 3, out.translation);
   out.greatest = greatest_stretch_bound(pose);
   // Singular values of the inverse are the reciprocals; the inverse by cofactors errs by less than
-  // 20 u condition^2 (docs/numerics.md, "Sweep").
+  // 20 u condition^2 (docs/design/numerics.md, "Sweep").
   const double inverse_greatest = greatest_stretch_bound(inverse_pose);
   const double condition = out.greatest * inverse_greatest;
   out.least = 1 / (inverse_greatest * (1 + 64 * kUnitRoundoff * (1 + condition * condition)));
@@ -88,7 +88,7 @@ double MotionTree::delta_of(std::uint32_t node, const Box& model) const {
     if (i != n.mid) delta = std::max(delta, displacement_bound(model, poses_[n.mid], poses_[i]));
   }
   // Between poses, a computed hit may lie outside the radius by 4 u times the step's length, which
-  // is at most 2 delta (docs/numerics.md).
+  // is at most 2 delta (docs/design/numerics.md).
   return between_poses_ ? delta * kRoundedUp : delta;
 }
 

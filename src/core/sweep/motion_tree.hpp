@@ -35,7 +35,7 @@ class MotionTree {
 
   /// What all roundings of a test at a node, predicate and pull-back, amount to at the most in
   /// metres, for environment points with coordinates of at most `reach`, looked up in a lattice
-  /// that goes `lattice` metres of the model's frame beyond the model (docs/numerics.md).
+  /// that goes `lattice` metres of the model's frame beyond the model (docs/design/numerics.md).
   double rounding(double reach, double lattice = 0) const;
 
   std::uint64_t allocated_bytes() const;

@@ -27,7 +27,8 @@ struct InversePose {
   double least;     ///< at most the least singular value of the rotation; 0 where none is proven
   double greatest;  ///< at least the greatest
 
-  /// x with transform(pose, x) = e, up to the rounding that docs/numerics.md ("Sweep") bounds.
+  /// x with transform(pose, x) = e, up to the rounding that docs/design/numerics.md ("Sweep")
+  /// bounds.
   CLEARWAY_HD Vec3 apply(const Vec3& e) const {
     const double x = e.x - translation[0], y = e.y - translation[1], z = e.z - translation[2];
     return {inverse[0] * x + inverse[1] * y + inverse[2] * z,

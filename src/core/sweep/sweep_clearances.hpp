@@ -9,8 +9,8 @@
 namespace clearway {
 
 /// The clearances of the 32 points of a half block over the poses of some subtrees, as
-/// docs/numerics.md ("Clearance") derives them: improves those in the answer of the page. A lane a
-/// point; no other warp works on the same points.
+/// docs/design/numerics.md ("Clearance") derives them: improves those in the answer of the page. A
+/// lane a point; no other warp works on the same points.
 template <typename Warp>
 class SweepClearances {
  public:

@@ -29,7 +29,7 @@ struct SweepStatistics {
 
 /// The tests of the sweep on data where it lies, on the host or on a device: the inverse query
 /// at one node of the motion tree. e collides with pose i exactly when the model is closer than the
-/// radius to e pulled back by pose i. Bounds: docs/numerics.md ("Sweep").
+/// radius to e pulled back by pose i. Bounds: docs/design/numerics.md ("Sweep").
 struct SweepRef {
   /// A node of the motion tree is split for a box while it moves more than this many times the
   /// box's half diagonal.

@@ -13,7 +13,7 @@ namespace clearway {
 class SweptStep {
  public:
   /// `pose` is not the last one. rounding: a bound in metres of every rounding of a test, as
-  /// docs/numerics.md ("Between poses") asks for. What the refs point to outlives it.
+  /// docs/design/numerics.md ("Between poses") asks for. What the refs point to outlives it.
   CLEARWAY_HD SweptStep(const MotionTreeRef& motion, const ModelTreeRef& model, std::uint32_t pose,
                         double radius, double rounding)
       : model_(model),

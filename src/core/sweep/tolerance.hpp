@@ -8,9 +8,9 @@
 #include "clearway/query.hpp"
 #include "core/geometry/box.hpp"
 
-/// What a query with a tolerance t allows (docs/numerics.md, "Tolerance"): distances may grow by
-/// t when model points and poses are left out, and whatever comes closer than about r + t may be
-/// taken.
+/// What a query with a tolerance t allows (docs/design/numerics.md, "Tolerance"): distances may
+/// grow by t when model points and poses are left out, and whatever comes closer than about r + t
+/// may be taken.
 namespace clearway {
 
 /// What is searched for, metres: the radius, or with a tolerance the largest distance at which a

@@ -11,7 +11,7 @@
 namespace clearway {
 
 /// The way from one pose to the next: a cubic in position, a cumulative cubic in rotation
-/// (docs/trajectory.md).
+/// (docs/design/trajectory.md).
 class PoseCurve {
  public:
   /// 0 <= t <= 1; at 0 and 1 the two poses, up to rounding.

@@ -11,7 +11,7 @@
 #endif
 
 // What oneTBB guarantees of the work that it runs, told to the thread sanitizer, which does not see
-// into oneTBB. Nothing in other builds. docs/testing.md says how it was tried.
+// into oneTBB. Nothing in other builds. docs/design/testing.md says how it was tried.
 
 #ifdef CLEARWAY_THREAD_SANITIZER
 extern "C" {

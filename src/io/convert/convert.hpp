@@ -38,9 +38,9 @@ struct ConversionReport {
   std::vector<std::string> remarks;
 };
 
-/// Turns scans into a store (docs/conversion.md). Throws UsageError, InputError, ResourceError;
-/// Interrupted when the progress asks to stop; whatever happens, nothing stands under the output's
-/// name that is not complete.
+/// Turns scans into a store (docs/design/conversion.md). Throws UsageError, InputError,
+/// ResourceError; Interrupted when the progress asks to stop; whatever happens, nothing stands
+/// under the output's name that is not complete.
 ConversionReport convert(const ConversionOptions& options, Progress& progress);
 
 /// Whether the output is there already and is the store of these inputs, by names and contents,

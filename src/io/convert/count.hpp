@@ -24,7 +24,7 @@ struct CountedEnvironment {
   std::vector<Bin> bins;  ///< none with more than kBucketPoints points
 };
 
-/// The counting pass, and further ones while a bin is too full (docs/conversion.md).
+/// The counting pass, and further ones while a bin is too full (docs/design/conversion.md).
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      int threads, Progress& progress);
 

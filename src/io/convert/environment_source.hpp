@@ -20,9 +20,10 @@ struct EnvironmentOptions {
   std::filesystem::path temporary_folder = ".";
 };
 
-/// All inputs of a conversion as one sequence of points in one quantisation (docs/conversion.md):
-/// integers are kept as read where the inputs have them; files of the same scale are rebased by
-/// whole quanta; everything else is rounded to the nearest quantum of a chosen scale.
+/// All inputs of a conversion as one sequence of points in one quantisation
+/// (docs/design/conversion.md): integers are kept as read where the inputs have them; files of the
+/// same scale are rebased by whole quanta; everything else is rounded to the nearest quantum of a
+/// chosen scale.
 class EnvironmentSource {
  public:
   /// inputs: files and folders, or "-" alone for LAS on standard input. Reads headers, and all

@@ -11,8 +11,9 @@
 #include "core/geometry/quantisation.hpp"
 #include "io/formats/point_reader.hpp"
 
-/// What the inputs of a conversion agree on (docs/conversion.md). Everywhere files and what they
-/// say of themselves, in the order of the inputs. Throws InputError naming the file that differs.
+/// What the inputs of a conversion agree on (docs/design/conversion.md). Everywhere files and what
+/// they say of themselves, in the order of the inputs. Throws InputError naming the file that
+/// differs.
 namespace clearway {
 
 struct CommonCrs {

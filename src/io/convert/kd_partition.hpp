@@ -12,9 +12,10 @@ struct BucketPoint {
   std::uint32_t index;
 };
 
-/// Puts the points of a bucket in the store's k-d order (docs/store-format.md, "Order"): cells of
-/// `cell_points`, in them blocks of 64. points: in source order. scratch: as many, overwritten.
-/// scale: metres an integer step on each axis. Uses the threads of the calling TBB arena.
+/// Puts the points of a bucket in the store's k-d order (docs/design/store-format.md, "Order"):
+/// cells of `cell_points`, in them blocks of 64. points: in source order. scratch: as many,
+/// overwritten. scale: metres an integer step on each axis. Uses the threads of the calling TBB
+/// arena.
 void order_bucket(std::span<BucketPoint> points, std::span<BucketPoint> scratch,
                   std::uint32_t cell_points, const double (&scale)[3]);
 

@@ -13,7 +13,7 @@
 /// Owners and the few calls of HDF5 that Clearway makes. All HDF5 calls of a file are made by one
 /// thread. Files are written with H5F_LIBVER_V110 on both bounds, no object times, fletcher32 on
 /// every unpacked dataset and fixed-length strings, so that equal contents give equal bytes and
-/// damaged metadata is noticed (docs/store-format.md).
+/// damaged metadata is noticed (docs/design/store-format.md).
 namespace clearway::hdf5 {
 
 /// HDF5 could not do it though no system call failed: of a file that is read, damaged contents.

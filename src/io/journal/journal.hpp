@@ -15,7 +15,8 @@
 
 #include "io/system/file.hpp"
 
-/// The journal of an unfinished run: an append-only file of checksummed records (docs/journal.md).
+/// The journal of an unfinished run: an append-only file of checksummed records
+/// (docs/design/journal.md).
 namespace clearway {
 
 inline constexpr std::uint32_t kJournalVersion = 1;

@@ -9,7 +9,7 @@
 #include "io/journal/journal.hpp"
 #include "io/system/xxh64.hpp"
 
-/// What the journal's writer and reader share (docs/journal.md).
+/// What the journal's writer and reader share (docs/design/journal.md).
 namespace clearway {
 
 inline constexpr char kJournalMagic[8] = {'C', 'L', 'W', 'Y', 'J', 'R', 'N', 'L'};

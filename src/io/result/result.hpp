@@ -14,7 +14,7 @@ namespace clearway {
 
 /// What a result says of its query: a function of the source points, the model, the trajectory
 /// and the parameters, and but for the engine and the precision where they are part of the answer,
-/// of nothing else (docs/result-format.md), so that `cmp` compares runs.
+/// of nothing else (docs/design/result-format.md), so that `cmp` compares runs.
 struct ResultHeader : QueryParameters {
   std::uint64_t environment_points = 0;
   std::uint64_t environment_hash = 0;  ///< of the source points, whatever file format or layout
@@ -33,7 +33,7 @@ struct ResultHeader : QueryParameters {
 /// the header asks, `/collisions/first_pose` (uint32) and `/clearance/source` (uint64, ascending),
 /// `distance` (float64) and `pose` (uint32) to a file of its own; the caller publishes it. Its
 /// bytes depend on header and rows alone. A failing disk throws ResourceError.
-/// docs/result-format.md has the layout.
+/// docs/design/result-format.md has the layout.
 class ResultWriter {
  public:
   ResultWriter(const std::filesystem::path& path, const ResultHeader& header,

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// What reader and writer of a result agree on (docs/result-format.md).
+/// What reader and writer of a result agree on (docs/design/result-format.md).
 namespace clearway::result_names {
 
 inline constexpr const char* kFormat = "clearway result";

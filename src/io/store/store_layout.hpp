@@ -6,7 +6,7 @@
 
 #include "io/result/column_hashes.hpp"
 
-/// Names and tables that the store's writer and reader share (docs/store-format.md).
+/// Names and tables that the store's writer and reader share (docs/design/store-format.md).
 namespace clearway {
 
 inline const std::string kStoreFormat = "clearway store";

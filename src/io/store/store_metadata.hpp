@@ -19,7 +19,7 @@ struct SourceFile {
   friend bool operator==(const SourceFile&, const SourceFile&) = default;
 };
 
-/// What a store says of itself besides its cells (docs/store-format.md).
+/// What a store says of itself besides its cells (docs/design/store-format.md).
 struct StoreMetadata {
   std::uint64_t point_count = 0;
   std::uint64_t input_points = 0;  ///< with the non-finite ones, which are not stored

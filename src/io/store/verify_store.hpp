@@ -8,7 +8,7 @@
 
 namespace clearway {
 
-/// Re-reads and decodes every cell of a store and checks what docs/store-format.md promises:
+/// Re-reads and decodes every cell of a store and checks what docs/design/store-format.md promises:
 /// hashes, boxes of cells and blocks, padding, source indices unique and in range. Gives the faults
 /// found, at most `most`, each naming its cell; none for a sound store.
 std::vector<std::string> verify_store(const StoreReader& store, Progress& progress,

@@ -1,4 +1,4 @@
-// The bounds of a cell's filters, attacked by pairs at the radius: docs/numerics.md, "Grid".
+// The bounds of a cell's filters, attacked by pairs at the radius: docs/design/numerics.md, "Grid".
 #include "core/grid/grid_cell.hpp"
 
 #include <catch2/catch.hpp>

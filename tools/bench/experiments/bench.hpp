@@ -120,7 +120,7 @@ class Bench {
 /// The radius of all experiments that do not vary it, metres (the paper's).
 inline constexpr const char* kRadius = "0.1";
 
-// One an experiment (docs/evaluation.md).
+// One an experiment (docs/design/evaluation.md).
 void bench_table(Bench& bench);
 void bench_threads(Bench& bench);
 void bench_grid(Bench& bench);
