@@ -32,8 +32,7 @@ void check_tolerance(const Query& query, const std::string& engine) {
   }
   if (!(query.tolerance < query.radius)) {
     throw UsageError(
-        "--tolerance: has to be below the radius; otherwise no collision at all were a right "
-        "answer");
+        "--tolerance: must be below the radius; a larger one would allow an empty result");
   }
 }
 
@@ -104,16 +103,16 @@ void check_query(const Query& query, const EngineOptions& options) {
                      ": engine grid does not offer it; take --engine sweep");
   }
   if (engine != "grid" && (options.grid_cell > 0 || options.float_precision)) {
-    throw UsageError("--grid-cell and --precision float are of --engine grid");
+    throw UsageError("--grid-cell and --precision float need --engine grid");
   }
   if (engine == "kdtree" && (options.field_voxel > 0 || options.device_memory_bytes > 0)) {
-    throw UsageError("--field-voxel and --device-memory are not of --engine kdtree");
+    throw UsageError("--engine kdtree takes neither --field-voxel nor --device-memory");
   }
   if (std::set(options.gpus.begin(), options.gpus.end()).size() < options.gpus.size()) {
     throw UsageError("--gpus names a GPU twice");
   }
   if (options.device == "cpu" && (!options.gpus.empty() || options.device_memory_bytes > 0)) {
-    throw UsageError("--gpus and --device-memory are of --device cuda");
+    throw UsageError("--gpus and --device-memory need --device cuda");
   }
 }
 

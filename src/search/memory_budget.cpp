@@ -36,10 +36,10 @@ void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
                           const std::string& short_device) {
   const std::string need = ": this run needs " + format_size(needed);
   if (!short_device.empty()) {
-    throw ResourceError(short_device + " has too little" + need + ", and may take " +
-                        format_size(allowed) +
-                        " there; nvidia-smi lists what else uses it: take others with --gpus, or "
-                        "--device cpu");
+    throw ResourceError(
+        short_device + " has too little" + need + ", and may take " + format_size(allowed) +
+        " there. Choose others with --gpus, or take --device cpu; nvidia-smi lists what else uses "
+        "it");
   }
   throw ResourceError("--device-memory " + format_size(allowed) + " is too little" + need +
                       " (--device-memory " + std::to_string(needed) + ") on each device");

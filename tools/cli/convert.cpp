@@ -84,11 +84,12 @@ void add_convert(CLI::App& program) {
       ->required();
   command
       ->add_option("--scale", options->scale,
-                   "Step of the stored integers in metres (default: as the input has it, else "
-                   "the finest power of ten from 1e-6 that fits)")
+                   "Step of the stored integers in metres (default: that of the input, else the "
+                   "finest power "
+                   "of ten >= 1e-6 that fits)")
       ->type_name("METRES")
       ->check(positive_length());
-  command->add_option("--cell-points", conversion.cell_points, "Points a cell, 64 to 1048576")
+  command->add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")
       ->type_name("N")
       ->capture_default_str();
   command
@@ -98,19 +99,19 @@ void add_convert(CLI::App& program) {
   add_memory_option(*command, conversion.memory_bytes);
   add_threads_option(*command, conversion.threads);
   command->add_flag("--ignore-crs", conversion.ignore_crs,
-                    "Take coordinates in degrees, or inputs in different units, as they are");
+                    "Accept coordinates in degrees, and inputs in different units, as they are");
   command->add_flag("--strict", conversion.strict, "Refuse points that are not finite");
   CLI::Option* force =
       command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
   command
-      ->add_flag("--resume", options->resume,
-                 "Leave the store of these inputs alone where it is there already; one that was "
-                 "interrupted or killed begins anew")
+      ->add_flag(
+          "--resume", options->resume,
+          "Leave a finished store of these inputs as it is; an interrupted conversion starts again")
       ->excludes(force);
   command->footer(
-      "Needs temporary disk beside the output: 20 bytes a point, 32 from standard input.\n"
-      "LAZ and other formats by piping LAS: pdal translate in.laz STDOUT --writer las | "
-      "clearway convert - -o site.h5\n"
+      "Needs temporary disk space beside the output: 20 bytes a point, 32 from standard input.\n"
+      "For LAZ and other formats, pipe LAS:\n"
+      "  pdal translate in.laz STDOUT --writer las | clearway convert - -o site.h5\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
     run_stoppable(options->conversion.output,

@@ -29,7 +29,7 @@ struct Seconds {
 };
 
 constexpr const char* kHowToResume =
-    "the same command with --resume, without --force, goes on from what was finished";
+    "the same command with --resume, without --force, continues it";
 
 struct Inputs {
   explicit Inputs(const RunOptions& options)
@@ -175,7 +175,8 @@ void run(const RunOptions& options) {
   warn_of(inputs, options);
   const ResultHeader header = header_of(inputs, options);
   if (journal.already_done(inputs.store, header, progress)) {
-    spdlog::info("{}: is the answer already; nothing to do", options.output.string());
+    spdlog::info("{}: is the finished result of this query already; nothing to do",
+                 options.output.string());
     seconds.inputs = seconds.total = total.seconds();
     if (options.json) {
       const ResultReader result(options.output);
@@ -212,7 +213,7 @@ void run(const RunOptions& options) {
                format_count(inputs.store.point_count()), engine.engine, engine.device_name,
                seconds.total);
   if (options.query.clearance > 0) {
-    spdlog::info("{} points are closer than {} m", format_count(answer.clearances.count()),
+    spdlog::info("{} points have a clearance below {} m", format_count(answer.clearances.count()),
                  options.query.clearance);
   }
   if (options.json) {
@@ -226,17 +227,16 @@ void run(const RunOptions& options) {
 void add_run(CLI::App& program) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = program.add_subcommand(
-      "run", "Find every environment point that the moving model comes closer to than the radius");
+      "run", "Find every environment point within the radius of the moving model");
   add_run_options(*command, *options);
   command->footer(
-      "A point collides when it is strictly closer than the radius to a model point at a pose,\n"
-      "with --between-poses also on the way from a pose to the next. Its first pose is then the "
-      "one\n"
-      "that the way starts from.\n"
-      "The result is the same for every engine, number of threads and memory bound; with\n"
-      "--tolerance the same for every number of threads and memory bound, of one device.\n"
-      "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
-      "-o out.h5");
+      "A point collides when its distance to a model point at some pose is strictly below the\n"
+      "radius. With --between-poses the way from each pose to the next counts too, for the pose\n"
+      "that it starts from.\n"
+      "Engine, device, threads and memory do not change the result. With --tolerance the device\n"
+      "and --field-voxel do.\n"
+      "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 -o "
+      "out.h5");
   command->callback(
       [options] { run_stoppable(options->output, kHowToResume, [&] { run(*options); }); });
 }

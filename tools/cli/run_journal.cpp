@@ -79,7 +79,7 @@ RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
   std::error_code none;
   if (!fs::exists(fs::symlink_status(path_, none))) {
     if (options.resume && !fs::exists(options.output)) {
-      spdlog::info("{}: no journal to resume, starts afresh", path_.string());
+      spdlog::info("{}: no journal to resume, starts from the beginning", path_.string());
     }
     return;
   }
@@ -90,19 +90,19 @@ RunJournal::RunJournal(PendingFile& output, const RunOptions& options)
                      "choose another output");
   }
   if (options.force) {
-    unwanted_ = "journal of an unfinished run removed, starts afresh";
+    unwanted_ = "journal of an unfinished run removed, starts from the beginning";
     return;
   }
   JournalReader read(path_);
   if (!read.identity() || read.records() == 0) {
-    unwanted_ = "nothing in it yet, starts afresh";
+    unwanted_ = "nothing in it yet, starts from the beginning";
     return;
   }
   earlier_ = journalled_work(read);
   if (!options.resume) {
     throw UsageError(fmt::format(
-        "{}: an unfinished run with engine {} on {}, radius {}, {}; --resume goes on with it, "
-        "--force starts afresh",
+        "{}: an unfinished run with engine {} on {}, radius {}, {}; --resume continues it, --force "
+        "starts again",
         path_.string(), value_of(*read.identity(), "engine"), value_of(*read.identity(), "device"),
         value_of(*read.identity(), "radius"), work_text(earlier_)));
   }
@@ -142,9 +142,9 @@ SearchJournal& RunJournal::open(const StoreReader& store, const Query& query,
   if (read_) {
     const std::string differs = difference(*read_->identity(), identity);
     if (!differs.empty()) {
-      throw UsageError(path_.string() + ": belongs to another run: its " + differs +
-                       "; give the options and files that it was started with, or --force to "
-                       "start afresh");
+      throw UsageError(
+          path_.string() + ": belongs to another run: its " + differs +
+          "; give the options and files that it was started with, or --force to start again");
     }
     spdlog::info("{}: resumes with {}", path_.string(), work_text(earlier_));
   }

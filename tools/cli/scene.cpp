@@ -108,8 +108,8 @@ void make_scene_files(const SceneOptions& options) {
 void add_scene(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "scene",
-      "Makes a synthetic scene like those of the paper: environment.las, model.ply and\n"
-      "trajectory.txt, in metres with z up; the same bytes for the same seed.");
+      "Make a synthetic scene like those of the paper: environment.las, model.ply and\n"
+      "trajectory.txt. Metres, z up. The same seed gives the same bytes.");
   const auto options = std::make_shared<SceneOptions>();
   command->add_option("kind", options->kind, "Which scene, see below")
       ->required()

@@ -53,10 +53,11 @@ void check_superblock(const File& file) {
   }
   const unsigned version = load<std::uint8_t>(bytes.data() + kVersionAt);
   if (version != kVersion || load<std::uint16_t>(bytes.data() + kSizesAt) != kEightByteSizes) {
-    throw InputError(file.name() + ": HDF5 superblock of version " + std::to_string(version) +
-                     ", expected " + std::to_string(kVersion) +
-                     ": another tool (h5repack, a copy by h5py) wrote or rewrote the file; convert "
-                     "the scans again, or run again for a result, or copy the file as it is");
+    throw InputError(
+        file.name() + ": HDF5 superblock of version " + std::to_string(version) + ", expected " +
+        std::to_string(kVersion) +
+        ". Another tool (h5repack, a copy by h5py) wrote or rewrote the file; convert the scans "
+        "again, run again for a result, or copy the file as it is");
   }
   if (load<std::uint8_t>(bytes.data() + kFlagsAt) != 0) {
     throw InputError(file.name() + ": damaged HDF5 file: it was not closed by its writer");

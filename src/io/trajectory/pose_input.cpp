@@ -22,7 +22,7 @@ Objection objection_to(const Stretch& stretch, bool allow_non_rigid) {
   }
   if (allow_non_rigid || is_rigid(stretch)) return {};
   return found + "; expected a rigid motion: singular values within " + shown(kRigidTolerance) +
-         " of 1 and a positive determinant (--allow-non-rigid accepts any invertible matrix)";
+         " of 1 and a positive determinant. --allow-non-rigid accepts any invertible matrix";
 }
 
 }  // namespace

@@ -67,8 +67,9 @@ class TrajectoryParser {
     columns_ = pose_columns(parse_column_names(line));
     if (!columns_) {
       fail(excerpt(line) +
-           "; expected numbers, or a header that names one column each x y z (or tx, p_x, pos_x, "
-           "...) and qx qy qz qw (or q_x, ...) or r00 to r22");
+           "; expected numbers, or a header with the columns x y z (or tx, p_x, pos_x, ...) and qx "
+           "qy "
+           "qz qw (or q_x, ...) or r00 to r22");
     }
     format_ = TrajectoryFormat::kCsv;
     return true;
@@ -110,9 +111,10 @@ class TrajectoryParser {
       }
       format_ = TrajectoryFormat::kTum;
     } else {
-      refuse_count(line, count,
-                   "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the "
-                   "columns; EuRoC without one needs --trajectory-format euroc");
+      refuse_count(
+          line, count,
+          "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the columns. "
+          "EuRoC without a header needs --trajectory-format euroc");
     }
   }
 
@@ -121,7 +123,7 @@ class TrajectoryParser {
     if (!count) fail(excerpt(line) + "; expected numbers only, in blanks or commas: " + expected);
     if (count == 4u || count == 3u) {
       fail(std::to_string(*count) +
-           " numbers; a matrix spread over several lines is not read; expected each pose on one "
+           " numbers; a matrix spread over several lines is not read. Expected each pose on one "
            "line: " +
            expected);
     }

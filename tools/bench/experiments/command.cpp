@@ -37,7 +37,7 @@ void check_scenes(const Experiment& experiment, bool given) {
   for (const Experiment& other : kExperiments) {
     if (other.of_any_scene) others += std::string(others.empty() ? "" : " and ") + other.name;
   }
-  throw UsageError("--scenes is of " + others + "; " + experiment.name + " has scenes of its own");
+  throw UsageError("--scenes is for " + others + "; " + experiment.name + " has scenes of its own");
 }
 
 void run_bench(const Experiment& experiment, const BenchOptions& options) {
@@ -53,10 +53,10 @@ CLI::Option* add_options(CLI::App& command, BenchOptions& options) {
       ->type_name("FILE")
       ->required();
   command
-      .add_option(
-          "--work", options.work,
-          "Folder for scenes, stores and results, which are kept there; of one bench at a time, "
-          "and of one build of clearway")
+      .add_option("--work", options.work,
+                  "Folder for scenes, stores and results, which stay there; for one experiment at "
+                  "a time and "
+                  "one build of clearway")
       ->type_name("DIR")
       ->required();
   command
@@ -71,20 +71,20 @@ CLI::Option* add_options(CLI::App& command, BenchOptions& options) {
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
   command
-      .add_option(
-          "--repetitions", options.repetitions,
-          "Runs of every case; table, and stability but for its budgets of memory, run each "
-          "once")
+      .add_option("--repetitions", options.repetitions,
+                  "Runs of every case; table and most of stability run each case once")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   CLI::Option* scenes =
-      command.add_option("--scenes", options.scenes, "Of table and datasets: which (default: all)")
+      command
+          .add_option("--scenes", options.scenes, "Scenes, for table and datasets (default: all)")
           ->delimiter(',')
           ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
   command
-      .add_option("--limit", options.limit_seconds,
-                  "Seconds after which a run is stopped and counted as failed; with --resume, a "
-                  "larger one measures the stopped cases anew")
+      .add_option(
+          "--limit", options.limit_seconds,
+          "Seconds after which a run is stopped and counts as failed; --resume with a larger limit "
+          "repeats such cases")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
   const auto is_size = [](const std::string& text) {
