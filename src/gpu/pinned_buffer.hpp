@@ -21,7 +21,8 @@ class PinnedBuffer {
     const cudaError_t status = cudaHostAlloc(&data_, bytes(), cudaHostAllocPortable);
     if (status == cudaErrorMemoryAllocation) {
       throw ResourceError("no " + std::to_string(bytes()) + " bytes of page-locked host memory: " +
-                          cudaGetErrorString(status) + "; take less --memory, or --device cpu");
+                              cudaGetErrorString(status),
+                          Remedy::kLessMemory);
     }
     check_cuda(status);
   }

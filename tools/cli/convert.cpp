@@ -1,10 +1,9 @@
-#include "io/convert/convert.hpp"
-
 #include <spdlog/spdlog.h>
 
 #include <memory>
 #include <string>
 
+#include "clearway/convert.hpp"
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
@@ -16,10 +15,11 @@ namespace clearway::tool {
 namespace {
 
 struct Options {
-  ConversionOptions conversion;
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  ConvertOptions conversion;
   std::string layout = "adaptive";
   double scale = 0;
-  bool resume = false;
 };
 
 std::optional<double> regular_size_of(const std::string& layout) {
@@ -33,18 +33,17 @@ std::optional<double> regular_size_of(const std::string& layout) {
   return size;
 }
 
-void log_report(const ConversionOptions& options, const ConversionReport& report) {
-  for (const std::string& remark : report.remarks) spdlog::warn("{}", remark);
-  if (report.non_finite_points > 0) {
-    spdlog::warn("{} points with NaN or infinite coordinates left out (--strict refuses them)",
-                 format_count(report.non_finite_points));
+void log_report(const Options& options, const ConvertReport& report) {
+  if (report.was_finished) {
+    spdlog::info("{}: is the store of these inputs already; nothing to do",
+                 options.output.string());
+    return;
   }
   spdlog::info("{}: {} points in {} cells of {}, {} ({:.2f} bytes a point)",
-               options.output.string(), format_count(report.metadata.point_count),
-               format_count(report.cells), format_count(options.cell_points),
-               format_size(report.output_bytes),
+               options.output.string(), format_count(report.points), format_count(report.cells),
+               format_count(options.conversion.cell_points), format_size(report.output_bytes),
                static_cast<double>(report.output_bytes) /
-                   static_cast<double>(std::max<std::uint64_t>(1, report.metadata.point_count)));
+                   static_cast<double>(std::max<std::uint64_t>(1, report.points)));
   if (report.largest_change > 0) {
     spdlog::info("coordinates changed by at most {:.3g} (rounded to the scale)",
                  report.largest_change);
@@ -56,30 +55,26 @@ void log_report(const ConversionOptions& options, const ConversionReport& report
 }
 
 void run_convert(Options& options) {
-  ConversionOptions& conversion = options.conversion;
+  ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
   ConsoleProgress progress;
-  if (options.resume && is_converted(conversion, progress)) {
-    spdlog::info("{}: is the store of these inputs already; nothing to do",
-                 conversion.output.string());
-    return;
-  }
-  log_report(conversion, convert(conversion, progress));
+  watch_call(conversion, progress);
+  log_report(options, convert(options.inputs, options.output, conversion));
 }
 
 }  // namespace
 
 void add_convert(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  ConversionOptions& conversion = options->conversion;
+  ConvertOptions& conversion = options->conversion;
   CLI::App* command =
       program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");
   command
-      ->add_option("INPUT", conversion.inputs,
+      ->add_option("INPUT", options->inputs,
                    "Scans (LAS, PLY, XYZ text), folders of scans, or - for LAS on standard input")
       ->required();
-  command->add_option("-o,--output", conversion.output, "The store, an HDF5 file")
+  command->add_option("-o,--output", options->output, "The store, an HDF5 file")
       ->type_name("FILE")
       ->required();
   command
@@ -105,7 +100,7 @@ void add_convert(CLI::App& program) {
       command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
   command
       ->add_flag(
-          "--resume", options->resume,
+          "--resume", conversion.resume,
           "Leave a finished store of these inputs as it is; an interrupted conversion starts again")
       ->excludes(force);
   command->footer(
@@ -114,7 +109,7 @@ void add_convert(CLI::App& program) {
       "  pdal translate in.laz STDOUT --writer las | clearway convert - -o site.h5\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
-    run_stoppable(options->conversion.output,
+    run_stoppable(options->options->output,
                   "the same command starts it again, from the beginning",
                   [&] { run_convert(*options); });
   });

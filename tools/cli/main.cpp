@@ -8,6 +8,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "cli/advice.hpp"
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
 #include "cli/exit_code.hpp"
@@ -79,11 +80,14 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const clearway::UsageError& error) {
-    spdlog::error("{}", error.what());
+    spdlog::error("{}{}", error.what(), advice_on(error));
     return kWrongUsage;
   } catch (const clearway::InputError& error) {
-    spdlog::error("{}", error.what());
+    spdlog::error("{}{}", error.what(), advice_on(error));
     return kBadInput;
+  } catch (const clearway::ResourceError& error) {
+    spdlog::error("{}{}", error.what(), advice_on(error));
+    return kResource;
   } catch (const clearway::Interrupted& stopped) {
     spdlog::error("{}", stopped.what());
     return kInterrupted;

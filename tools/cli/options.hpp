@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 namespace clearway::tool {
 

@@ -48,7 +48,7 @@ void add_query(CLI::App& command, RunOptions& options) {
       ->check(positive_length());
 }
 
-void add_device(CLI::App& command, EngineOptions& options) {
+void add_device(CLI::App& command, SearchOptions& options) {
   command
       .add_option("--device", options.device,
                   "cpu or cuda; auto takes a GPU where the engine and the machine have one")
@@ -64,10 +64,19 @@ void add_device(CLI::App& command, EngineOptions& options) {
                   "Memory bound of each GPU, without CUDA's own (default: 2G, or what is free)");
 }
 
-void add_engine(CLI::App& command, EngineOptions& options) {
-  command.add_option("--engine", options.engine, "sweep, grid or kdtree; auto takes sweep")
+void add_engine(CLI::App& command, SearchOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--engine",
+          [&options](const std::string& name) {
+            options.engine = name == "sweep"    ? Engine::kSweep
+                             : name == "grid"   ? Engine::kGrid
+                             : name == "kdtree" ? Engine::kKdtree
+                                                : Engine::kAuto;
+          },
+          "sweep, grid or kdtree; auto takes sweep")
       ->check(CLI::IsMember({"auto", "sweep", "grid", "kdtree"}))
-      ->capture_default_str();
+      ->default_str("auto");
   add_device(command, options);
   add_threads_option(command, options.threads);
   add_memory_option(command, options.memory_bytes);
@@ -96,17 +105,17 @@ void add_engine(CLI::App& command, EngineOptions& options) {
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);
   add_query(command, options);
-  add_engine(command, options.engine);
+  add_engine(command, options.search);
   CLI::Option* force =
-      command.add_flag("--force", options.force,
+      command.add_flag("--force", options.search.overwrite,
                        "Overwrite an existing result; remove the journal of an earlier run");
   command
-      .add_flag("--resume", options.resume,
+      .add_flag("--resume", options.search.resume,
                 "Go on with a run of the same query that was interrupted or killed")
       ->excludes(force);
   command
       .add_option(
-          "--journal-interval", options.journal_interval_seconds,
+          "--journal-interval", options.search.journal_interval_seconds,
           "Seconds between two syncs of the journal to the disk; a system crash can cost that much "
           "work")
       ->type_name("SECONDS")

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "io/trajectory/trajectory.hpp"
-#include "search/engines.hpp"
+#include "clearway/trajectory.hpp"
+#include "clearway/search.hpp"
 
 namespace clearway::tool {
 
@@ -12,11 +12,8 @@ namespace clearway::tool {
 struct RunOptions {
   std::filesystem::path environment, model, trajectory, output;
   QueryParameters query;
-  EngineOptions engine;
+  SearchOptions search;
   TrajectoryOptions trajectory_options;
-  bool force = false;
-  bool resume = false;
-  double journal_interval_seconds = 5;
   bool json = false;
 };
 

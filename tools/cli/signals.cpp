@@ -53,6 +53,8 @@ void stop_on_signals(const std::string& advice) {
 
 }  // namespace
 
+const std::atomic<bool>& stop_flag() { return stop; }
+
 bool stop_requested() { return stop.load(std::memory_order_relaxed); }
 
 void run_stoppable(const std::filesystem::path& output, const std::string& advice,

@@ -1,4 +1,4 @@
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -20,7 +20,7 @@
 #include "core/trajectory/thin_trajectory.hpp"
 #include "core/trajectory/trajectory_motion.hpp"
 #include "core/util/format.hpp"
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/trajectory_writer.hpp"
 

@@ -16,10 +16,10 @@ constexpr std::uint32_t kOccupancyBits = 16;
 
 void refuse_unanswerable(const Query& query) {
   if (query.between_poses) {
-    throw UsageError("--between-poses: engine grid searches at poses; take --engine sweep");
+    throw UsageError("engine grid searches at poses, not between them", Remedy::kSweepEngine);
   }
   if (query.clearance > 0) {
-    throw UsageError("--clearance: engine grid has no clearances; take --engine sweep");
+    throw UsageError("engine grid has no clearances", Remedy::kSweepEngine);
   }
 }
 

@@ -6,7 +6,7 @@
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_view.hpp"
-#include "core/sweep/motion_tree.hpp"
+#include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/sweep/model_field_ref.hpp"
-#include "core/sweep/model_tree.hpp"
+#include "core/geometry/model_tree.hpp"
 
 namespace clearway {
 

@@ -4,8 +4,8 @@
 
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/sweep/model_field_ref.hpp"
-#include "core/sweep/model_tree_ref.hpp"
-#include "core/sweep/motion_tree_ref.hpp"
+#include "core/geometry/model_tree_ref.hpp"
+#include "core/trajectory/motion_tree_ref.hpp"
 #include "core/sweep/swept_step.hpp"
 
 namespace clearway {

@@ -1,4 +1,4 @@
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 #include <array>
 #include <cmath>
@@ -47,8 +47,8 @@ class TrajectoryParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    refuse_line(input_.name(), input_.line(), what);
+  [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
+    refuse_line(input_.name(), input_.line(), what, remedy);
   }
 
   bool reads_names() const {
@@ -106,15 +106,16 @@ class TrajectoryParser {
       constexpr double kSurelyNanoseconds = 1e14;
       if (numbers_[0] >= kSurelyNanoseconds) {
         fail(
-            "8 numbers with a time in nanoseconds, but no header; expected "
-            "--trajectory-format tum (qx qy qz qw) or euroc (qw qx qy qz)");
+            "8 numbers with a time in nanoseconds, but no header; the format can be tum (qx qy qz "
+            "qw) or euroc (qw qx qy qz)",
+            Remedy::kNameFormat);
       }
       format_ = TrajectoryFormat::kTum;
     } else {
       refuse_count(
           line, count,
           "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the columns. "
-          "EuRoC without a header needs --trajectory-format euroc");
+          "EuRoC without a header has to be named");
     }
   }
 
@@ -137,7 +138,7 @@ class TrajectoryParser {
     const Objection objection = format_ == TrajectoryFormat::kMatrix ? parse_matrix(line, pose)
                                 : format_ == TrajectoryFormat::kTum  ? parse_tum(line, pose)
                                                                      : parse_columns(line, pose);
-    if (!objection.empty()) fail(objection);
+    if (!objection.text.empty()) fail(objection.text, objection.remedy);
     poses_.push_back(pose);
   }
 
@@ -146,8 +147,8 @@ class TrajectoryParser {
     if (count != 12u && count != 16u) refuse_count(line, count, "12 or 16, a row-major matrix");
     if (row_numbers_ == 0) row_numbers_ = *count;
     if (count != row_numbers_) {
-      return std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
-             " as in line " + std::to_string(first_line_);
+      return {std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
+              " as in line " + std::to_string(first_line_)};
     }
     return pose_of_matrix(std::span(numbers_).first(*count), options_.allow_non_rigid, pose);
   }
@@ -155,7 +156,7 @@ class TrajectoryParser {
   Objection parse_tum(std::string_view line, Pose& pose) {
     const auto count = parse_number_line(line, numbers_);
     if (count != 8u) refuse_count(line, count, "8: t x y z qx qy qz qw");
-    if (!std::isfinite(numbers_[0])) return "expected a finite time";
+    if (!std::isfinite(numbers_[0])) return {"expected a finite time"};
     const std::span<const double> numbers(numbers_);
     return pose_of_quaternion(numbers.subspan<1, 3>(), numbers.subspan<4, 4>(), pose);
   }
@@ -163,8 +164,8 @@ class TrajectoryParser {
   Objection parse_columns(std::string_view line, Pose& pose) {
     split_fields(line, columns_->separator, fields_);
     if (fields_.size() != columns_->fields) {
-      return std::to_string(fields_.size()) + " columns; expected " +
-             std::to_string(columns_->fields) + " as before";
+      return {std::to_string(fields_.size()) + " columns; expected " +
+              std::to_string(columns_->fields) + " as before"};
     }
     std::array<double, 3> position{};
     for (std::size_t k = 0; k < 3; ++k) position[k] = number_in(columns_->position[k]);

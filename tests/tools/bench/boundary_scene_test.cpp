@@ -5,8 +5,8 @@
 
 #include "core/geometry/predicate.hpp"
 #include "io/formats/las/las_reader.hpp"
-#include "io/formats/model.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

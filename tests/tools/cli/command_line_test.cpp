@@ -4,8 +4,8 @@
 
 #include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
-#include "io/formats/model.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "support/clouds.hpp"
 #include "support/las_bytes.hpp"
 #include "tools/cli/hall.hpp"

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cpu/brute_force.hpp"
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 #include "io/journal/journal.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/hall.hpp"
 

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/peers/compare_engines.hpp"
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 namespace {
 

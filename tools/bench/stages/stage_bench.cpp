@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/page/page_pool.hpp"
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 #include "search/search_plan.hpp"
 #include "stream/paginate.hpp"
 #include "stream/run_pages.hpp"

@@ -7,7 +7,7 @@
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
 #include "core/geometry/predicate.hpp"
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/system/input_error.hpp"
 

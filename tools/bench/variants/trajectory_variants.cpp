@@ -7,7 +7,7 @@
 #include "clearway/error.hpp"
 #include "core/util/progress.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 #include "io/trajectory/trajectory_writer.hpp"
 #include "scene/random.hpp"
 
