@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "io/trajectory/trajectory.hpp"
 #include "search/engines.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace clearway::tool {
 

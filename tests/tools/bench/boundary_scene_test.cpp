@@ -11,7 +11,7 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using namespace clearway::tool;
+using namespace clearway::bench;
 
 namespace {
 

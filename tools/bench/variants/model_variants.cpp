@@ -11,7 +11,7 @@
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/system/input_error.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 struct Candidate {
@@ -60,4 +60,4 @@ void write_thinned_model(const std::filesystem::path& in, const std::filesystem:
   });
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

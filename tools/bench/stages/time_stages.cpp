@@ -1,10 +1,9 @@
-// Times the stages of a run on a GPU alone: reading its pages and doing nothing with them, and,
-// where there is a GPU, sending and searching pages that lie in memory; prints one JSON object.
-#include <CLI/CLI.hpp>
+#include "bench/stages/time_stages.hpp"
+
 #include <algorithm>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "bench/measure/page_cache.hpp"
 #include "core/page/page_pool.hpp"
 #include "io/formats/model.hpp"
 #include "io/store/store_reader.hpp"
@@ -18,16 +17,8 @@
 #include "stream/stage_page.hpp"
 #endif
 
+namespace clearway::bench {
 namespace {
-
-using namespace clearway;
-
-struct Options {
-  std::string environment, model, trajectory;
-  double radius = 0.1;
-  int threads = 0;
-  std::uint32_t slots = 64, cells = 16;
-};
 
 /// Finds nothing, at once.
 class NoEngine final : public PageEngine {
@@ -97,7 +88,10 @@ nlohmann::ordered_json time_device(const StoreReader& store, const SearchPlan& p
 }
 #endif
 
-void measure(const Options& options) {
+}  // namespace
+
+nlohmann::ordered_json time_stages(const StageOptions& options) {
+  if (options.cold) drop_from_page_cache(options.environment);
   const StoreReader store(options.environment);
   const std::vector<Vec3> model = read_model(options.model);
   const std::vector<Pose> poses = read_trajectory(options.trajectory, {});
@@ -125,27 +119,7 @@ void measure(const Options& options) {
 #ifdef CLEARWAY_CUDA
   if (on_device) out["device"] = time_device(store, plan, pages, layout);
 #endif
-  std::cout << out.dump(2) << '\n';
+  return out;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  Options options;
-  CLI::App app("Reads the pages of a run, and does nothing with them");
-  app.add_option("--env", options.environment, "store")->required();
-  app.add_option("--model", options.model, "model points")->required();
-  app.add_option("--trajectory", options.trajectory, "poses")->required();
-  app.add_option("--radius", options.radius, "search radius, metres")->capture_default_str();
-  app.add_option("--threads", options.threads, "threads, 0 for all");
-  app.add_option("--slots", options.slots, "pages in flight")->capture_default_str();
-  app.add_option("--cells", options.cells, "cells of a page")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  try {
-    measure(options);
-  } catch (const std::exception& error) {
-    std::cerr << "clearway_stage_bench: " << error.what() << '\n';
-    return 4;
-  }
-  return 0;
-}
+}  // namespace clearway::bench
