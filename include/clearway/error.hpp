@@ -8,26 +8,26 @@ namespace clearway {
 /// What the caller can do about an error. A program words it in terms of its own options.
 enum class Remedy {
   kNone,
-  kMoreMemory,           ///< amount: bytes that are enough, 0: not known
-  kMoreDeviceMemory,     ///< amount: bytes of each GPU that are enough
-  kOtherGpu,             ///< or the CPU
-  kCpuDevice,            ///< a GPU failed, or there is none
-  kLessDeviceMemory,     ///< or the CPU
-  kLessMemory,           ///< or the CPU
+  kMoreMemory,        ///< amount: bytes that are enough, 0: not known
+  kMoreDeviceMemory,  ///< amount: bytes of each GPU that are enough
+  kOtherGpu,          ///< or the CPU
+  kCpuDevice,         ///< a GPU failed, or there is none
+  kLessDeviceMemory,  ///< or the CPU
+  kLessMemory,        ///< or the CPU
   kFewerThreads,
-  kSweepEngine,          ///< the engine cannot do what was asked; engine sweep can
+  kSweepEngine,  ///< the engine cannot do what was asked; engine sweep can
   kMoreCellPoints,
   kFewerCellPoints,
-  kScale,                ///< amount: a step in metres that fits, 0: a coarser one
+  kScale,  ///< amount: a step in metres that fits, 0: a coarser one
   kIgnoreCrs,
-  kOverwrite,            ///< the output exists
-  kResumeOrOverwrite,    ///< an unfinished run of this output exists
-  kOverwriteNotResume,   ///< what was to be resumed is damaged
-  kRestoreOptions,       ///< what was to be resumed belongs to other options or files
-  kNameFormat,           ///< of the trajectory
+  kOverwrite,           ///< the output exists
+  kResumeOrOverwrite,   ///< an unfinished run of this output exists
+  kOverwriteNotResume,  ///< what was to be resumed is damaged
+  kRestoreOptions,      ///< what was to be resumed belongs to other options or files
+  kNameFormat,          ///< of the trajectory
   kAllowNonRigid,
   kAskForClearance,
-  kResume,               ///< the same call goes on from what was finished
+  kResume,  ///< the same call goes on from what was finished
 };
 
 /// What the world does wrong. A program chooses its exit code by the type.

@@ -10,7 +10,7 @@ namespace clearway {
 
 /// How far a stage of a long operation is.
 struct ProgressUpdate {
-  std::string_view stage;   ///< for people, valid during the call
+  std::string_view stage;  ///< for people, valid during the call
   std::uint64_t done = 0;
   std::uint64_t total = 0;  ///< 0: not known
   std::string_view unit;    ///< of done and total, valid during the call

@@ -20,9 +20,9 @@ struct Clearances {
   std::vector<std::uint32_t> pose;  ///< the first one that has it
 };
 
-/// A result that search() wrote. Columns are read when they are asked for; row i of each is the same
-/// colliding point. Throws InputError where the file is damaged, ResourceError where it cannot be
-/// read.
+/// A result that search() wrote. Columns are read when they are asked for; row i of each is the
+/// same colliding point. Throws InputError where the file is damaged, ResourceError where it cannot
+/// be read.
 class Result {
  public:
   explicit Result(const std::filesystem::path& path);

@@ -23,8 +23,8 @@ class Store {
 
   std::uint64_t point_count() const;
   std::uint64_t cell_count() const;
-  Box box() const;                      ///< of all points; of no points: zeros
-  const std::string& crs_wkt() const;   ///< as the scans had it, or empty
+  Box box() const;                     ///< of all points; of no points: zeros
+  const std::string& crs_wkt() const;  ///< as the scans had it, or empty
   /// "metre", "foot", "us-survey-foot", "degree" or "unknown".
   std::string length_unit() const;
   const std::filesystem::path& path() const;

@@ -14,10 +14,10 @@ namespace clearway {
 inline void check_cuda(cudaError_t status,
                        std::source_location where = std::source_location::current()) {
   if (status == cudaSuccess) return;
-  throw ResourceError(std::string("CUDA failed at ") + where.file_name() + ":" +
-                          std::to_string(where.line()) + ": " + cudaGetErrorString(status),
-                      status == cudaErrorMemoryAllocation ? Remedy::kLessDeviceMemory
-                                                          : Remedy::kCpuDevice);
+  throw ResourceError(
+      std::string("CUDA failed at ") + where.file_name() + ":" + std::to_string(where.line()) +
+          ": " + cudaGetErrorString(status),
+      status == cudaErrorMemoryAllocation ? Remedy::kLessDeviceMemory : Remedy::kCpuDevice);
 }
 
 }  // namespace clearway

@@ -80,7 +80,8 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
     throw UsageError("a field voxel is of engine sweep");
   }
   if (engine == Engine::kKdtree && options.device_memory_bytes > 0) {
-    throw UsageError("device memory is of the engines sweep and grid: engine kdtree runs on the CPU");
+    throw UsageError(
+        "device memory is of the engines sweep and grid: engine kdtree runs on the CPU");
   }
   if (engine == Engine::kKdtree && (options.device == Device::kCuda || !options.gpus.empty())) {
     refuse_engine("kdtree", "runs on the CPU alone");

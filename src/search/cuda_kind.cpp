@@ -99,9 +99,8 @@ class CudaGridKind final : public GridKind {
     return cuda_grid_bytes(*scene_) + layout.slots * cuda_grid_slot_bytes(*scene_, layout);
   }
   PageEngines make(const SlotLayout& layout) override {
-    return on_each(gpus_, [&](int gpu) {
-      return std::make_unique<CudaGridEngine>(gpu, *scene_, layout);
-    });
+    return on_each(gpus_,
+                   [&](int gpu) { return std::make_unique<CudaGridEngine>(gpu, *scene_, layout); });
   }
   void report_search(const PageEngines& engines, SearchReport& report,
                      const MessageLog& log) const override {

@@ -12,7 +12,6 @@ class StoreReader;
 /// The CUDA form of the engine that options choose, one on each of the devices. Only in a build
 /// with CUDA. options.threads is not 0; all references outlive it.
 std::unique_ptr<PageEngineKind> cuda_kind(const StoreReader& store, const Query& query,
-                                          const SearchOptions& options,
-                                          const DeviceChoice& device);
+                                          const SearchOptions& options, const DeviceChoice& device);
 
 }  // namespace clearway

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "gpu/devices.hpp"
 #include "clearway/search.hpp"
 #include "core/util/message_log.hpp"
+#include "gpu/devices.hpp"
 
 namespace clearway {
 

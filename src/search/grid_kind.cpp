@@ -19,12 +19,11 @@ const PoseReach& GridKind::build_index(const QueryTrees& trees, std::uint64_t) {
 void GridKind::report_statistics(const GridStatistics& s, const MessageLog& log) const {
   log.note("grid cell " + format_brief(scene_->grid_cell()) + " m; tests: " +
            format_count(s.sphere_tests) + " of spheres, " + format_count(s.searches) + " of " +
-           format_count(s.points_moved) + " moved points searched, " +
-           format_count(s.point_tests) + " in float, " + format_count(s.exact_tests) + " exact");
+           format_count(s.points_moved) + " moved points searched, " + format_count(s.point_tests) +
+           " in float, " + format_count(s.exact_tests) + " exact");
 }
 
-CpuGridKind::CpuGridKind(const StoreReader& store, const Query& query,
-                         const SearchOptions& options)
+CpuGridKind::CpuGridKind(const StoreReader& store, const Query& query, const SearchOptions& options)
     : GridKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                 .threads = options.threads},
                store, query, options) {}

@@ -18,8 +18,8 @@ class GridKind : public PageEngineKind {
       : PageEngineKind(std::move(needs)),
         store_(store),
         query_(query),
-        scene_options_{options.grid_cell, options.float_precision ? GridPrecision::kFloat
-                                                                  : GridPrecision::kExact} {}
+        scene_options_{options.grid_cell,
+                       options.float_precision ? GridPrecision::kFloat : GridPrecision::kExact} {}
 
   const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
   std::uint64_t index_bytes() const override { return scene_->size_bytes(); }

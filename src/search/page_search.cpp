@@ -80,8 +80,8 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
     lanes.push_back(engine.get());
   }
   StageTimes stages;
-  SearchResult result = run_pages(store, cells, pages, lanes, query, kind.needs().threads,
-                                  progress, stages, &journal);
+  SearchResult result = run_pages(store, cells, pages, lanes, query, kind.needs().threads, progress,
+                                  stages, &journal);
   report_stages(stages, report.seconds);
   kind.report_search(engines, report, log);
   return {std::move(result), budget.write_bytes()};

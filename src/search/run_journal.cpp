@@ -2,7 +2,6 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
-#include "core/util/format.hpp"
 #include "io/result/verify_result.hpp"
 #include "io/system/xxh64.hpp"
 
@@ -128,9 +127,8 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
 bool RunJournal::is_of(const StoreReader& store, const ResultHeader& header) const {
   if (!read_) return header.tolerance == 0 && !header.float_precision;
   const JournalIdentity& earlier = *read_->identity();
-  return difference(earlier,
-                    identity_of(store, header, options_, value_of(earlier, "engine"),
-                                value_of(earlier, "device"), false))
+  return difference(earlier, identity_of(store, header, options_, value_of(earlier, "engine"),
+                                         value_of(earlier, "device"), false))
       .empty();
 }
 

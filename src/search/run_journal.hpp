@@ -34,8 +34,8 @@ class RunJournal {
   Device earlier_device() const;
 
   /// The journal of this query, engine and device to keep the answer in. An earlier one is
-  /// removed where options.overwrite or nothing is in it. Throws UsageError, naming what differs, where
-  /// it is of others.
+  /// removed where options.overwrite or nothing is in it. Throws UsageError, naming what differs,
+  /// where it is of others.
   SearchJournal& open(const StoreReader& store, const Query& query, const ResultHeader& header,
                       Engine engine, Device device);
 

@@ -26,7 +26,8 @@ std::string advice_on(const Error& error) {
       return "; --device cpu does without a GPU; nvidia-smi lists the GPUs that can be used; an "
              "unfinished run continues with --resume";
     case Remedy::kLessDeviceMemory:
-      return "; nvidia-smi lists what else uses the GPU: take less --device-memory, or --device cpu";
+      return "; nvidia-smi lists what else uses the GPU: take less --device-memory, or --device "
+             "cpu";
     case Remedy::kLessMemory:
       return "; take less --memory, or --device cpu";
     case Remedy::kFewerThreads:

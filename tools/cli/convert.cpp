@@ -1,9 +1,11 @@
+#include "clearway/convert.hpp"
+
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
-#include "clearway/convert.hpp"
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
@@ -109,8 +111,7 @@ void add_convert(CLI::App& program) {
       "  pdal translate in.laz STDOUT --writer las | clearway convert - -o site.h5\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
-    run_stoppable(options->options->output,
-                  "the same command starts it again, from the beginning",
+    run_stoppable(options->options->output, "the same command starts it again, from the beginning",
                   [&] { run_convert(*options); });
   });
 }

@@ -1,5 +1,7 @@
 #include "cli/run_options.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include "cli/options.hpp"
 
 namespace clearway::tool {

@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "clearway/trajectory.hpp"
 #include "clearway/search.hpp"
+#include "clearway/trajectory.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace clearway::tool {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clearway/error.hpp"
+#include "clearway/model.hpp"
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
 #include "cli/options.hpp"
@@ -20,7 +22,6 @@
 #include "core/trajectory/thin_trajectory.hpp"
 #include "core/trajectory/trajectory_motion.hpp"
 #include "core/util/format.hpp"
-#include "clearway/model.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/trajectory_writer.hpp"
 

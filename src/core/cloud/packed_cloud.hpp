@@ -13,8 +13,8 @@
 namespace clearway {
 
 /// The environment as the engines see it: packed cells in k-d order. An *entry* is a place for a
-/// point in that order: entry = cell * cell_entries() + index in the cell, so that block b of a cell
-/// is 64 entries, one word of a HitSet. Entries past a cell's count are unused.
+/// point in that order: entry = cell * cell_entries() + index in the cell, so that block b of a
+/// cell is 64 entries, one word of a HitSet. Entries past a cell's count are unused.
 class PackedCloud {
  public:
   virtual ~PackedCloud() = default;

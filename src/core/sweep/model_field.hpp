@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/sweep/model_field_ref.hpp"
 #include "core/geometry/model_tree.hpp"
+#include "core/sweep/model_field_ref.hpp"
 
 namespace clearway {
 

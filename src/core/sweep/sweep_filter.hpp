@@ -6,11 +6,11 @@
 
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/model_tree.hpp"
 #include "core/page/pose_reach.hpp"
 #include "core/sweep/model_field.hpp"
-#include "core/geometry/model_tree.hpp"
-#include "core/trajectory/motion_tree.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
 

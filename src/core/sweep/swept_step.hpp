@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "core/geometry/sweep_bounds.hpp"
 #include "core/geometry/model_tree_ref.hpp"
+#include "core/geometry/sweep_bounds.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
 
 namespace clearway {

@@ -1,6 +1,5 @@
 #include "io/convert/convert.hpp"
 
-#include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -27,6 +26,7 @@
 #include "io/store/verify_store.hpp"
 #include "io/system/file.hpp"
 #include "io/system/pending_file.hpp"
+#include "io/system/thread_limit.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway {
@@ -121,12 +121,12 @@ void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::
                                (padded - points) * kPaddingBytesPerPoint;
   const std::uint64_t free = free_disk_bytes(folder);
   if (needed > free) {
-    throw ResourceError(folder.string() + ": " + std::to_string(free / kMiB) +
-                        " MiB free, expected about " + std::to_string(needed / kMiB) +
-                        " MiB for the temporary file and the store of " + std::to_string(points) +
-                            " points" +
-                            (padded > 2 * points ? "; most of it pads cells that are not full" : ""),
-                        padded > 2 * points ? Remedy::kFewerCellPoints : Remedy::kNone);
+    throw ResourceError(
+        folder.string() + ": " + std::to_string(free / kMiB) + " MiB free, expected about " +
+            std::to_string(needed / kMiB) + " MiB for the temporary file and the store of " +
+            std::to_string(points) + " points" +
+            (padded > 2 * points ? "; most of it pads cells that are not full" : ""),
+        padded > 2 * points ? Remedy::kFewerCellPoints : Remedy::kNone);
   }
 }
 
@@ -271,9 +271,9 @@ class Conversion {
     check_disk(folder_, points, padded);
     if (options_.regular_size && padded > 2 * points) {
       warn("padded-cells",
-          std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
-          " points for " + std::to_string(points) +
-          " points: the padding makes the store large; fewer points a cell fit the cubes");
+           std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
+               " points for " + std::to_string(points) +
+               " points: the padding makes the store large; fewer points a cell fit the cubes");
     }
   }
 
@@ -331,17 +331,16 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
   if (sources.get() != store->metadata().sources) return false;
   const std::vector<std::string> faults = verify_store(*store, progress, 1);
   if (faults.empty()) return true;
-  throw UsageError(faults[0] +
-                       "; the store of these inputs is damaged",
+  throw UsageError(faults[0] + "; the store of these inputs is damaged",
                    Remedy::kOverwriteNotResume);
 }
 
 ConversionReport convert_scans(const ConversionOptions& options, Progress& progress) {
   check_options(options);
   const int threads = affordable_threads(options);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
-  return Conversion(options, threads, progress).run();
+  const ThreadLimit limit(threads);
+  return tbb::task_arena(threads).execute(
+      [&] { return Conversion(options, threads, progress).run(); });
 }
 
 }  // namespace clearway

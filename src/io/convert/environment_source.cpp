@@ -123,10 +123,10 @@ void EnvironmentSource::choose_offset_and_scale() {
     quantisation_.scale[k] = options_.scale.value_or(fitting);
     if (any && (hi[k] - offset) / quantisation_.scale[k] > kGreatestQuantum) {
       const bool fits = (hi[k] - offset) / fitting <= kGreatestQuantum;
-      throw InputError(
-          "coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
-              " do not fit 32-bit integers at a scale of " + brief(quantisation_.scale[k]),
-          Remedy::kScale, fits ? fitting : 0);
+      throw InputError("coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
+                           " do not fit 32-bit integers at a scale of " +
+                           brief(quantisation_.scale[k]),
+                       Remedy::kScale, fits ? fitting : 0);
     }
   }
 }
@@ -197,7 +197,7 @@ void EnvironmentSource::append_kept(const PointBatch& batch, QuantaBatch& out) {
       if (shifted < std::numeric_limits<std::int32_t>::min() ||
           shifted > std::numeric_limits<std::int32_t>::max()) {
         throw InputError(files_[file_].string() + ": too far from " + files_[0].string() +
-                         " for 32-bit integers of " + brief(own.scale[k]),
+                             " for 32-bit integers of " + brief(own.scale[k]),
                          Remedy::kScale);
       }
       q[k] = static_cast<std::int32_t>(shifted);

@@ -50,8 +50,9 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<con
       continue;
     }
     if (info.unit != common.unit && !ignore) {
-      refuse(name, "its unit of length is " + to_string(info.unit) + ", expected " +
-                       to_string(common.unit) + " as in " + files[0].string(),
+      refuse(name,
+             "its unit of length is " + to_string(info.unit) + ", expected " +
+                 to_string(common.unit) + " as in " + files[0].string(),
              Remedy::kIgnoreCrs);
     }
     if (info.crs_wkt != common.wkt) {
@@ -83,8 +84,8 @@ std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path>
     if (!shift) {
       if (scale || !own) return std::nullopt;
       refuse(files[i].string(),
-             "its scale or offset does not agree with that of " + files[0].string(),
-             Remedy::kScale, first[0]);
+             "its scale or offset does not agree with that of " + files[0].string(), Remedy::kScale,
+             first[0]);
     }
     common.shifts.push_back(*shift);
   }

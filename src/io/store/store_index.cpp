@@ -200,6 +200,7 @@ StoreIndex read_index(const hdf5::Id& file, std::uint64_t file_bytes, const std:
 
 StoreIndex read_store_index(const std::filesystem::path& path, std::uint64_t file_bytes) {
   const std::string name = path.string();
+  const hdf5::QuietScope quiet;
   const hdf5::Id file = hdf5::open_file(path);
   try {
     return read_index(file, file_bytes, name);

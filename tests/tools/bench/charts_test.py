@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-TOOLS = Path(__file__).resolve().parents[2] / "tools"
+TOOLS = Path(__file__).resolve().parents[3] / "tools"
 sys.path.insert(0, str(TOOLS))
 
 ENGINES = {"kdtree cpu": 20.0, "sweep cpu": 0.9, "grid cuda": 0.4, "sweep cuda": 0.05}

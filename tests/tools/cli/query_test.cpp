@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/query/hit_set.hpp"
-#include "cpu/brute_force.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/query/hit_set.hpp"
+#include "cpu/brute_force.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/hall.hpp"
 

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/query/hit_set.hpp"
-#include "cpu/brute_force.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/query/hit_set.hpp"
+#include "cpu/brute_force.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
 #include "tools/cli/program.hpp"

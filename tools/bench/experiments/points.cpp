@@ -2,7 +2,7 @@
 #include "bench/experiments/bench.hpp"
 #include "bench/variants/variants.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 constexpr int kSamples = 111;
@@ -45,4 +45,4 @@ void bench_points(Bench& bench) {
   std::filesystem::remove(sample);
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

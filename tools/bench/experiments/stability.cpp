@@ -9,7 +9,7 @@
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 /// The paper's grid: cells along the longest side of the environment's box.
@@ -207,4 +207,4 @@ void bench_stability(Bench& bench) {
   stability.finish();
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

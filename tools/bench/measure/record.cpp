@@ -7,7 +7,7 @@
 #include "clearway/error.hpp"
 #include "io/system/pending_file.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 Json read(const std::filesystem::path& path) {
@@ -18,7 +18,7 @@ Json read(const std::filesystem::path& path) {
   };
   if (!in || !all.is_object() || !all.contains("cases") || !all["cases"].is_array() ||
       !std::all_of(all["cases"].begin(), all["cases"].end(), is_case)) {
-    throw InputError(path.string() + ": is not a file of clearway bench");
+    throw InputError(path.string() + ": is not a file of clearway-bench");
   }
   return all;
 }
@@ -114,4 +114,4 @@ void Record::write() const {
   pending.publish();
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

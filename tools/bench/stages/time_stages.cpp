@@ -1,16 +1,18 @@
-// Times the stages of a run on a GPU alone: reading its pages and doing nothing with them, and,
-// where there is a GPU, sending and searching pages that lie in memory; prints one JSON object.
-#include <CLI/CLI.hpp>
+#include "bench/stages/time_stages.hpp"
+
 #include <algorithm>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "core/page/page_pool.hpp"
+#include "bench/measure/page_cache.hpp"
 #include "clearway/model.hpp"
-#include "io/store/store_reader.hpp"
 #include "clearway/trajectory.hpp"
-#include "search/search_plan.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/sweep/model_field.hpp"
+#include "core/sweep/sweep_filter.hpp"
+#include "io/store/store_reader.hpp"
+#include "search/query_trees.hpp"
 #include "stream/paginate.hpp"
+#include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #ifdef CLEARWAY_CUDA
 #include "gpu/devices.hpp"
@@ -18,16 +20,8 @@
 #include "stream/stage_page.hpp"
 #endif
 
+namespace clearway::bench {
 namespace {
-
-using namespace clearway;
-
-struct Options {
-  std::string environment, model, trajectory;
-  double radius = 0.1;
-  int threads = 0;
-  std::uint32_t slots = 64, cells = 16;
-};
 
 /// Finds nothing, at once.
 class NoEngine final : public PageEngine {
@@ -62,20 +56,20 @@ double seconds_between(Clock::time_point begin, Clock::time_point end) {
 
 /// All pages, staged beforehand, are started at once; seconds on the device's clock, the best of
 /// several. Where their number exceeds the slots, the first ones stand for all.
-nlohmann::ordered_json time_device(const StoreReader& store, const SearchPlan& plan,
+nlohmann::ordered_json time_device(const StoreReader& store, const SweepFilter& filter,
+                                   std::span<const PlannedCell> cells,
                                    std::span<const PlannedPage> pages, SlotLayout layout) {
   constexpr std::size_t kMostSlots = 512;
   constexpr int kRepetitions = 5;
   pages = pages.first(std::min(pages.size(), kMostSlots));
   layout.slots = static_cast<std::uint32_t>(pages.size());
-  CudaSweepEngine engine(0, plan.filter.ref(), store, layout);
+  CudaSweepEngine engine(0, filter.ref(), store, layout);
   std::vector<PageShape> shapes;
   std::uint64_t points = 0, bytes = 0;
   for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
-    shapes.push_back(stage_page(store, pages[slot].of(plan.cells), engine.page(slot)));
+    shapes.push_back(stage_page(store, pages[slot].of(cells), engine.page(slot)));
     bytes += shapes.back().bytes();
-    for (const PlannedCell& cell : pages[slot].of(plan.cells))
-      points += store.cells()[cell.cell].count;
+    for (const PlannedCell& cell : pages[slot].of(cells)) points += store.cells()[cell.cell].count;
   }
   double upload = 1e9, compute = 1e9;
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
@@ -97,7 +91,10 @@ nlohmann::ordered_json time_device(const StoreReader& store, const SearchPlan& p
 }
 #endif
 
-void measure(const Options& options) {
+}  // namespace
+
+nlohmann::ordered_json time_stages(const StageOptions& options) {
+  if (options.cold) drop_from_page_cache(options.environment);
   const StoreReader store(options.environment);
   const std::vector<Vec3> model = read_model(options.model);
   const std::vector<Pose> poses = read_trajectory(options.trajectory, {});
@@ -107,45 +104,27 @@ void measure(const Options& options) {
   const bool on_device = cuda_device_count() > 0;
   if (on_device) open_cuda_device(0);
 #endif
-  const SearchPlan plan(store, query, trees, {.fineness = 3}, options.threads);
+  const ModelField field(trees.model, query.radius, {.fineness = 3}, options.threads);
+  const SweepFilter filter(query, trees.motion, trees.model, field, store);
+  const std::vector<PlannedCell> cells = plan(store, filter);
   const std::uint64_t cell_bytes = 6 * std::uint64_t{store.cell_points()} + 4096;
-  const SlotLayout layout{
-      options.slots, std::max(plan.least_page_bytes(), options.cells * cell_bytes), options.cells};
-  const std::vector<PlannedPage> pages =
-      paginate(store, plan.cells, layout.page_bytes, layout.cells);
+  const SlotLayout layout{options.slots,
+                          std::max(smallest_page_bytes(store, cells), options.cells * cell_bytes),
+                          options.cells};
+  const std::vector<PlannedPage> pages = paginate(store, cells, layout.page_bytes, layout.cells);
   NoEngine engine(store, query, layout);
   NoProgress progress;
   StageTimes times;
   PageEngine* const engines[] = {&engine};
-  run_pages(store, plan.cells, pages, engines, query, options.threads, progress, times);
+  run_pages(store, cells, pages, engines, query, options.threads, progress, times);
   nlohmann::ordered_json out{{"pages", pages.size()},
                              {"cells_read", store.touched().cells},
                              {"bytes_read", store.touched().bytes},
                              {"read_seconds", times.total}};
 #ifdef CLEARWAY_CUDA
-  if (on_device) out["device"] = time_device(store, plan, pages, layout);
+  if (on_device) out["device"] = time_device(store, filter, cells, pages, layout);
 #endif
-  std::cout << out.dump(2) << '\n';
+  return out;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  Options options;
-  CLI::App app("Reads the pages of a run, and does nothing with them");
-  app.add_option("--env", options.environment, "store")->required();
-  app.add_option("--model", options.model, "model points")->required();
-  app.add_option("--trajectory", options.trajectory, "poses")->required();
-  app.add_option("--radius", options.radius, "search radius, metres")->capture_default_str();
-  app.add_option("--threads", options.threads, "threads, 0 for all");
-  app.add_option("--slots", options.slots, "pages in flight")->capture_default_str();
-  app.add_option("--cells", options.cells, "cells of a page")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  try {
-    measure(options);
-  } catch (const std::exception& error) {
-    std::cerr << "clearway_stage_bench: " << error.what() << '\n';
-    return 4;
-  }
-  return 0;
-}
+}  // namespace clearway::bench
