@@ -111,7 +111,7 @@ void add_convert(CLI::App& program) {
       "  pdal translate in.laz STDOUT --writer las | clearway convert - -o site.h5\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
-    run_stoppable(options->options->output, "the same command starts it again, from the beginning",
+    run_stoppable(options->output, "the same command starts it again, from the beginning",
                   [&] { run_convert(*options); });
   });
 }

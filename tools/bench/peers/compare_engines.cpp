@@ -8,9 +8,9 @@
 
 #include "bench/peers/nanoflann_search.hpp"
 #include "cpu/kdtree_engine.hpp"
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 #include "io/store/store_reader.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 namespace clearway::bench {
 namespace {
