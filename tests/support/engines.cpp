@@ -82,9 +82,7 @@ class PreparedModel {
 
  private:
   /// A field is the same only for the very same numbers, the sign of a zero included.
-  static bool same_bits(const Vec3& a, const Vec3& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-  }
+  static bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
   std::vector<Vec3> points_;
   double radius_, reach_;
@@ -152,7 +150,8 @@ std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, c
   const double limit = query.clearance * query.clearance;
   const int threads = next_threads();
   const SearchResult answer = engine.run(cloud, query, threads);
-  CAPTURE(engine.name, threads, query.clearance, query.radius, query.first_pose, cloud.cell_points());
+  CAPTURE(engine.name, threads, query.clearance, query.radius, query.first_pose,
+          cloud.cell_points());
   std::uint64_t wrong = 0, wrong_hits = 0, found = 0;
   for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
     Clearance expected;
