@@ -13,8 +13,8 @@
 namespace clearway {
 namespace {
 
-SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int) {
-  const GridRun run;
+SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
+  const GridRun run{.threads = threads};
   HitSet hits = run_grid(
       cloud, query, run, [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
         CudaGridEngine engine(0, scene, {run.slots, page_bytes, run.cells_a_page});
