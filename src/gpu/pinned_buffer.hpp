@@ -18,8 +18,8 @@ class PinnedBuffer {
     if (bytes == 0) return;
     const cudaError_t status = cudaHostAlloc(&data_, bytes, cudaHostAllocPortable);
     if (status == cudaErrorMemoryAllocation) {
-      throw ResourceError("no " + std::to_string(bytes) + " bytes of page-locked host memory: " +
-                              cudaGetErrorString(status),
+      throw ResourceError("no " + std::to_string(bytes) +
+                              " bytes of page-locked host memory: " + cudaGetErrorString(status),
                           Remedy::kLessMemory);
     }
     check_cuda(status);

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/peers/nanoflann_search.hpp"
-#include "cpu/kdtree_engine.hpp"
 #include "clearway/model.hpp"
-#include "io/store/store_reader.hpp"
 #include "clearway/trajectory.hpp"
+#include "cpu/kdtree_engine.hpp"
+#include "io/store/store_reader.hpp"
 
 namespace clearway::bench {
 namespace {
