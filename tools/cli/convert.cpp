@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -29,7 +30,8 @@ std::optional<double> regular_size_of(const std::string& layout) {
   double size = 0;
   if (layout == "adaptive") return std::nullopt;
   if (!layout.starts_with(regular) ||
-      !CLI::detail::lexical_cast(layout.substr(regular.size()), size)) {
+      !CLI::detail::lexical_cast(layout.substr(regular.size()), size) || !std::isfinite(size) ||
+      size <= 0) {
     throw UsageError("--layout " + layout + ": expected adaptive or regular:SIZE (metres)");
   }
   return size;
