@@ -15,7 +15,7 @@
 namespace clearway::tool {
 namespace {
 
-struct Options {
+struct ConvertOptions {
   ConversionOptions conversion;
   std::string layout = "adaptive";
   double scale = 0;
@@ -55,7 +55,7 @@ void log_report(const ConversionOptions& options, const ConversionReport& report
       report.confirm_seconds, format_size(report.temporary_bytes));
 }
 
-void run_convert(Options& options) {
+void run_convert(ConvertOptions& options) {
   ConversionOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
@@ -71,7 +71,7 @@ void run_convert(Options& options) {
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertOptions>();
   ConversionOptions& conversion = options->conversion;
   CLI::App* command =
       program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");

@@ -37,7 +37,7 @@ int finish(const CLI::App& program, const CLI::ParseError& error) {
   return kDone;
 }
 
-int run(int argc, char** argv) {
+int run_command_line(int argc, char** argv) {
   CLI::App program{
       "Clearway: does this vehicle, machine or car body pass through this scanned environment "
       "without touching it?"};
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
   // Large blocks go back to the system when freed, so that --memory bounds what it sees.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {
-    return run(argc, argv);
+    return run_command_line(argc, argv);
   } catch (const clearway::UsageError& error) {
     spdlog::error("{}", error.what());
     return kWrongUsage;
