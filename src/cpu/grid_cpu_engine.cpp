@@ -174,8 +174,8 @@ std::uint64_t GridCpuEngine::slot_bytes(const GridScene& scene, const SlotLayout
   const std::uint64_t of_result =
       scene.first_pose() ? 4 * (all.slots + std::uint64_t{all.bucket_count}) : all.slots / 8;
   const std::uint64_t a_cell = all.slots * of_point + all.slots / 8 + all.bucket_count * of_bucket +
-                               2 * all.word_count * sizeof(std::uint64_t) + of_result +
-                               sizeof(GridCell) + sizeof(std::uint64_t);
+                               std::uint64_t{2} * all.word_count * sizeof(std::uint64_t) +
+                               of_result + sizeof(GridCell) + sizeof(std::uint64_t);
   return sizeof(Slot) + sizeof(Slot::Line) + 2 * layout.page_bytes + layout.cells * a_cell +
          sizeof(std::uint64_t) + kWorkList * sizeof(std::uint32_t);
 }

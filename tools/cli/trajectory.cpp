@@ -50,8 +50,8 @@ std::vector<Pose> thin(const std::vector<Pose>& poses, const Box& model, double 
   return kept;
 }
 
-std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model, const ChangeOptions& options,
-                          const Change& change, Progress& progress) {
+std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
+                          const ChangeOptions& options, const Change& change, Progress& progress) {
   try {
     return change(poses, model, options.max_motion, progress);
   } catch (const InputError& error) {
