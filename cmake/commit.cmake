@@ -6,10 +6,10 @@ if(failed)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "#pragma once
 
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// The commit that this program was built from.
 inline constexpr const char* kCommit = \"${commit}\";
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench
 ")

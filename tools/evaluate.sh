@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds Clearway, measures all experiments of `clearway bench` and draws their charts: the whole
+# Builds Clearway, measures the experiments of clearway-bench and draws their charts: the whole
 # evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12). Run again, it goes on
 # where it was stopped; another commit needs another FOLDER, or --force, which removes the outputs
 # of before.
@@ -29,12 +29,12 @@ source tools/setup.sh
 install_missing_packages
 
 configure_release
-cmake --build build/release --target clearway
+cmake --build build/release --target clearway-bench
 
 if [ $force = yes ]; then (cd "$folder" && rm -rf work "${experiments[@]/%/.json}"); fi
 for experiment in "${experiments[@]}"; do
   printf '\n== %s\n' "$experiment"
-  build/release/tools/clearway bench "$experiment" -o "$folder/$experiment.json" \
+  build/release/tools/clearway-bench "$experiment" -o "$folder/$experiment.json" \
     --work "$folder/work" --size "$size" --resume
 done
 printf '\n== charts\n'

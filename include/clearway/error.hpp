@@ -5,30 +5,67 @@
 
 namespace clearway {
 
-/// What the world does wrong. The program's exit code is chosen by type, in main alone.
-struct Error : std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// What the caller can do about an error. A program words it in terms of its own options.
+enum class Remedy {
+  kNone,
+  kMoreMemory,        ///< amount: bytes that are enough, 0: not known
+  kMoreDeviceMemory,  ///< amount: bytes of each GPU that are enough
+  kOtherGpu,          ///< or the CPU
+  kCpuDevice,         ///< a GPU failed, or there is none
+  kLessDeviceMemory,  ///< or the CPU
+  kLessMemory,        ///< or the CPU
+  kFewerThreads,
+  kSweepEngine,  ///< the engine cannot do what was asked; engine sweep can
+  kMoreCellPoints,
+  kFewerCellPoints,
+  kScale,  ///< amount: a step in metres that fits, 0: a coarser one
+  kIgnoreCrs,
+  kOverwrite,           ///< the output exists
+  kResumeOrOverwrite,   ///< an unfinished run of this output exists
+  kOverwriteNotResume,  ///< what was to be resumed is damaged
+  kRestoreOptions,      ///< what was to be resumed belongs to other options or files
+  kNameFormat,          ///< of the trajectory
+  kAllowNonRigid,
+  kAskForClearance,
+  kResume,  ///< the same call goes on from what was finished
+};
+
+/// What the world does wrong. A program chooses its exit code by the type.
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string& what, Remedy remedy = Remedy::kNone, double amount = 0)
+      : std::runtime_error(what), remedy_(remedy), amount_(amount) {}
+
+  Remedy remedy() const { return remedy_; }
+  double amount() const { return amount_; }  ///< as the remedy says
+
+ private:
+  Remedy remedy_;
+  double amount_;
 };
 
 /// Options that contradict each other or ask for what cannot be done. Exit code 2.
-struct UsageError : Error {
+class UsageError : public Error {
+ public:
   using Error::Error;
 };
 
 /// A malformed or unsupported input: what() names file, line or byte, and what was expected.
 /// Exit code 3.
-struct InputError : Error {
+class InputError : public Error {
+ public:
   using Error::Error;
 };
 
 /// I/O failure or a resource that is not there (disk full, budget too small). Exit code 4.
-struct ResourceError : Error {
+class ResourceError : public Error {
+ public:
   using Error::Error;
 };
 
-/// Stopped on request (core/util/progress.hpp), with nothing lost that a journal holds. Exit
-/// code 5.
-struct Interrupted : Error {
+/// Stopped on request, with nothing lost that a journal holds. Exit code 5.
+class Interrupted : public Error {
+ public:
   using Error::Error;
 };
 

@@ -3,83 +3,81 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/grid/grid_arrays.hpp"
 #include "core/grid/grid_search.hpp"
+#include "core/page/page_result_arrays.hpp"
 #include "core/query/hit_set.hpp"
 
 namespace clearway {
 
+namespace {
+
+struct alignas(kPageAlignment) Line {
+  std::byte bytes[kPageAlignment];
+};
+
+}  // namespace
+
+/// The arrays of a slot, for its largest page.
+struct GridCpuEngine::Arrays {
+  Arrays(const GridScene& scene, const SlotLayout& layout)
+      : page(run.add<Line>(divide_up(layout.page_bytes, sizeof(Line)))),
+        plan(run, layout.cells, layout.page_bytes / sizeof(std::uint32_t)),
+        work(run, scene, layout.cells),
+        sorted(run.add<std::uint64_t>(work.keys.count)),
+        result(run, work.keys.count / kBlockPoints,
+               {.first_pose = scene.first_pose(), .clearance = false}) {}
+
+  std::uint64_t lines() const { return divide_up(run.bytes(), sizeof(Line)); }
+
+  ArrayRun run;
+  ArrayPlace<Line> page;
+  GridPlanArrays plan;
+  GridWorkArrays work;
+  ArrayPlace<std::uint64_t> sorted;  ///< key and slot in one word
+  PageResultArrays result;
+};
+
 struct GridCpuEngine::Slot {
-  Slot(const GridScene& scene, const SlotLayout& layout, std::uint32_t work_list)
-      : page((layout.page_bytes + sizeof(Line) - 1) / sizeof(Line)),
-        entry_runs(layout.page_bytes / sizeof(std::uint32_t)),
-        cells(layout.cells),
-        cell_runs(layout.cells + 1) {
-    const GridSceneView& all = scene.view();
-    const std::size_t n = layout.cells;
-    sorted.resize(n * all.slots);
-    keys.resize(n * all.slots);
-    order.resize(n * all.slots);
-    points.resize(n * all.slots);
-    buckets.resize(n * all.bucket_count);
-    occupancy.resize(n * all.word_count);
-    group_occupancy.resize(n * all.word_count);
-    hits.resize(n * all.slots / kBlockPoints);
-    if (scene.first_pose()) {
-      first_poses.resize(n * all.slots);
-      latest.resize(n * all.bucket_count);
-    } else {
-      done.resize(n * all.slots / 64);
-    }
+  Slot(const Arrays& arrays, std::uint32_t work_list)
+      : memory(std::make_unique_for_overwrite<Line[]>(arrays.lines())) {
     open.reserve(work_list);
   }
 
-  void build(const GridScene& scene);
+  std::byte* begin() const { return reinterpret_cast<std::byte*>(memory.get()); }
+  void build(const GridScene& scene, const Arrays& arrays);
   void search(const GridScene& scene, std::uint64_t task, std::uint32_t work_list);
 
-  struct alignas(kPageAlignment) Line {
-    std::byte bytes[kPageAlignment];
-  };
-
-  std::vector<Line> page;
-  std::vector<std::uint32_t> entry_runs;
-  std::vector<GridCell> cells;
-  std::vector<std::uint64_t> cell_runs;
-  std::vector<std::uint64_t> sorted;  ///< key and slot in one word
-  std::vector<std::uint32_t> keys, order;
-  std::vector<GridPoint> points;
-  std::vector<BucketRange> buckets;
-  std::vector<std::uint64_t> occupancy, group_occupancy;
-  std::vector<std::uint64_t> hits;
-  std::vector<std::uint64_t> done;
-  std::vector<std::uint32_t> first_poses, latest;
+  std::unique_ptr<Line[]> memory;
   std::vector<std::uint32_t> open;  ///< pairs
-  PageShape shape;
   GridPageView view{};
-  PageResult answer;
+  PageResult result;
   GridStatistics statistics;
 };
 
 /// Sorts the page's points into their grids.
-void GridCpuEngine::Slot::build(const GridScene& scene) {
-  const GridSceneView& all = scene.view();
-  std::fill(buckets.begin(), buckets.end(), BucketRange{0, 0});
-  std::fill(occupancy.begin(), occupancy.end(), 0);
-  std::fill(group_occupancy.begin(), group_occupancy.end(), 0);
-  std::fill(hits.begin(), hits.end(), 0);
-  std::fill(done.begin(), done.end(), 0);
-  std::fill(first_poses.begin(), first_poses.end(), HitSet::kNever);
-  std::fill(latest.begin(), latest.end(), HitSet::kNever);
-  const std::uint32_t count = shape.cells * all.slots;
+void GridCpuEngine::Slot::build(const GridScene& scene, const Arrays& arrays) {
+  const GridWorkArrays& work = arrays.work;
+  std::ranges::fill(work.buckets.in(begin()), BucketRange{0, 0});
+  std::ranges::fill(work.occupancy.in(begin()), 0);
+  std::ranges::fill(work.group_occupancy.in(begin()), 0);
+  std::ranges::fill(work.done.in(begin()), 0);
+  std::ranges::fill(work.latest.in(begin()), HitSet::kNever);
+  std::ranges::fill(arrays.result.hits.in(begin()), 0);
+  std::ranges::fill(arrays.result.first_poses.in(begin()), HitSet::kNever);
+  const std::uint32_t count = view.page.shape.cells * scene.view().slots;
+  const std::span sorted = arrays.sorted.in(begin()).first(count);
+  const std::span keys = work.keys.in(begin()), order = work.order.in(begin());
   for (std::uint32_t slot = 0; slot < count; ++slot) {
-    sorted[slot] = std::uint64_t{sort_key(all, view, slot)} << 32 | slot;
+    sorted[slot] = std::uint64_t{sort_key(scene.view(), view, slot)} << 32 | slot;
   }
-  std::sort(sorted.begin(), sorted.begin() + count);
+  std::ranges::sort(sorted);
   for (std::uint32_t i = 0; i < count; ++i) {
     keys[i] = static_cast<std::uint32_t>(sorted[i] >> 32);
     order[i] = static_cast<std::uint32_t>(sorted[i]);
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    place_point(all, view, keys.data(), order.data(), i, count);
+    place_point(scene.view(), view, keys.data(), order.data(), i, count);
   }
 }
 
@@ -112,9 +110,12 @@ void GridCpuEngine::Slot::search(const GridScene& scene, std::uint64_t index,
 
 GridCpuEngine::GridCpuEngine(const GridScene& scene, const SlotLayout& layout,
                              std::uint32_t work_list)
-    : scene_(scene), layout_(layout), work_list_(std::max(1U, work_list)) {
+    : scene_(scene),
+      layout_(layout),
+      work_list_(std::max(1U, work_list)),
+      arrays_(std::make_unique<Arrays>(scene, layout)) {
   for (std::uint32_t i = 0; i < layout.slots; ++i) {
-    slots_.push_back(std::make_unique<Slot>(scene, layout, work_list_));
+    slots_.push_back(std::make_unique<Slot>(*arrays_, work_list_));
   }
 }
 
@@ -123,44 +124,34 @@ GridCpuEngine::~GridCpuEngine() = default;
 std::uint32_t GridCpuEngine::slots() const { return static_cast<std::uint32_t>(slots_.size()); }
 
 std::span<std::byte> GridCpuEngine::page(std::uint32_t slot) {
-  return {reinterpret_cast<std::byte*>(slots_[slot]->page.data()), layout_.page_bytes};
+  return {slots_[slot]->begin(), layout_.page_bytes};
 }
 
 void GridCpuEngine::start(std::uint32_t index, const PageShape& shape) {
   assert(shape.bytes() <= layout_.page_bytes && shape.cells <= layout_.cells);
+  const Clock::time_point begin = Clock::now();
   Slot& slot = *slots_[index];
-  slot.shape = shape;
-  PageResult& answer = slot.answer;
-  answer = {};
-  answer.compute.begin = Clock::now();
+  std::byte* memory = slot.begin();
   slot.statistics = {};
-  slot.view = {.page = {page(index).data(), slot.shape},
-               .cells = slot.cells.data(),
-               .cell_runs = slot.cell_runs.data(),
-               .entry_runs = slot.entry_runs.data(),
-               .points = slot.points.data(),
-               .buckets = slot.buckets.data(),
-               .occupancy = slot.occupancy.data(),
-               .group_occupancy = slot.group_occupancy.data(),
-               .done = scene_.first_pose() ? nullptr : slot.done.data(),
-               .latest = scene_.first_pose() ? slot.latest.data() : nullptr,
-               .hits = slot.hits.data(),
-               .first_poses = scene_.first_pose() ? slot.first_poses.data() : nullptr};
-  const std::uint64_t tasks =
-      plan_page(scene_, slot.view.page, slot.cells, slot.cell_runs, slot.entry_runs);
-  slot.build(scene_);
+  slot.view.page = {memory, shape};
+  arrays_->plan.put_into(slot.view, memory);
+  arrays_->work.put_into(slot.view, memory);
+  slot.view.hits = arrays_->result.hits.in(memory).data();
+  slot.view.first_poses = arrays_->result.first_poses.in(memory).data();
+  const GridPlanArrays& plan = arrays_->plan;
+  const std::uint64_t tasks = plan_page(scene_, slot.view.page, plan.cells.in(memory),
+                                        plan.cell_runs.in(memory), plan.entry_runs.in(memory));
+  slot.build(scene_, *arrays_);
   for (std::uint64_t task = 0; task < tasks; ++task) {
     slot.search(scene_, task, work_list_);
   }
-  const std::size_t slots = std::size_t{slot.shape.cells} * scene_.view().slots;
-  answer.hits = std::span(slot.hits).first(slots / kBlockPoints);
-  if (scene_.first_pose()) answer.first_poses = std::span(slot.first_poses).first(slots);
-  answer.compute.end = Clock::now();
+  slot.result = arrays_->result.in(memory, std::size_t{shape.cells} * shape.blocks_per_cell);
+  slot.result.compute = {begin, Clock::now()};
   const std::lock_guard lock(mutex_);
   statistics_.add(slot.statistics);
 }
 
-PageResult GridCpuEngine::finish(std::uint32_t slot) { return slots_[slot]->answer; }
+PageResult GridCpuEngine::finish(std::uint32_t slot) { return slots_[slot]->result; }
 
 GridStatistics GridCpuEngine::statistics() const {
   const std::lock_guard lock(mutex_);
@@ -168,16 +159,8 @@ GridStatistics GridCpuEngine::statistics() const {
 }
 
 std::uint64_t GridCpuEngine::slot_bytes(const GridScene& scene, const SlotLayout& layout) {
-  const GridSceneView& all = scene.view();
-  const std::uint64_t of_point = 2 * sizeof(std::uint64_t) + sizeof(GridPoint);
-  const std::uint64_t of_bucket = sizeof(BucketRange);
-  const std::uint64_t of_result =
-      scene.first_pose() ? 4 * (all.slots + std::uint64_t{all.bucket_count}) : all.slots / 8;
-  const std::uint64_t a_cell = all.slots * of_point + all.slots / 8 + all.bucket_count * of_bucket +
-                               std::uint64_t{2} * all.word_count * sizeof(std::uint64_t) +
-                               of_result + sizeof(GridCell) + sizeof(std::uint64_t);
-  return sizeof(Slot) + sizeof(Slot::Line) + 2 * layout.page_bytes + layout.cells * a_cell +
-         sizeof(std::uint64_t) + kWorkList * sizeof(std::uint32_t);
+  return sizeof(Slot) + Arrays(scene, layout).lines() * sizeof(Line) +
+         kWorkList * sizeof(std::uint32_t);
 }
 
 }  // namespace clearway

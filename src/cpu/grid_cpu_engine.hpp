@@ -34,11 +34,13 @@ class GridCpuEngine final : public PageEngine {
   static std::uint64_t slot_bytes(const GridScene& scene, const SlotLayout& layout);
 
  private:
+  struct Arrays;
   struct Slot;
 
   const GridScene& scene_;
   SlotLayout layout_;
   std::uint32_t work_list_;
+  std::unique_ptr<Arrays> arrays_;
   std::vector<std::unique_ptr<Slot>> slots_;
   mutable std::mutex mutex_;
   GridStatistics statistics_;

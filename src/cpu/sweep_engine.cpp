@@ -22,13 +22,8 @@ void SweepEngine::start(std::uint32_t slot, const PageShape& shape) {
          part_of_cell(pool_.clearances(slot), i, slots)});
   }
   give_back(std::move(search));
-  const std::size_t cells = shape.cells;
-  results_[slot] = {
-      .hits = pool_.hits(slot).first(cells * blocks),
-      .first_poses = pool_.first_poses(slot).first(filter_.query().first_pose ? cells * slots : 0),
-      .clearances = pool_.clearances(slot).first(filter_.query().clearance > 0 ? cells * slots : 0),
-      .upload = {},
-      .compute = {begin, Clock::now()}};
+  results_[slot] = pool_.result(slot, shape.cells);
+  results_[slot].compute = {begin, Clock::now()};
 }
 
 std::unique_ptr<CellSearch> SweepEngine::take_search() {

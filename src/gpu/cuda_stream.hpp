@@ -14,18 +14,11 @@ class CudaStream {
  public:
   CudaStream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
   CudaStream(CudaStream&& other) noexcept : stream_(std::exchange(other.stream_, nullptr)) {}
-  CudaStream& operator=(CudaStream&& other) noexcept {
-    std::swap(stream_, other.stream_);
-    return *this;
-  }
   ~CudaStream() {
     if (stream_ != nullptr) cudaStreamDestroy(stream_);
   }
 
   cudaStream_t get() const { return stream_; }
-
-  /// Waits for what was enqueued. Throws what became of it.
-  void synchronise() const { check_cuda(cudaStreamSynchronize(stream_)); }
 
  private:
   cudaStream_t stream_ = nullptr;

@@ -9,30 +9,22 @@
 
 namespace clearway {
 
-/// Owner of `count` uninitialised values in the memory of the current device. Throws ResourceError
-/// where there is none.
-template <typename Value>
+/// Owner of uninitialised memory of the current device. Throws ResourceError where there is none.
 class DeviceBuffer {
  public:
-  explicit DeviceBuffer(std::size_t count) : count_(count) {
-    if (count > 0) check_cuda(cudaMalloc(&data_, bytes()));
+  explicit DeviceBuffer(std::size_t bytes) : bytes_(bytes) {
+    if (bytes > 0) check_cuda(cudaMalloc(&data_, bytes));
   }
   DeviceBuffer(DeviceBuffer&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
-  DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
-    std::swap(data_, other.data_);
-    std::swap(count_, other.count_);
-    return *this;
-  }
+      : data_(std::exchange(other.data_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
   ~DeviceBuffer() { cudaFree(data_); }
 
-  Value* data() const { return static_cast<Value*>(data_); }
-  std::size_t size() const { return count_; }
-  std::size_t bytes() const { return count_ * sizeof(Value); }
+  std::byte* data() const { return static_cast<std::byte*>(data_); }
+  std::size_t bytes() const { return bytes_; }
 
  private:
   void* data_ = nullptr;
-  std::size_t count_;
+  std::size_t bytes_;
 };
 
 }  // namespace clearway

@@ -1,27 +1,15 @@
 #include "gpu/devices.hpp"
 
-#include <cstdlib>
-
 #include "gpu/cuda_check.hpp"
 
 namespace clearway {
 
-namespace {
-
-/// By default a process has 8 queues to a device, and streams that share one wait for each other.
-/// CUDA looks at this once, before its first call.
-void ask_for_queues() { setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0); }
-
-}  // namespace
-
 int cuda_device_count() {
-  ask_for_queues();
   int count = 0;
   return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
 }
 
 std::string why_no_cuda_device() {
-  ask_for_queues();
   int count = 0;
   const cudaError_t status = cudaGetDeviceCount(&count);
   if (status != cudaSuccess) return cudaGetErrorString(status);
@@ -29,14 +17,12 @@ std::string why_no_cuda_device() {
 }
 
 std::string cuda_device_name(int index) {
-  ask_for_queues();
   cudaDeviceProp properties{};
   check_cuda(cudaGetDeviceProperties(&properties, index));
   return properties.name;
 }
 
 CudaDevice open_cuda_device(int index) {
-  ask_for_queues();
   try {
     check_cuda(cudaSetDevice(index));
     std::size_t free_bytes = 0, total_bytes = 0;

@@ -1,39 +1,25 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "core/grid/grid_scene.hpp"
-#include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
+#include "gpu/cuda_page_engine.hpp"
 
 namespace clearway {
 
 /// The engine `grid` on one CUDA device: per page the points sorted into regular grids, then the
 /// model searched in them group by group, a warp a pair of group and pose. All memory is taken when
 /// it is made. Source: Schauer et al. (the paper), section 3.2.
-class CudaGridEngine final : public PageEngine {
+class CudaGridEngine final : public CudaPageEngine {
  public:
   /// Uploads the scene, which outlives the engine. Throws ResourceError with CUDA's reason.
   CudaGridEngine(int device, const GridScene& scene, const SlotLayout& layout);
-  ~CudaGridEngine() override;
 
-  std::uint32_t slots() const override;
   bool pages_alike() const override { return false; }
-  std::span<std::byte> page(std::uint32_t slot) override;
-  void start(std::uint32_t slot, const PageShape& shape) override;
-  PageResult finish(std::uint32_t slot) override;
 
   /// Of all pages finished. Not during a search.
   GridStatistics statistics() const;
-
-  /// Taken on the device, without CUDA's context, and of page-locked memory on the host.
-  std::uint64_t device_bytes() const;
-  std::uint64_t pinned_bytes() const;
-
- private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
 /// Device memory that a CudaGridEngine takes beside its slots, and for each of them. The latter

@@ -3,7 +3,6 @@
 #include <cuda_runtime_api.h>
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -11,37 +10,30 @@
 
 namespace clearway {
 
-/// Owner of `count` uninitialised values in page-locked host memory, which devices copy from and to
-/// by themselves. Throws ResourceError where there is none.
-template <typename Value>
+/// Owner of uninitialised page-locked host memory, which devices copy from and to by themselves.
+/// Throws ResourceError where there is none.
 class PinnedBuffer {
  public:
-  explicit PinnedBuffer(std::size_t count) : count_(count) {
-    if (count == 0) return;
-    const cudaError_t status = cudaHostAlloc(&data_, bytes(), cudaHostAllocPortable);
+  explicit PinnedBuffer(std::size_t bytes) : bytes_(bytes) {
+    if (bytes == 0) return;
+    const cudaError_t status = cudaHostAlloc(&data_, bytes, cudaHostAllocPortable);
     if (status == cudaErrorMemoryAllocation) {
-      throw ResourceError("no " + std::to_string(bytes()) + " bytes of page-locked host memory: " +
-                          cudaGetErrorString(status) + "; take less --memory, or --device cpu");
+      throw ResourceError("no " + std::to_string(bytes) +
+                              " bytes of page-locked host memory: " + cudaGetErrorString(status),
+                          Remedy::kLessMemory);
     }
     check_cuda(status);
   }
   PinnedBuffer(PinnedBuffer&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
-  PinnedBuffer& operator=(PinnedBuffer&& other) noexcept {
-    std::swap(data_, other.data_);
-    std::swap(count_, other.count_);
-    return *this;
-  }
+      : data_(std::exchange(other.data_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
   ~PinnedBuffer() { cudaFreeHost(data_); }
 
-  Value* data() const { return static_cast<Value*>(data_); }
-  std::size_t size() const { return count_; }
-  std::size_t bytes() const { return count_ * sizeof(Value); }
-  std::span<Value> span() const { return {data(), count_}; }
+  std::byte* data() const { return static_cast<std::byte*>(data_); }
+  std::size_t bytes() const { return bytes_; }
 
  private:
   void* data_ = nullptr;
-  std::size_t count_;
+  std::size_t bytes_;
 };
 
 }  // namespace clearway

@@ -1,40 +1,25 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "core/cloud/packed_cloud.hpp"
-#include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "gpu/cuda_page_engine.hpp"
 
 namespace clearway {
 
 /// The sweep engine on one CUDA device: model field, model and motion tree stay there; a warp
 /// searches a block of points (core/sweep/sweep_block.hpp). All memory is taken when it is made.
-class CudaSweepEngine final : public PageEngine {
+class CudaSweepEngine final : public CudaPageEngine {
  public:
   /// Uploads what `sweep` refers to; nothing of the arguments is needed afterwards. Throws
   /// ResourceError with CUDA's reason.
   CudaSweepEngine(int device, const SweepRef& sweep, const PackedCloud& cloud,
                   const SlotLayout& layout);
-  ~CudaSweepEngine() override;
-
-  std::uint32_t slots() const override;
-  std::span<std::byte> page(std::uint32_t slot) override;
-  void start(std::uint32_t slot, const PageShape& shape) override;
-  PageResult finish(std::uint32_t slot) override;
 
   /// Of all pages finished. Not during a search.
   SweepStatistics statistics() const;
-
-  /// Taken on the device, without CUDA's context, and of page-locked memory on the host.
-  std::uint64_t device_bytes() const;
-  std::uint64_t pinned_bytes() const;
-
- private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
 /// Device memory that a CudaSweepEngine takes beside its slots, and for each of them.

@@ -1,77 +1,37 @@
 #pragma once
 
-#include <cstdint>
-
 #include "core/sweep/sweep_ref.hpp"
-#include "gpu/device_array.hpp"
+#include "gpu/sweep_kernels.hpp"
 
 namespace clearway {
 
-/// Everything that a SweepRef refers to, on a device.
-class SweepOnDevice {
- public:
-  explicit SweepOnDevice(const SweepRef& sweep)
-      : ref_(sweep),
-        coarse_squared_(copied_to_device(sweep.field.coarse_squared, sweep.field.coarse_nodes())),
-        coarse_nearest_(copied_to_device(
-            sweep.field.coarse_nearest,
-            sweep.field.coarse_nearest == nullptr ? 0 : sweep.field.coarse_nodes())),
-        brick_of_(copied_to_device(sweep.field.brick_of, sweep.field.coarse_nodes())),
-        distances_(copied_to_device(sweep.field.distances, brick_nodes(sweep))),
-        nearest_(copied_to_device(sweep.field.nearest, brick_nodes(sweep))),
-        points_(copied_to_device(sweep.model.points, sweep.model.size)),
-        boxes_(copied_to_device(sweep.model.boxes, sweep.model.box_count)),
-        nodes_(copied_to_device(sweep.motion.nodes, motion_nodes(sweep))),
-        inverse_poses_(copied_to_device(sweep.motion.inverse_poses, sweep.motion.pose_count)),
-        poses_(copied_to_device(sweep.motion.poses, sweep.motion.pose_count)) {
-    ref_.field.coarse_squared = coarse_squared_.data();
-    ref_.field.coarse_nearest = coarse_nearest_.data();
-    ref_.field.brick_of = brick_of_.data();
-    ref_.field.distances = distances_.data();
-    ref_.field.nearest = nearest_.data();
-    ref_.model.points = points_.data();
-    ref_.model.boxes = boxes_.data();
-    ref_.motion.nodes = nodes_.data();
-    ref_.motion.inverse_poses = inverse_poses_.data();
-    ref_.motion.poses = poses_.data();
-  }
+/// What the kernels of a sweep need besides a page.
+struct SweepOnDevice {
+  SweepRef sweep;
+  unsigned long long* tallies;  ///< zero at first
 
-  const SweepRef& ref() const { return ref_; }
-
-  std::uint64_t allocated_bytes() const {
-    return coarse_squared_.bytes() + coarse_nearest_.bytes() + brick_of_.bytes() +
-           distances_.bytes() + nearest_.bytes() + points_.bytes() + boxes_.bytes() +
-           nodes_.bytes() + inverse_poses_.bytes() + poses_.bytes();
-  }
-
-  /// That, before it is made.
-  static std::uint64_t bytes(const SweepRef& sweep) {
-    const std::uint64_t coarse =
-        sweep.field.coarse_nodes() * (sweep.field.coarse_nearest == nullptr ? 8 : 12);
-    return coarse + brick_nodes(sweep) * 8 + sweep.model.size * sizeof(Vec3) +
-           sweep.model.box_count * sizeof(Box) + motion_nodes(sweep) * sizeof(MotionNode) +
-           sweep.motion.pose_count * (sizeof(InversePose) + sizeof(Pose));
-  }
-
- private:
-  static std::size_t brick_nodes(const SweepRef& sweep) {
-    return std::size_t{sweep.field.bricks} * ModelFieldRef::kBrickNodes;
-  }
-  static std::size_t motion_nodes(const SweepRef& sweep) {
-    const std::size_t poses = sweep.motion.pose_count;
-    return poses == 0 ? 0 : 2 * poses - 1;
-  }
-
-  SweepRef ref_;
-  DeviceBuffer<float> coarse_squared_;
-  DeviceBuffer<std::uint32_t> coarse_nearest_, brick_of_;
-  DeviceBuffer<float> distances_;
-  DeviceBuffer<std::uint32_t> nearest_;
-  DeviceBuffer<Vec3> points_;
-  DeviceBuffer<Box> boxes_;
-  DeviceBuffer<MotionNode> nodes_;
-  DeviceBuffer<InversePose> inverse_poses_;
-  DeviceBuffer<Pose> poses_;
+  static constexpr std::size_t kTallies = std::size_t{kSweepCounts} * kSweepTallies;
 };
+
+/// Puts it into DeviceArrays, or counts it with DeviceArrayCount.
+template <typename Arrays>
+SweepOnDevice put_on_device(const SweepRef& sweep, Arrays& arrays) {
+  const auto move = [&](auto*& values, std::size_t count) { values = arrays.copy(values, count); };
+  SweepRef ref = sweep;
+  const std::size_t coarse = ref.field.coarse_nodes();
+  const std::size_t fine = std::size_t{ref.field.bricks} * ModelFieldRef::kBrickNodes;
+  const std::size_t poses = ref.motion.pose_count;
+  move(ref.field.coarse_squared, coarse);
+  move(ref.field.coarse_nearest, ref.field.coarse_nearest == nullptr ? 0 : coarse);
+  move(ref.field.brick_of, coarse);
+  move(ref.field.distances, fine);
+  move(ref.field.nearest, fine);
+  move(ref.model.points, ref.model.size);
+  move(ref.model.boxes, ref.model.box_count);
+  move(ref.motion.nodes, poses == 0 ? 0 : 2 * poses - 1);
+  move(ref.motion.inverse_poses, poses);
+  move(ref.motion.poses, poses);
+  return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice::kTallies)};
+}
 
 }  // namespace clearway

@@ -1,7 +1,5 @@
 #include "search/devices.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <exception>
 #include <optional>
@@ -9,6 +7,7 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "search/check_query.hpp"
 
 namespace clearway {
 namespace {
@@ -26,13 +25,9 @@ std::string name_of(const CudaDevice& device) {
          format_size(device.free_bytes) + " free)";
 }
 
-void refuse_cuda_for_kdtree() {
-  throw UsageError("--device cuda: engine kdtree runs on the CPU alone; take --engine sweep");
-}
-
 #ifdef CLEARWAY_CUDA
 
-std::uint64_t wanted_bytes_of(const EngineOptions& options) {
+std::uint64_t wanted_bytes_of(const SearchOptions& options) {
   constexpr std::uint64_t kUsualBytes = std::uint64_t{2} << 30;
   return options.device_memory_bytes > 0 ? options.device_memory_bytes : kUsualBytes;
 }
@@ -42,7 +37,7 @@ std::vector<CudaDevice> open_named(const std::vector<int>& gpus) {
   std::vector<CudaDevice> devices;
   for (const int gpu : gpus) {
     if (gpu < 0 || gpu >= count) {
-      throw ResourceError("--gpus " + std::to_string(gpu) + ": this machine has " +
+      throw ResourceError("GPU " + std::to_string(gpu) + ": this machine has " +
                           std::to_string(count) + " that CUDA can use, numbered from 0");
     }
     devices.push_back(open_cuda_device(gpu));
@@ -50,29 +45,28 @@ std::vector<CudaDevice> open_named(const std::vector<int>& gpus) {
   return devices;
 }
 
-DeviceChoice choose_cuda(const EngineOptions& options) {
+DeviceChoice choose_cuda(const SearchOptions& options, const MessageLog& log) {
   if (const std::string why = why_no_cuda_device(); !why.empty()) {
-    throw ResourceError((options.gpus.empty() ? "--device cuda: " : "--gpus: ") + why +
-                        "; take --device cpu, or run where nvidia-smi lists a GPU");
+    throw ResourceError("device cuda: " + why, Remedy::kCpuDevice);
   }
   const std::uint64_t wanted = wanted_bytes_of(options);
   if (!options.gpus.empty()) return choice_of(open_named(options.gpus), wanted);
-  return choice_of({one_with_room(cuda_device_count(), open_cuda_device, wanted)}, wanted);
+  return choice_of({one_with_room(cuda_device_count(), open_cuda_device, wanted, log)}, wanted);
 }
 
-DeviceChoice choose_automatically(const EngineOptions& options) {
-  return automatic_choice(cuda_device_count(), open_cuda_device, wanted_bytes_of(options));
+DeviceChoice choose_automatically(const SearchOptions& options, const MessageLog& log) {
+  return automatic_choice(cuda_device_count(), open_cuda_device, wanted_bytes_of(options), log);
 }
 
 #else
 
-DeviceChoice choose_cuda(const EngineOptions&) {
+DeviceChoice choose_cuda(const SearchOptions&, const MessageLog&) {
   throw ResourceError(
-      "--device cuda: this build has no CUDA engine; take --device cpu, or build Clearway where "
-      "nvcc is found and run it where nvidia-smi lists a GPU");
+      "device cuda: this build has no CUDA engine (Clearway has one where it is built with nvcc)",
+      Remedy::kCpuDevice);
 }
 
-DeviceChoice choose_automatically(const EngineOptions&) { return {}; }
+DeviceChoice choose_automatically(const SearchOptions&, const MessageLog&) { return {}; }
 
 #endif
 
@@ -93,7 +87,8 @@ DeviceChoice choice_of(const std::vector<CudaDevice>& devices, std::uint64_t wan
   return choice;
 }
 
-CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted_bytes) {
+CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted_bytes,
+                         const MessageLog& log) {
   std::optional<CudaDevice> best;
   std::exception_ptr last;
   for (int gpu = 0; gpu < count; ++gpu) {
@@ -102,7 +97,7 @@ CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted
       if (allowance(device, wanted_bytes) == wanted_bytes) return device;
       if (!best || device.free_bytes > best->free_bytes) best = device;
     } catch (const ResourceError& error) {
-      spdlog::info("GPU {} is passed over: {}", gpu, error.what());
+      log.note("GPU " + std::to_string(gpu) + " is passed over: " + error.what());
       last = std::current_exception();
     }
   }
@@ -110,31 +105,28 @@ CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted
   return open(best->index);  // the last one asked is the current one
 }
 
-DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t wanted_bytes) {
+DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t wanted_bytes,
+                              const MessageLog& log) {
   if (count == 0) return {};
   try {
-    const CudaDevice device = one_with_room(count, open, wanted_bytes);
+    const CudaDevice device = one_with_room(count, open, wanted_bytes, log);
     if (device.free_bytes >= kLeastRoom) {
       DeviceChoice choice = choice_of({device}, wanted_bytes);
       choice.fallback_allowed = true;
       return choice;
     }
-    spdlog::info("the CPU is taken: {} has too little", name_of(device));
+    log.note("the CPU is taken: " + name_of(device) + " has too little");
   } catch (const ResourceError& error) {
-    spdlog::info("the CPU is taken: {}", error.what());
+    log.note(std::string("the CPU is taken: ") + error.what());
   }
   return {};
 }
 
-DeviceChoice choose_device(const EngineOptions& options) {
-  const bool cuda = options.device == "cuda" || !options.gpus.empty();
-  if (options.engine == "kdtree") {
-    if (cuda) refuse_cuda_for_kdtree();
-    return {};
-  }
-  if (options.device == "cpu") return {};
+DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log) {
+  if (chosen_engine(options) == Engine::kKdtree || options.device == Device::kCpu) return {};
   const Stopwatch clock;
-  DeviceChoice choice = cuda ? choose_cuda(options) : choose_automatically(options);
+  const bool cuda = options.device == Device::kCuda || !options.gpus.empty();
+  DeviceChoice choice = cuda ? choose_cuda(options, log) : choose_automatically(options, log);
   if (choice.is_cuda()) choice.context_seconds = clock.seconds();
   return choice;
 }

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "clearway/search.hpp"
+#include "core/util/message_log.hpp"
 #include "gpu/devices.hpp"
-#include "search/engines.hpp"
 
 namespace clearway {
 
@@ -26,7 +27,7 @@ struct DeviceChoice {
 /// is wanted free, or else the one with the most where that is enough, and the CPU otherwise;
 /// "cuda" all that are named, or the same one. Throws UsageError where the engine has no such form,
 /// ResourceError, saying what to do, where CUDA is asked for and not there.
-DeviceChoice choose_device(const EngineOptions& options);
+DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log);
 
 // What it goes by, without CUDA:
 
@@ -39,9 +40,11 @@ DeviceChoice choice_of(const std::vector<CudaDevice>& devices, std::uint64_t wan
 /// The first of `count` GPUs, above 0, with all that is wanted free, or else the one with the most;
 /// it is the last one opened. One that cannot be used is passed over; throws ResourceError of the
 /// last where that is all of them.
-CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted_bytes);
+CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted_bytes,
+                         const MessageLog& log);
 
 /// That one, or the CPU where it has too little, or there is none that can be used.
-DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t wanted_bytes);
+DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t wanted_bytes,
+                              const MessageLog& log);
 
 }  // namespace clearway

@@ -16,7 +16,7 @@ std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
          query.poses.size() * sizeof(Pose);
 }
 
-std::uint64_t result_bytes(const StoreReader& store, const Query& query) {
+std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) {
   const std::uint64_t a_slot = (query.first_pose ? sizeof(std::uint32_t) : 0) +
                                (query.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
   return store.entry_count() / 8 + a_slot * store.entry_count();
@@ -27,22 +27,22 @@ void check_memory(std::uint64_t needed, std::uint64_t allowed) {
 }
 
 void refuse_memory(std::uint64_t needed, std::uint64_t allowed) {
-  throw ResourceError("--memory " + format_size(allowed) + " is too little: this run needs " +
-                      format_size(needed) + " (--memory " + std::to_string(needed) +
-                      ") beside the mapped store");
+  throw ResourceError(format_size(allowed) + " of memory is too little: this search needs " +
+                          format_size(needed) + " beside the mapped store",
+                      Remedy::kMoreMemory, static_cast<double>(needed));
 }
 
 void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
                           const std::string& short_device) {
-  const std::string need = ": this run needs " + format_size(needed);
+  const std::string need = "this search needs " + format_size(needed);
   if (!short_device.empty()) {
-    throw ResourceError(short_device + " has too little" + need + ", and may take " +
-                        format_size(allowed) +
-                        " there; nvidia-smi lists what else uses it: take others with --gpus, or "
-                        "--device cpu");
+    throw ResourceError(short_device + " has too little: " + need + ", and may take " +
+                            format_size(allowed) + " there",
+                        Remedy::kOtherGpu);
   }
-  throw ResourceError("--device-memory " + format_size(allowed) + " is too little" + need +
-                      " (--device-memory " + std::to_string(needed) + ") on each device");
+  throw ResourceError(
+      format_size(allowed) + " of device memory is too little: " + need + " on each device",
+      Remedy::kMoreDeviceMemory, static_cast<double>(needed));
 }
 
 }  // namespace clearway

@@ -6,7 +6,7 @@
 #include "clearway/query.hpp"
 #include "io/store/store_reader.hpp"
 
-/// What a run takes of --memory beside the mapped store.
+/// What a run takes of the memory budget beside the mapped store.
 namespace clearway {
 
 /// The program itself: its libraries' data, stacks of threads, buffers of files.
@@ -16,14 +16,14 @@ std::uint64_t program_bytes(int threads);
 std::uint64_t input_bytes(const StoreReader& store, const Query& query);
 
 /// Hits, first poses and clearances of all points.
-std::uint64_t result_bytes(const StoreReader& store, const Query& query);
+std::uint64_t search_result_bytes(const StoreReader& store, const Query& query);
 
 /// Throws ResourceError naming what is needed where that is more than `allowed`.
 void check_memory(std::uint64_t needed, std::uint64_t allowed);
 
 /// Throws ResourceError that says what to do.
 [[noreturn]] void refuse_memory(std::uint64_t needed, std::uint64_t allowed);
-/// short_device: the device whose free memory, not --device-memory, is the bound; empty: none.
+/// short_device: the device whose free memory, not the budget, is the bound; empty: none.
 [[noreturn]] void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
                                        const std::string& short_device);
 

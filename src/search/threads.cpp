@@ -19,7 +19,8 @@ void check_threads(int threads) {
     const std::string reason = error.what();
     all_started.count_down();
     throw ResourceError(std::to_string(threads) + " threads cannot be started (" + reason +
-                        "); give fewer --threads, or raise the limit of processes or memory");
+                            "): the limit of processes or memory is reached",
+                        Remedy::kFewerThreads);
   }
   all_started.count_down();
 }

@@ -7,7 +7,7 @@ namespace {
 
 class Planner {
  public:
-  Planner(const PackedCloud& cloud, const SweepFilter& filter) : cloud_(cloud), filter_(filter) {}
+  Planner(const PackedCloud& cloud, const PoseReach& reach) : cloud_(cloud), reach_(reach) {}
 
   std::vector<PlannedCell> plan() {
     const std::vector<std::uint32_t> root{0};
@@ -19,7 +19,7 @@ class Planner {
   void descend(std::uint32_t index, std::span<const std::uint32_t> nodes) {
     const TreeNode& node = cloud_.tree()[index];
     std::vector<std::uint32_t> open;
-    filter_.narrow(position_box(cloud_.quantisation(), node.box), nodes, open, statistics_);
+    reach_.narrow(position_box(cloud_.quantisation(), node.box), nodes, open);
     if (open.empty()) return;
     if (node.right == 0) {
       cells_.push_back({node.first_cell, std::move(open)});
@@ -30,17 +30,16 @@ class Planner {
   }
 
   const PackedCloud& cloud_;
-  const SweepFilter& filter_;
+  const PoseReach& reach_;
   std::vector<PlannedCell> cells_;
-  SweepStatistics statistics_;
 };
 
 }  // namespace
 
-std::vector<PlannedCell> plan(const PackedCloud& cloud, const SweepFilter& filter) {
-  const MotionTree& motion = filter.motion();
+std::vector<PlannedCell> plan(const PackedCloud& cloud, const PoseReach& reach) {
+  const MotionTree& motion = reach.motion();
   if (cloud.tree().empty() || motion.nodes().empty()) return {};
-  std::vector<PlannedCell> cells = Planner(cloud, filter).plan();
+  std::vector<PlannedCell> cells = Planner(cloud, reach).plan();
   const auto first_pose = [&motion](const PlannedCell& cell) {
     return motion.nodes()[cell.nodes.front()].first;  // nodes are in the order of their poses
   };

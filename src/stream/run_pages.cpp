@@ -1,6 +1,5 @@
 #include "stream/run_pages.hpp"
 
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "core/util/tsan_annotations.hpp"
+#include "io/system/thread_limit.hpp"
 #include "stream/collect_page.hpp"
 #include "stream/stage_page.hpp"
 
@@ -183,8 +183,7 @@ SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> ce
                       ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0)};
   if (journal != nullptr) journal->restore(answer);
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
+  const ThreadLimit limit(threads);
   progress.begin("search", points_of(cloud, cells), "points");
   const Clock::time_point begin = Clock::now();
   Pages shared{cloud, cells, pages, progress, answer, journal};

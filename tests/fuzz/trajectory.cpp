@@ -1,5 +1,5 @@
 // Any bytes, read as a trajectory; the first byte chooses the format.
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 #include <cmath>
 #include <cstdlib>

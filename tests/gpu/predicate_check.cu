@@ -1,5 +1,5 @@
 #include "gpu/cuda_check.hpp"
-#include "gpu/device_buffer.hpp"
+#include "gpu/device_arrays.hpp"
 #include "predicate_check.hpp"
 
 namespace clearway {
@@ -17,14 +17,13 @@ std::vector<PredicateAnswer> decide_on_device(const std::vector<PredicateCase>& 
   constexpr unsigned kThreads = 256;
   std::vector<PredicateAnswer> answers(cases.size());
   if (cases.empty()) return answers;
-  const DeviceBuffer<PredicateCase> in(cases.size());
-  const DeviceBuffer<PredicateAnswer> out(cases.size());
-  check_cuda(cudaMemcpy(in.data(), cases.data(), cases.size() * sizeof(PredicateCase),
-                        cudaMemcpyHostToDevice));
+  DeviceArrays arrays;
+  const PredicateCase* in = arrays.copy(cases.data(), cases.size());
+  auto* out = arrays.zeros<PredicateAnswer>(cases.size());
   const auto blocks = static_cast<unsigned>((cases.size() + kThreads - 1) / kThreads);
-  decide_cases_kernel<<<blocks, kThreads>>>(in.data(), out.data(), cases.size());
+  decide_cases_kernel<<<blocks, kThreads>>>(in, out, cases.size());
   check_cuda(cudaGetLastError());
-  check_cuda(cudaMemcpy(answers.data(), out.data(), answers.size() * sizeof(PredicateAnswer),
+  check_cuda(cudaMemcpy(answers.data(), out, answers.size() * sizeof(PredicateAnswer),
                         cudaMemcpyDeviceToHost));
   return answers;
 }

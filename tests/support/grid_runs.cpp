@@ -58,7 +58,8 @@ HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run
     StageTimes times;
     const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page);
     PageEngine* const engines[] = {&engine};
-    return clearway::run_pages(cloud, cells, pages, engines, query, 3, progress, times).hits;
+    return clearway::run_pages(cloud, cells, pages, engines, query, run.threads, progress, times)
+        .hits;
   });
 }
 

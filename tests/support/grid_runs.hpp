@@ -16,6 +16,7 @@ struct GridRun {
   std::uint32_t slots = 2;
   std::uint32_t cells_a_page = 3;
   std::uint32_t work_list = 1024;
+  int threads = 3;
 };
 
 /// The engine `grid` on the CPU over a whole cloud. Every cell is searched, with nodes of the

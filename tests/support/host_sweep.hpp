@@ -27,15 +27,12 @@ class HostSweep final : public PageEngine {
   PageResult finish(std::uint32_t slot) override { return results_[slot]; }
 
   void start(std::uint32_t slot, const PageShape& shape) override {
-    const std::span hits = pool_.hits(slot);
-    const std::span first_poses = pool_.first_poses(slot);
-    const std::span clearances = pool_.clearances(slot);
     SweepPage job{.sweep = sweep_,
                   .page = {pool_.page(slot).data(), shape},
                   .quantisation = quantisation_,
-                  .hits = hits.data(),
-                  .first_poses = first_poses.empty() ? nullptr : first_poses.data(),
-                  .clearances = clearances.empty() ? nullptr : clearances.data(),
+                  .hits = pool_.hits(slot).data(),
+                  .first_poses = pool_.first_poses(slot).data(),
+                  .clearances = pool_.clearances(slot).data(),
                   .work = {}};
     const std::uint32_t blocks = job.block_count();
     std::vector<std::uint32_t> nodes(2 * std::size_t{entries_});
@@ -45,10 +42,7 @@ class HostSweep final : public PageEngine {
     job.work = {nodes.data(), entries.data(), walks.data(), items.data(), &counts,
                 2 * entries_, entries_,       entries_,     entries_};
     run(job);
-    const std::size_t points = std::size_t{blocks} * kBlockPoints;
-    results_[slot] = {.hits = hits.first(blocks),
-                      .first_poses = first_poses.first(first_poses.empty() ? 0 : points),
-                      .clearances = clearances.first(clearances.empty() ? 0 : points)};
+    results_[slot] = pool_.result(slot, shape.cells);
   }
 
  private:

@@ -41,10 +41,17 @@ inline std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Makes these the bytes of the file. One that is there is written in place: a file that was cut to
+/// nothing goes to the disk as soon as it is closed, which takes hundreds of times as long.
 inline void put_bytes(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream out(path, std::ios::binary);
+  const bool in_place = std::filesystem::is_regular_file(path);
+  const auto mode = std::ios::binary | std::ios::out | (in_place ? std::ios::in : std::ios::out);
+  std::ofstream out(path, mode);
   out << bytes;
   if (!out.flush()) throw std::runtime_error("cannot write " + path.string());
+  if (in_place && std::filesystem::file_size(path) > bytes.size()) {
+    std::filesystem::resize_file(path, bytes.size());
+  }
 }
 
 /// A header of a large environment, far from the origin, with unlike axes.

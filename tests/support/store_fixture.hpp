@@ -57,7 +57,7 @@ inline ConversionOptions conversion_of(std::vector<std::filesystem::path> inputs
 
 inline ConversionReport convert_quietly(const ConversionOptions& options) {
   NoProgress progress;
-  return convert(options, progress);
+  return convert_scans(options, progress);
 }
 
 /// The message with which the conversion is refused; empty where it is not.

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 /// One function a subcommand: adds its options to `program` and sets the callback that runs it. A
 /// callback sets `exit_code` where success is not 0 (compare, verify) and throws otherwise.
@@ -13,7 +15,6 @@ void add_compare(CLI::App& program, int& exit_code);
 void add_info(CLI::App& program);
 void add_verify(CLI::App& program, int& exit_code);
 void add_scene(CLI::App& program);
-void add_bench(CLI::App& program);
 void add_trajectory(CLI::App& program);
 
 }  // namespace clearway::tool

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
@@ -30,7 +31,7 @@ void add_compare(CLI::App& program, int& exit_code) {
   CLI::App* command =
       program.add_subcommand("compare", "Say how the colliding points of two results differ");
   command->add_option("A", options->a, "Result of clearway run")->type_name("FILE")->required();
-  command->add_option("B", options->b, "Another one about the same environment")
+  command->add_option("B", options->b, "Another result about the same environment")
       ->type_name("FILE")
       ->required();
   command
@@ -40,13 +41,13 @@ void add_compare(CLI::App& program, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
-      "Prints how many points are in both, only in A, only in B and, where both have first poses,\n"
-      "how many of those differ, likewise clearances; and what was asked differently (model, "
-      "trajectory, radius in\n"
-      "metres).\n"
-      "Exit code 0: the same points, first poses and clearances, whatever was asked;\n"
-      "1: they differ; 3: a file is not a result, or the results are about different\n"
-      "environments, whose point indices cannot be compared.\n"
+      "Prints how many colliding points are only in A, only in B and in both. Where both "
+      "results\n"
+      "have first poses or clearances, it prints how many of them differ. It also prints what\n"
+      "differs in the queries: model, trajectory, radius in metres.\n"
+      "Exit code 0: the same points, first poses and clearances, even of different queries.\n"
+      "Exit code 1: they differ.\n"
+      "Exit code 3: a file is not a result, or the results are about different environments.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");
   command->callback([options, &exit_code] { exit_code = run_compare(*options) ? 0 : 1; });
 }

@@ -53,8 +53,20 @@ void ConsoleProgress::begin(std::string_view stage, std::uint64_t total, std::st
 void ConsoleProgress::advance(std::uint64_t units) {
   const std::lock_guard lock(mutex_);
   done_ += units;
+  draw_when_due();
+}
+
+void ConsoleProgress::draw_when_due() {
   const auto now = Clock::now();
   if (terminal_ && now - drawn_ >= kRedraw) draw(now);
+}
+
+void ConsoleProgress::update(const ProgressUpdate& update) {
+  if (update.finished) return end();
+  if (update.done == 0) return begin(update.stage, update.total, update.unit);
+  const std::lock_guard lock(mutex_);
+  done_ = update.done;
+  draw_when_due();
 }
 
 void ConsoleProgress::end() {
@@ -80,6 +92,17 @@ void ConsoleProgress::draw(Clock::time_point now) {
     line += " " + unit_ + ", " + short_number(rate) + " " + unit_ + "/s";
   }
   std::fprintf(stderr, "\r%s\033[K", line.c_str());
+}
+
+void log_message(const Message& message) {
+  const bool warning = message.severity == Message::Severity::kWarning;
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", message.text);
+}
+
+void watch_call(CallOptions& call, ConsoleProgress& progress) {
+  call.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
+  call.message = log_message;
+  call.stop = &stop_flag();
 }
 
 }  // namespace clearway::tool

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <string>
 
+#include "clearway/progress.hpp"
 #include "core/util/progress.hpp"
 
 namespace clearway::tool {
@@ -20,9 +21,12 @@ class ConsoleProgress final : public Progress {
   void advance(std::uint64_t units) override;
   void end() override;
   bool stop_requested() const override;
+  /// Of a library call that tells how far it is by callbacks.
+  void update(const ProgressUpdate& update);
 
  private:
   using Clock = std::chrono::steady_clock;
+  void draw_when_due();
   void draw(Clock::time_point now);
 
   bool terminal_;
@@ -31,5 +35,11 @@ class ConsoleProgress final : public Progress {
   std::uint64_t total_ = 0, done_ = 0;
   Clock::time_point start_, drawn_;
 };
+
+/// Logs a note or a warning of the library.
+void log_message(const Message& message);
+
+/// Progress and messages of a library call go to the terminal; it stops when a signal asks to.
+void watch_call(CallOptions& call, ConsoleProgress& progress);
 
 }  // namespace clearway::tool

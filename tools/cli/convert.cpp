@@ -1,7 +1,8 @@
-#include "io/convert/convert.hpp"
+#include "clearway/convert.hpp"
 
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
@@ -15,11 +16,12 @@
 namespace clearway::tool {
 namespace {
 
-struct ConvertOptions {
-  ConversionOptions conversion;
+struct ConvertArguments {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  ConvertOptions conversion;
   std::string layout = "adaptive";
   double scale = 0;
-  bool resume = false;
 };
 
 std::optional<double> regular_size_of(const std::string& layout) {
@@ -33,18 +35,17 @@ std::optional<double> regular_size_of(const std::string& layout) {
   return size;
 }
 
-void log_report(const ConversionOptions& options, const ConversionReport& report) {
-  for (const std::string& remark : report.remarks) spdlog::warn("{}", remark);
-  if (report.non_finite_points > 0) {
-    spdlog::warn("{} points with NaN or infinite coordinates left out (--strict refuses them)",
-                 format_count(report.non_finite_points));
+void log_report(const ConvertArguments& options, const ConvertReport& report) {
+  if (report.was_finished) {
+    spdlog::info("{}: is the store of these inputs already; nothing to do",
+                 options.output.string());
+    return;
   }
   spdlog::info("{}: {} points in {} cells of {}, {} ({:.2f} bytes a point)",
-               options.output.string(), format_count(report.metadata.point_count),
-               format_count(report.cells), format_count(options.cell_points),
-               format_size(report.output_bytes),
+               options.output.string(), format_count(report.points), format_count(report.cells),
+               format_count(options.conversion.cell_points), format_size(report.output_bytes),
                static_cast<double>(report.output_bytes) /
-                   static_cast<double>(std::max<std::uint64_t>(1, report.metadata.point_count)));
+                   static_cast<double>(std::max<std::uint64_t>(1, report.points)));
   if (report.largest_change > 0) {
     spdlog::info("coordinates changed by at most {:.3g} (rounded to the scale)",
                  report.largest_change);
@@ -55,40 +56,37 @@ void log_report(const ConversionOptions& options, const ConversionReport& report
       report.confirm_seconds, format_size(report.temporary_bytes));
 }
 
-void run_convert(ConvertOptions& options) {
-  ConversionOptions& conversion = options.conversion;
+void run_convert(ConvertArguments& options) {
+  ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
   ConsoleProgress progress;
-  if (options.resume && is_converted(conversion, progress)) {
-    spdlog::info("{}: is the store of these inputs already; nothing to do",
-                 conversion.output.string());
-    return;
-  }
-  log_report(conversion, convert(conversion, progress));
+  watch_call(conversion, progress);
+  log_report(options, convert(options.inputs, options.output, conversion));
 }
 
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  auto options = std::make_shared<ConvertOptions>();
-  ConversionOptions& conversion = options->conversion;
+  auto options = std::make_shared<ConvertArguments>();
+  ConvertOptions& conversion = options->conversion;
   CLI::App* command =
       program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");
   command
-      ->add_option("INPUT", conversion.inputs,
+      ->add_option("INPUT", options->inputs,
                    "Scans (LAS, PLY, XYZ text), folders of scans, or - for LAS on standard input")
       ->required();
-  command->add_option("-o,--output", conversion.output, "The store, an HDF5 file")
+  command->add_option("-o,--output", options->output, "The store, an HDF5 file")
       ->type_name("FILE")
       ->required();
   command
       ->add_option("--scale", options->scale,
-                   "Step of the stored integers in metres (default: as the input has it, else "
-                   "the finest power of ten from 1e-6 that fits)")
+                   "Step of the stored integers in metres (default: that of the input, else the "
+                   "finest power "
+                   "of ten >= 1e-6 that fits)")
       ->type_name("METRES")
       ->check(positive_length());
-  command->add_option("--cell-points", conversion.cell_points, "Points a cell, 64 to 1048576")
+  command->add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")
       ->type_name("N")
       ->capture_default_str();
   command
@@ -98,23 +96,22 @@ void add_convert(CLI::App& program) {
   add_memory_option(*command, conversion.memory_bytes);
   add_threads_option(*command, conversion.threads);
   command->add_flag("--ignore-crs", conversion.ignore_crs,
-                    "Take coordinates in degrees, or inputs in different units, as they are");
+                    "Accept coordinates in degrees, and inputs in different units, as they are");
   command->add_flag("--strict", conversion.strict, "Refuse points that are not finite");
   CLI::Option* force =
       command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
   command
-      ->add_flag("--resume", options->resume,
-                 "Leave the store of these inputs alone where it is there already; one that was "
-                 "interrupted or killed begins anew")
+      ->add_flag(
+          "--resume", conversion.resume,
+          "Leave a finished store of these inputs as it is; an interrupted conversion starts again")
       ->excludes(force);
   command->footer(
-      "Needs temporary disk beside the output: 20 bytes a point, 32 from standard input.\n"
-      "LAZ and other formats by piping LAS: pdal translate in.laz STDOUT --writer las | "
-      "clearway convert - -o site.h5\n"
+      "Needs temporary disk space beside the output: 20 bytes a point, 32 from standard input.\n"
+      "For LAZ and other formats, pipe LAS:\n"
+      "  pdal translate in.laz STDOUT --writer las | clearway convert - -o site.h5\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
-    run_stoppable(options->conversion.output,
-                  "the same command starts it again, from the beginning",
+    run_stoppable(options->output, "the same command starts it again, from the beginning",
                   [&] { run_convert(*options); });
   });
 }

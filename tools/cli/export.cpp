@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
@@ -53,14 +54,15 @@ void add_export(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->footer(
-      "Formats, coordinates in the environment's unit (metres):\n"
-      "  .las  the source's own integers, scale, offset and CRS; first_pose as extra bytes\n"
+      "Formats, with coordinates in the environment's unit, normally metres:\n"
+      "  .las  integers, scale, offset and CRS of the scans; first_pose as extra bytes\n"
       "  .ply  binary little-endian, double x y z, uint first_pose\n"
       "  .xyz  text: x y z\n"
       "  .csv  text with a header: source,x,y,z,first_pose\n"
       "        with --what clearance: source,distance,pose\n"
-      "first_pose (0-based) where the result has it; source is the point's index in the order of\n"
-      "the input scans. Text has as many digits as give back each coordinate exactly.\n"
+      "first_pose counts from 0 and is there where the result has it. source is the point's "
+      "index\n"
+      "in the order of the scans. Text has enough digits to give back each coordinate exactly.\n"
       "Example: clearway export out.h5 -o colliding.las");
   command->callback(
       [options] { run_stoppable(options->output, kStartsAgain, [&] { export_rows(*options); }); });

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -140,7 +141,9 @@ void add_info(CLI::App& program) {
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer("Lengths in the environment's unit (metres).\nExample: clearway info site.h5");
+  command->footer(
+      "Lengths are in the environment's unit, normally metres.\n"
+      "Example: clearway info site.h5");
   command->callback([options] { run_info(*options); });
 }
 

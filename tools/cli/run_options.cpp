@@ -1,5 +1,7 @@
 #include "cli/run_options.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include "cli/options.hpp"
 
 namespace clearway::tool {
@@ -29,24 +31,26 @@ void add_inputs(CLI::App& command, RunOptions& options) {
 
 void add_query(CLI::App& command, RunOptions& options) {
   command.add_flag("--first-pose", options.query.first_pose,
-                   "Also the first pose (0-based) that touches each colliding point");
+                   "Also report the first pose that touches each colliding point, counted from 0");
   command
-      .add_option("--clearance", options.query.clearance,
-                  "Also distance and pose of the model's nearest approach to every point that it "
-                  "comes closer to than this, for example 0.5; engine sweep only")
+      .add_option(
+          "--clearance", options.query.clearance,
+          "Also report the least distance, and its pose, of every point closer than this, for "
+          "example 0.5; engine sweep only")
       ->type_name("METRES")
       ->check(positive_length());
   command.add_flag("--between-poses", options.query.between_poses,
                    "Move every model point on a straight segment from each pose to the next");
   command
-      .add_option("--tolerance", options.query.tolerance,
-                  "Faster: points whose distance differs from the radius by at most this may be "
-                  "answered wrongly, for example 0.001; below the radius, engine sweep only")
+      .add_option(
+          "--tolerance", options.query.tolerance,
+          "Faster: may decide wrongly for points within this distance of the radius, for example "
+          "0.001; engine sweep only")
       ->type_name("METRES")
       ->check(positive_length());
 }
 
-void add_device(CLI::App& command, EngineOptions& options) {
+void add_device(CLI::App& command, SearchOptions& options) {
   command
       .add_option("--device", options.device,
                   "cpu or cuda; auto takes a GPU where the engine and the machine have one")
@@ -58,15 +62,23 @@ void add_device(CLI::App& command, EngineOptions& options) {
       ->delimiter(',')
       ->type_name("N,...")
       ->check(CLI::Range(0, 1023));
-  add_size_option(
-      command, "--device-memory", options.device_memory_bytes,
-      "Bound of the memory of each GPU, without CUDA's own (default: 2G, or what is free)");
+  add_size_option(command, "--device-memory", options.device_memory_bytes,
+                  "Memory bound of each GPU, without CUDA's own (default: 2G, or what is free)");
 }
 
-void add_engine(CLI::App& command, EngineOptions& options) {
-  command.add_option("--engine", options.engine, "sweep, grid or kdtree; auto takes sweep")
+void add_engine(CLI::App& command, SearchOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--engine",
+          [&options](const std::string& name) {
+            options.engine = name == "sweep"    ? Engine::kSweep
+                             : name == "grid"   ? Engine::kGrid
+                             : name == "kdtree" ? Engine::kKdtree
+                                                : Engine::kAuto;
+          },
+          "sweep, grid or kdtree; auto takes sweep")
       ->check(CLI::IsMember({"auto", "sweep", "grid", "kdtree"}))
-      ->capture_default_str();
+      ->default_str("auto");
   add_device(command, options);
   add_threads_option(command, options.threads);
   add_memory_option(command, options.memory_bytes);
@@ -84,7 +96,8 @@ void add_engine(CLI::App& command, EngineOptions& options) {
       .add_option_function<std::string>(
           "--precision",
           [&options](const std::string& name) { options.float_precision = name == "float"; },
-          "exact, or float: engine grid decides in float alone, for comparison (default: exact)")
+          "exact, or float for engine grid: single precision alone, for comparison (default: "
+          "exact)")
       ->type_name("PRECISION")
       ->check(CLI::IsMember({"exact", "float"}));
 }
@@ -94,17 +107,19 @@ void add_engine(CLI::App& command, EngineOptions& options) {
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);
   add_query(command, options);
-  add_engine(command, options.engine);
-  CLI::Option* force = command.add_flag(
-      "--force", options.force, "Overwrite an existing result; drop the journal of an earlier run");
+  add_engine(command, options.search);
+  CLI::Option* force =
+      command.add_flag("--force", options.search.overwrite,
+                       "Overwrite an existing result; remove the journal of an earlier run");
   command
-      .add_flag("--resume", options.resume,
+      .add_flag("--resume", options.search.resume,
                 "Go on with a run of the same query that was interrupted or killed")
       ->excludes(force);
   command
-      .add_option("--journal-interval", options.journal_interval_seconds,
-                  "Seconds between two syncs of the journal to the disk: what a crash of the "
-                  "system can cost")
+      .add_option(
+          "--journal-interval", options.search.journal_interval_seconds,
+          "Seconds between two syncs of the journal to the disk; a system crash can cost that much "
+          "work")
       ->type_name("SECONDS")
       ->check(seconds_up_to(3600))
       ->capture_default_str();

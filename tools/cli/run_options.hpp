@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "io/trajectory/trajectory.hpp"
-#include "search/engines.hpp"
+#include "clearway/search.hpp"
+#include "clearway/trajectory.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace clearway::tool {
 
@@ -12,11 +15,8 @@ namespace clearway::tool {
 struct RunOptions {
   std::filesystem::path environment, model, trajectory, output;
   QueryParameters query;
-  EngineOptions engine;
+  SearchOptions search;
   TrajectoryOptions trajectory_options;
-  bool force = false;
-  bool resume = false;
-  double journal_interval_seconds = 5;
   bool json = false;
 };
 

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -108,8 +109,8 @@ void make_scene_files(const SceneOptions& options) {
 void add_scene(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "scene",
-      "Makes a synthetic scene like those of the paper: environment.las, model.ply and\n"
-      "trajectory.txt, in metres with z up; the same bytes for the same seed.");
+      "Make a synthetic scene like those of the paper: environment.las, model.ply and\n"
+      "trajectory.txt. In metres, z up. The same seed gives the same bytes.");
   const auto options = std::make_shared<SceneOptions>();
   command->add_option("kind", options->kind, "Which scene, see below")
       ->required()

@@ -44,7 +44,7 @@ bool is_ignored(int signal) {
 }
 
 void stop_on_signals(const std::string& advice) {
-  last_words = "error: interrupted before what was in flight was finished; " + advice + "\n";
+  last_words = "error: interrupted before the work in flight was finished; " + advice + "\n";
   install(SIGALRM, end_now);
   for (const int signal : {SIGINT, SIGTERM}) {
     if (!is_ignored(signal)) install(signal, ask_to_stop);
@@ -52,6 +52,8 @@ void stop_on_signals(const std::string& advice) {
 }
 
 }  // namespace
+
+const std::atomic<bool>& stop_flag() { return stop; }
 
 bool stop_requested() { return stop.load(std::memory_order_relaxed); }
 

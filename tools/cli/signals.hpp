@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -7,6 +8,8 @@
 namespace clearway::tool {
 
 bool stop_requested();
+/// What it tells.
+const std::atomic<bool>& stop_flag();
 
 /// The work of a command on `output`. SIGINT and SIGTERM ask it to stop (stop_requested()); where
 /// it then throws Interrupted, the message names the output and gives `advice`. Where it has not

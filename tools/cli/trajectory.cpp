@@ -1,8 +1,9 @@
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clearway/error.hpp"
+#include "clearway/model.hpp"
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
 #include "cli/options.hpp"
@@ -20,7 +22,6 @@
 #include "core/trajectory/thin_trajectory.hpp"
 #include "core/trajectory/trajectory_motion.hpp"
 #include "core/util/format.hpp"
-#include "io/formats/model.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/trajectory_writer.hpp"
 
@@ -126,18 +127,19 @@ void add_trajectory(CLI::App& program) {
   CLI::App* command = program.add_subcommand("trajectory", "Make a trajectory denser or sparser");
   command->require_subcommand(1);
   CLI::App* resampling = command->add_subcommand(
-      "resample", "Add poses on a smooth curve, so that none is far from the next; keep all given");
-  add_change(*resampling, "The farthest that a model point may move from one pose to the next",
+      "resample", "Add poses on a smooth curve until all steps are small; the given poses stay");
+  add_change(*resampling, "The most that a model point may move from one pose to the next",
              resample);
   resampling->footer(
       "Example: clearway trajectory resample path.txt -o dense.txt --max-motion 0.05 --model "
       "car.ply");
-  CLI::App* thinning = command->add_subcommand(
-      "thin", "Keep fewer poses, so that every one given is near one that is kept");
-  add_change(*thinning,
-             "The farthest that a model point may be, at a dropped pose, from where it is at the "
-             "last kept one before it",
-             thin);
+  CLI::App* thinning =
+      command->add_subcommand("thin", "Leave out poses; each one left out is near a kept one");
+  add_change(
+      *thinning,
+      "The most that a model point may move between a dropped pose and the last kept pose before "
+      "it",
+      thin);
   thinning->footer(
       "Example: clearway trajectory thin path.txt -o sparse.txt --max-motion 0.01 --model car.ply");
 }

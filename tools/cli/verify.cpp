@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
@@ -69,10 +70,11 @@ void add_verify(CLI::App& program, int& exit_code) {
       "verify", "Re-read and check everything in a store, a result or a journal");
   command->add_option("FILE", *file, "Store, result or journal")->type_name("FILE")->required();
   command->footer(
-      "Names every damaged cell (at most 20), of a journal the first damaged record. A journal\n"
-      "whose tail is torn, as a killed run leaves it, is sound; the tail is named.\n"
-      "Exit code 0: sound; 1: a fault, or not a complete store or result; 4: the file cannot be\n"
-      "opened.\n"
+      "Names every damaged cell (at most 20), or the first damaged record of a journal.\n"
+      "A killed run can leave a torn tail: such a journal is sound, and the tail is named.\n"
+      "Exit code 0: sound.\n"
+      "Exit code 1: damaged, or not a complete store or result.\n"
+      "Exit code 4: the file cannot be opened.\n"
       "Example: clearway verify site.h5");
   command->callback([file, &exit_code] { exit_code = run_verify(*file) ? 0 : 1; });
 }

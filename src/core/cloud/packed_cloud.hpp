@@ -12,9 +12,9 @@
 
 namespace clearway {
 
-/// The environment as the engines see it: packed cells in k-d order. A *slot* numbers the points in
-/// that order: slot = cell * cell_entries() + index in the cell, so that block b of a cell is 64
-/// slots, one word of a HitSet. Slots past a cell's count are unused.
+/// The environment as the engines see it: packed cells in k-d order. An *entry* is a place for a
+/// point in that order: entry = cell * cell_entries() + index in the cell, so that block b of a
+/// cell is 64 entries, one word of a HitSet. Entries past a cell's count are unused.
 class PackedCloud {
  public:
   virtual ~PackedCloud() = default;
@@ -49,5 +49,8 @@ class PackedCloud {
   std::uint32_t cell_entries() const { return blocks_per_cell() * kBlockPoints; }
   std::uint64_t entry_count() const { return std::uint64_t{cells().size()} * cell_entries(); }
 };
+
+/// The largest |coordinate| of the cloud's box, metres; 0 for no points.
+double largest_coordinate(const PackedCloud& cloud);
 
 }  // namespace clearway

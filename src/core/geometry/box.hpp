@@ -1,14 +1,9 @@
 #pragma once
 
-#include "clearway/vec3.hpp"
+#include "clearway/box.hpp"
 #include "core/geometry/predicate.hpp"
 
 namespace clearway {
-
-/// Axis-aligned box, closed on both sides, metres.
-struct Box {
-  Vec3 lo, hi;
-};
 
 /// The largest |coordinate| of the box on each axis.
 CLEARWAY_HD inline Vec3 reach_of(const Box& box) {

@@ -16,10 +16,10 @@ constexpr std::uint32_t kOccupancyBits = 16;
 
 void refuse_unanswerable(const Query& query) {
   if (query.between_poses) {
-    throw UsageError("--between-poses: engine grid searches at poses; take --engine sweep");
+    throw UsageError("engine grid searches at poses, not between them", Remedy::kSweepEngine);
   }
   if (query.clearance > 0) {
-    throw UsageError("--clearance: engine grid has no clearances; take --engine sweep");
+    throw UsageError("engine grid has no clearances", Remedy::kSweepEngine);
   }
 }
 
@@ -42,23 +42,16 @@ GridScene::GridScene(const Query& query, const MotionTree& motion, const PackedC
   bounds_.reserve(poses().size());
   for (const Pose& pose : poses()) bounds_.push_back(bound_of(pose, reach));
   add_nodes();
-  view_ = {.points = model_.points().data(),
-           .groups = model_.groups().data(),
-           .parts = model_.parts().data(),
-           .poses = poses().data(),
-           .bounds = bounds_.data(),
-           .nodes = nodes_.data(),
-           .runs = runs_.data(),
-           .quantisation = cloud.quantisation(),
-           .point_count = static_cast<std::uint32_t>(model_.points().size()),
-           .group_count = static_cast<std::uint32_t>(model_.groups().size()),
-           .part_count = static_cast<std::uint32_t>(model_.parts().size()),
-           .slots = cloud.cell_entries(),
-           .bucket_count = std::max(64U, std::bit_ceil(cloud.cell_entries())),
-           .word_count = std::bit_ceil(std::max(64U, cloud.cell_entries() * kOccupancyBits / 64)),
-           .radius = query.radius,
-           .search_radius = query.radius,
-           .float_alone = options.precision == GridPrecision::kFloat};
+  for_each_array([&](auto member, auto values) { view_.*member = values.data(); });
+  view_.quantisation = cloud.quantisation();
+  view_.point_count = static_cast<std::uint32_t>(model_.points().size());
+  view_.group_count = static_cast<std::uint32_t>(model_.groups().size());
+  view_.part_count = static_cast<std::uint32_t>(model_.parts().size());
+  view_.slots = cloud.cell_entries();
+  view_.bucket_count = std::max(64U, std::bit_ceil(cloud.cell_entries()));
+  view_.word_count = std::bit_ceil(std::max(64U, cloud.cell_entries() * kOccupancyBits / 64));
+  view_.radius = view_.search_radius = query.radius;
+  view_.float_alone = options.precision == GridPrecision::kFloat;
   if (view_.float_alone) view_.search_radius = float_search_radius(cloud);
   choose_group_radius();
 }
@@ -118,21 +111,6 @@ double GridScene::float_search_radius(const PackedCloud& cloud) const {
     }
   }
   return view_.radius * (1 + 0x1p-19) + 0x1p-20 * (largest + moved) + 1e-20;
-}
-
-GridSceneView GridScene::view_over(const Vec3* points, const GridSphere* groups,
-                                   const GridSphere* parts, const Pose* poses,
-                                   const PoseBound* bounds, const GridNode* nodes,
-                                   const std::uint32_t* runs) const {
-  GridSceneView view = view_;
-  view.points = points;
-  view.groups = groups;
-  view.parts = parts;
-  view.poses = poses;
-  view.bounds = bounds;
-  view.nodes = nodes;
-  view.runs = runs;
-  return view;
 }
 
 }  // namespace clearway

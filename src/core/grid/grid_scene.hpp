@@ -6,7 +6,7 @@
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_view.hpp"
-#include "core/sweep/motion_tree.hpp"
+#include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
 
@@ -37,20 +37,27 @@ class GridScene {
   double grid_cell() const { return grid_cell_; }  ///< metres
   double group_radius() const { return group_radius_; }
 
-  /// Of all that the views refer to.
+  /// Calls visit(member of GridSceneView, values) for each array that the views refer to.
+  template <typename Visit>
+  void for_each_array(Visit visit) const {
+    visit(&GridSceneView::points, model_.points());
+    visit(&GridSceneView::groups, model_.groups());
+    visit(&GridSceneView::parts, model_.parts());
+    visit(&GridSceneView::poses, poses());
+    visit(&GridSceneView::bounds, bounds());
+    visit(&GridSceneView::nodes, nodes());
+    visit(&GridSceneView::runs, runs());
+  }
+
+  /// Of all these arrays.
   std::uint64_t size_bytes() const {
-    return model_.points().size_bytes() + model_.groups().size_bytes() +
-           model_.parts().size_bytes() + poses().size_bytes() + bounds().size_bytes() +
-           nodes().size_bytes() + runs().size_bytes();
+    std::uint64_t bytes = 0;
+    for_each_array([&](auto, auto values) { bytes += values.size_bytes(); });
+    return bytes;
   }
 
   /// Over the host's memory.
   const GridSceneView& view() const { return view_; }
-
-  /// Over copies of the same arrays elsewhere.
-  GridSceneView view_over(const Vec3* points, const GridSphere* groups, const GridSphere* parts,
-                          const Pose* poses, const PoseBound* bounds, const GridNode* nodes,
-                          const std::uint32_t* runs) const;
 
  private:
   void add_nodes();

@@ -1,47 +1,45 @@
 #include "core/page/page_pool.hpp"
 
 namespace clearway {
-namespace {
 
 static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= kPageAlignment);
 
-SlotLayout rounded(SlotLayout layout) {
-  layout.page_bytes = PageShape::aligned(layout.page_bytes);
-  return layout;
-}
-
-/// Numbers of values in the answer of one slot.
-struct PageResultSize {
-  PageResultSize(const PackedCloud& cloud, const Query& query, const SlotLayout& layout)
-      : hits(std::size_t{layout.cells} * cloud.blocks_per_cell()),
-        first_poses(query.first_pose ? hits * kBlockPoints : 0),
-        clearances(query.clearance > 0 ? hits * kBlockPoints : 0) {}
-
-  std::size_t hits, first_poses, clearances;
-};
-
-}  // namespace
+PagePool::Arrays::Arrays(const PackedCloud& cloud, const Query& query, const SlotLayout& layout)
+    : page_bytes(PageShape::aligned(layout.page_bytes)),
+      result(run, std::uint64_t{layout.cells} * cloud.blocks_per_cell(),
+             {.first_pose = query.first_pose, .clearance = query.clearance > 0}) {}
 
 PagePool::PagePool(const PackedCloud& cloud, const Query& query, const SlotLayout& layout)
-    : layout_(rounded(layout)),
-      pages_(layout.slots, layout_.page_bytes),
-      hits_(layout.slots, PageResultSize(cloud, query, layout).hits),
-      first_poses_(layout.slots, PageResultSize(cloud, query, layout).first_poses),
-      clearances_(layout.slots, PageResultSize(cloud, query, layout).clearances) {}
+    : layout_(layout),
+      blocks_per_cell_(cloud.blocks_per_cell()),
+      arrays_(cloud, query, layout),
+      pages_(std::make_unique_for_overwrite<std::byte[]>(layout.slots * arrays_.page_bytes)),
+      results_(std::make_unique_for_overwrite<std::byte[]>(layout.slots * arrays_.run.bytes())) {}
 
-std::span<std::byte> PagePool::page(std::uint32_t slot) { return pages_.of(slot); }
+std::span<std::byte> PagePool::page(std::uint32_t slot) {
+  return {pages_.get() + slot * arrays_.page_bytes, arrays_.page_bytes};
+}
 
-std::span<std::uint64_t> PagePool::hits(std::uint32_t slot) { return hits_.of(slot); }
+std::span<std::uint64_t> PagePool::hits(std::uint32_t slot) {
+  return arrays_.result.hits.in(result_at(slot));
+}
 
-std::span<std::uint32_t> PagePool::first_poses(std::uint32_t slot) { return first_poses_.of(slot); }
+std::span<std::uint32_t> PagePool::first_poses(std::uint32_t slot) {
+  return arrays_.result.first_poses.in(result_at(slot));
+}
 
-std::span<Clearance> PagePool::clearances(std::uint32_t slot) { return clearances_.of(slot); }
+std::span<Clearance> PagePool::clearances(std::uint32_t slot) {
+  return arrays_.result.clearances.in(result_at(slot));
+}
+
+PageResult PagePool::result(std::uint32_t slot, std::uint32_t cells) {
+  return arrays_.result.in(result_at(slot), std::size_t{cells} * blocks_per_cell_);
+}
 
 std::uint64_t PagePool::slot_bytes(const PackedCloud& cloud, const Query& query,
                                    const SlotLayout& layout) {
-  const PageResultSize answer(cloud, query, layout);
-  return rounded(layout).page_bytes + answer.hits * sizeof(std::uint64_t) +
-         answer.first_poses * sizeof(std::uint32_t) + answer.clearances * sizeof(Clearance);
+  const Arrays arrays(cloud, query, layout);
+  return arrays.page_bytes + arrays.run.bytes();
 }
 
 }  // namespace clearway

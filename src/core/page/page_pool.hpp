@@ -8,6 +8,7 @@
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/page/page_engine.hpp"
+#include "core/page/page_result_arrays.hpp"
 
 namespace clearway {
 
@@ -33,26 +34,28 @@ class PagePool {
   std::span<std::uint32_t> first_poses(std::uint32_t slot);
   std::span<Clearance> clearances(std::uint32_t slot);
 
+  /// They, for a page of so many cells.
+  PageResult result(std::uint32_t slot, std::uint32_t cells);
+
   /// What one slot takes, bytes.
   static std::uint64_t slot_bytes(const PackedCloud& cloud, const Query& query,
                                   const SlotLayout& layout);
 
  private:
-  template <typename Value>
-  struct Values {
-    Values(std::uint32_t slots, std::size_t values_per_slot)
-        : per_slot(values_per_slot),
-          all(std::make_unique_for_overwrite<Value[]>(slots * values_per_slot)) {}
-    std::span<Value> of(std::uint32_t slot) { return {all.get() + slot * per_slot, per_slot}; }
-    std::size_t per_slot;
-    std::unique_ptr<Value[]> all;
+  /// Of one slot. A result's bytes are a multiple of 8, so that those of all slots are aligned.
+  struct Arrays {
+    Arrays(const PackedCloud& cloud, const Query& query, const SlotLayout& layout);
+    std::uint64_t page_bytes;
+    ArrayRun run;
+    PageResultArrays result;
   };
 
+  std::byte* result_at(std::uint32_t slot) { return results_.get() + slot * arrays_.run.bytes(); }
+
   SlotLayout layout_;
-  Values<std::byte> pages_;
-  Values<std::uint64_t> hits_;
-  Values<std::uint32_t> first_poses_;
-  Values<Clearance> clearances_;
+  std::uint32_t blocks_per_cell_;
+  Arrays arrays_;
+  std::unique_ptr<std::byte[]> pages_, results_;
 };
 
 }  // namespace clearway

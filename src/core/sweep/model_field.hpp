@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/model_tree.hpp"
 #include "core/sweep/model_field_ref.hpp"
-#include "core/sweep/model_tree.hpp"
 
 namespace clearway {
 

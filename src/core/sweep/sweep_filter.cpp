@@ -13,16 +13,6 @@ namespace {
 
 using Verdict = SweepRef::Verdict;
 
-double largest_coordinate(const PackedCloud& cloud) {
-  if (cloud.tree().empty()) return 0;
-  const Box box = position_box(cloud.quantisation(), cloud.tree()[0].box);
-  double largest = 0;
-  for (int k = 0; k < 3; ++k) {
-    largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
-  }
-  return largest;
-}
-
 /// Per pose the first of the equal ones that it follows without a break.
 std::vector<std::uint32_t> first_equal_poses(std::span<const Pose> poses) {
   std::vector<std::uint32_t> first(poses.size());

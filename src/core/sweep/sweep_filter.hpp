@@ -6,16 +6,17 @@
 
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/model_tree.hpp"
+#include "core/page/pose_reach.hpp"
 #include "core/sweep/model_field.hpp"
-#include "core/sweep/model_tree.hpp"
-#include "core/sweep/motion_tree.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
 
 /// The inverse query, answered for ranges of poses and boxes of environment points at once by
 /// going down the motion tree with the tests of SweepRef.
-class SweepFilter {
+class SweepFilter final : public PoseReach {
  public:
   /// All arguments outlive it. cloud: for the largest coordinates, which the rounding bound needs.
   SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
@@ -23,7 +24,7 @@ class SweepFilter {
 
   const Query& query() const { return query_; }
   const SweepRef& ref() const { return ref_; }
-  const MotionTree& motion() const { return motion_; }
+  const MotionTree& motion() const override { return motion_; }
   const ModelTree& model() const { return model_; }
 
   /// The first pose equal to `pose` without another in between. Only with a clearance.
@@ -34,6 +35,12 @@ class SweepFilter {
   /// the poses when `nodes` are.
   void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
+
+  void narrow(const Box& box, std::span<const std::uint32_t> nodes,
+              std::vector<std::uint32_t>& out) const override {
+    SweepStatistics not_counted;
+    narrow(box, nodes, out, not_counted);
+  }
 
   /// Whether the model touches e at a pose of `nodes`, or between poses on the way from one to the
   /// next.

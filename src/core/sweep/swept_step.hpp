@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "core/geometry/model_tree_ref.hpp"
 #include "core/geometry/sweep_bounds.hpp"
-#include "core/sweep/model_tree_ref.hpp"
-#include "core/sweep/motion_tree_ref.hpp"
+#include "core/trajectory/motion_tree_ref.hpp"
 
 namespace clearway {
 

@@ -71,7 +71,7 @@ class Resampler {
     }
     if (total / max_motion_ <= static_cast<double>(most_added)) return;
     const double enough = total / static_cast<double>(most_added) * 1.01;
-    throw UsageError("--max-motion " + shown(max_motion_) + " takes more than " +
+    throw UsageError("a motion of " + shown(max_motion_) + " m at the most takes more than " +
                      std::to_string(most_added) + " additional poses; the farthest apart, " +
                      shown(longest) + " m, are " + named(at) + "; expected " + shown(enough) +
                      " or more");
@@ -101,7 +101,7 @@ class Resampler {
       if (add_steps(curve, sums, steps, poses_[i + 1])) return;
       out_.resize(start);
     }
-    throw UsageError("--max-motion " + shown(max_motion_) + ": between " + named(i) +
+    throw UsageError("a motion of " + shown(max_motion_) + " m at the most: between " + named(i) +
                      " rounding alone moves the model by about as much; expected a larger one");
   }
 

@@ -1,5 +1,7 @@
 #include "core/util/format.hpp"
 
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace clearway {
@@ -20,6 +22,22 @@ std::string format_count(std::uint64_t count) {
     at -= 3;
     text.insert(at, 1, ',');
   }
+  return text;
+}
+
+std::string format_number(double value) {
+  const double size = std::abs(value);
+  const bool plain = size == 0 || (size >= 1e-4 && size < 1e16);
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof text, value,
+                                 plain ? std::chars_format::fixed : std::chars_format::scientific)
+                       .ptr;
+  return {text, end};
+}
+
+std::string format_brief(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
 

@@ -11,4 +11,10 @@ std::string format_size(std::uint64_t bytes);
 /// "78,439", for messages.
 std::string format_count(std::uint64_t count);
 
+/// The shortest decimal that reads back as the same number, without exponent from 1e-4 to 1e16.
+std::string format_number(double value);
+
+/// With four digits, for messages.
+std::string format_brief(double value);
+
 }  // namespace clearway

@@ -1,6 +1,5 @@
 #include "io/convert/convert.hpp"
 
-#include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -13,6 +12,7 @@
 
 #include "clearway/error.hpp"
 #include "core/cloud/kd_order.hpp"
+#include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/convert/count.hpp"
@@ -26,6 +26,7 @@
 #include "io/store/verify_store.hpp"
 #include "io/system/file.hpp"
 #include "io/system/pending_file.hpp"
+#include "io/system/thread_limit.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway {
@@ -42,19 +43,21 @@ constexpr std::uint32_t kLeastCellPoints = 64;
 
 void check_options(const ConversionOptions& options) {
   if (options.memory_bytes < kLeastConversionMemory) {
-    throw ResourceError("--memory is too little: a conversion needs at least " +
-                        std::to_string(kLeastConversionMemory / kMiB) + "M");
+    throw ResourceError(format_size(options.memory_bytes) +
+                            " of memory is too little: a conversion needs at least " +
+                            format_size(kLeastConversionMemory),
+                        Remedy::kMoreMemory, static_cast<double>(kLeastConversionMemory));
   }
   if (options.cell_points < kLeastCellPoints || options.cell_points > kMostCellPoints) {
-    throw UsageError("--cell-points " + std::to_string(options.cell_points) + ": expected " +
+    throw UsageError(std::to_string(options.cell_points) + " points a cell: expected " +
                      std::to_string(kLeastCellPoints) + " to " + std::to_string(kMostCellPoints));
   }
   if (options.regular_size && !(*options.regular_size > 0)) {
-    throw UsageError("--layout regular:SIZE: expected a positive length");
+    throw UsageError("a regular layout: expected cubes of a positive length");
   }
 }
 
-/// Threads that --memory allows, as each has a counting grid of its own.
+/// Threads that the memory allows, as each has a counting grid of its own.
 int affordable_threads(const ConversionOptions& options) {
   const int wanted =
       options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
@@ -68,7 +71,7 @@ Lattice lattice_for(const ConversionOptions& options, const Quantisation& quanti
   for (std::size_t k = 0; k < 3; ++k) {
     const double quanta = std::nearbyint(*options.regular_size / quantisation.scale[k]);
     if (!(quanta >= Lattice::kLeastCubeQuanta && quanta <= 0x1p32)) {
-      throw UsageError("--layout regular:SIZE: expected SIZE from " +
+      throw UsageError("a regular layout: expected cubes of " +
                        std::to_string(Lattice::kLeastCubeQuanta) + " to 2^32 times the scale");
     }
     cube[k] = static_cast<std::uint64_t>(quanta);
@@ -118,13 +121,12 @@ void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::
                                (padded - points) * kPaddingBytesPerPoint;
   const std::uint64_t free = free_disk_bytes(folder);
   if (needed > free) {
-    throw ResourceError(folder.string() + ": " + std::to_string(free / kMiB) +
-                        " MiB free, expected about " + std::to_string(needed / kMiB) +
-                        " MiB for the temporary file and the store of " + std::to_string(points) +
-                        " points" +
-                        (padded > 2 * points ? "; most of it pads cells that are not full: a "
-                                               "smaller --cell-points avoids that"
-                                             : ""));
+    throw ResourceError(
+        folder.string() + ": " + std::to_string(free / kMiB) + " MiB free, expected about " +
+            std::to_string(needed / kMiB) + " MiB for the temporary file and the store of " +
+            std::to_string(points) + " points" +
+            (padded > 2 * points ? "; most of it pads cells that are not full" : ""),
+        padded > 2 * points ? Remedy::kFewerCellPoints : Remedy::kNone);
   }
 }
 
@@ -227,6 +229,7 @@ class Conversion {
  private:
   void fill_metadata(const EnvironmentSource& environment, const CountedEnvironment& counted,
                      std::vector<SourceFile> sources) {
+    report_.points = counted.points;
     report_.metadata = {.point_count = counted.points,
                         .input_points = counted.input_points,
                         .cell_points = options_.cell_points,
@@ -236,17 +239,26 @@ class Conversion {
                         .crs_wkt = environment.crs_wkt(),
                         .points_hash = counted.points_hash,
                         .sources = std::move(sources)};
-    report_.remarks = environment.remarks();
+    report_.warnings = environment.warnings();
+    if (report_.non_finite_points > 0) {
+      warn("non-finite-points", format_count(report_.non_finite_points) +
+                                    " points with NaN or infinite coordinates are left out");
+    }
   }
 
-  /// Of --memory, beside the cells' index: at least a unit.
+  void warn(const char* code, const std::string& text) {
+    report_.warnings.push_back({Message::Severity::kWarning, code, text});
+  }
+
+  /// Of the memory, beside the cells' index: at least a unit.
   std::uint64_t bytes_for_units() const {
     const std::uint64_t others = kBaseBytes + report_.cells * kCellBytes;
     const std::uint64_t least = others + kUnitBytes;
     if (options_.memory_bytes < least) {
-      throw ResourceError("--memory is too little: " + std::to_string(report_.cells) +
-                          " cells need at least " + std::to_string(divide_up(least, kMiB)) +
-                          "M; with more --cell-points there are fewer");
+      throw ResourceError(format_size(options_.memory_bytes) + " of memory is too little: " +
+                              std::to_string(report_.cells) + " cells need at least " +
+                              std::to_string(divide_up(least, kMiB)) + " MiB",
+                          Remedy::kMoreCellPoints);
     }
     return options_.memory_bytes - others;
   }
@@ -258,10 +270,10 @@ class Conversion {
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
     check_disk(folder_, points, padded);
     if (options_.regular_size && padded > 2 * points) {
-      report_.remarks.push_back(
-          std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
-          " points for " + std::to_string(points) +
-          " points: the padding makes the store large; a smaller --cell-points fits the cubes");
+      warn("padded-cells",
+           std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
+               " points for " + std::to_string(points) +
+               " points: the padding makes the store large; fewer points a cell fit the cubes");
     }
   }
 
@@ -319,17 +331,16 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
   if (sources.get() != store->metadata().sources) return false;
   const std::vector<std::string> faults = verify_store(*store, progress, 1);
   if (faults.empty()) return true;
-  throw UsageError(faults[0] +
-                   "; the store of these inputs is damaged: --force in the place of --resume "
-                   "overwrites it");
+  throw UsageError(faults[0] + "; the store of these inputs is damaged",
+                   Remedy::kOverwriteNotResume);
 }
 
-ConversionReport convert(const ConversionOptions& options, Progress& progress) {
+ConversionReport convert_scans(const ConversionOptions& options, Progress& progress) {
   check_options(options);
   const int threads = affordable_threads(options);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
-  return Conversion(options, threads, progress).run();
+  const ThreadLimit limit(threads);
+  return tbb::task_arena(threads).execute(
+      [&] { return Conversion(options, threads, progress).run(); });
 }
 
 }  // namespace clearway

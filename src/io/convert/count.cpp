@@ -37,8 +37,8 @@ std::vector<Bin> count_bins(EnvironmentSource& environment, const Lattice& latti
   BinCounter all(kFinestShift, kMostBins);
   for (const BinCounter& counter : counters) all.merge(counter);
   if (lattice.regular() && all.shift() > lattice.cube_bits()) {
-    throw UsageError("--layout regular: more than " + std::to_string(kMostBins) +
-                     " cubes hold points; expected a larger SIZE");
+    throw UsageError("a regular layout: more than " + std::to_string(kMostBins) +
+                     " cubes hold points; expected larger cubes");
   }
   return all.bins();
 }

@@ -54,7 +54,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     throw UsageError("standard input (-) cannot be combined with other inputs");
   }
   if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
-    throw UsageError("--scale " + brief(*options.scale) + ": expected a positive length");
+    throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
   }
   if (streams) {
     files_ = {"-"};
@@ -94,8 +94,9 @@ void EnvironmentSource::find_crs() {
   crs_ = common_crs(files_, infos_, options_.ignore_crs);
   for (std::size_t i = 0; i < files_.size(); ++i) {
     if (infos_[i].faces == 0) continue;
-    crs_.remarks.push_back(files_[i].string() + ": its " + std::to_string(infos_[i].faces) +
-                           " faces are not read, its vertices are");
+    crs_.warnings.push_back({Message::Severity::kWarning, "mesh-faces",
+                             files_[i].string() + ": its " + std::to_string(infos_[i].faces) +
+                                 " faces are not read, its vertices are"});
   }
 }
 
@@ -122,10 +123,10 @@ void EnvironmentSource::choose_offset_and_scale() {
     quantisation_.scale[k] = options_.scale.value_or(fitting);
     if (any && (hi[k] - offset) / quantisation_.scale[k] > kGreatestQuantum) {
       const bool fits = (hi[k] - offset) / fitting <= kGreatestQuantum;
-      throw InputError(
-          "coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
-          " do not fit 32-bit integers at a scale of " + brief(quantisation_.scale[k]) + "; " +
-          (fits ? "--scale " + brief(fitting) + " fits" : "a coarser --scale is needed"));
+      throw InputError("coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
+                           " do not fit 32-bit integers at a scale of " +
+                           brief(quantisation_.scale[k]),
+                       Remedy::kScale, fits ? fitting : 0);
     }
   }
 }
@@ -196,8 +197,8 @@ void EnvironmentSource::append_kept(const PointBatch& batch, QuantaBatch& out) {
       if (shifted < std::numeric_limits<std::int32_t>::min() ||
           shifted > std::numeric_limits<std::int32_t>::max()) {
         throw InputError(files_[file_].string() + ": too far from " + files_[0].string() +
-                         " for 32-bit integers of " + brief(own.scale[k]) +
-                         "; a coarser --scale fits");
+                             " for 32-bit integers of " + brief(own.scale[k]),
+                         Remedy::kScale);
       }
       q[k] = static_cast<std::int32_t>(shifted);
       largest_change_ =
@@ -239,7 +240,7 @@ void EnvironmentSource::drop_non_finite(std::uint64_t point) {
   ++non_finite_points_;
   if (options_.strict) {
     throw InputError(files_[file_].string() + ": point " + std::to_string(point) +
-                     " is not finite, expected finite coordinates (--strict)");
+                     " is not finite, expected finite coordinates in a strict conversion");
   }
 }
 

@@ -39,7 +39,7 @@ class EnvironmentSource {
   /// Points that the inputs declare, where all do.
   std::optional<std::uint64_t> declared_points() const { return declared_points_; }
   /// Remarks for the log (different CRS, feet, a mesh).
-  const std::vector<std::string>& remarks() const { return crs_.remarks; }
+  const std::vector<Message>& warnings() const { return crs_.warnings; }
 
   /// The next batch in input order; false at the end.
   bool read(QuantaBatch& batch);

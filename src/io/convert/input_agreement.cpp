@@ -26,6 +26,10 @@ std::optional<std::array<std::int64_t, 3>> whole_shift(const double* offset,
   return shift;
 }
 
+void warn(CommonCrs& common, const char* code, const std::string& text) {
+  common.warnings.push_back({Message::Severity::kWarning, code, text});
+}
+
 }  // namespace
 
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
@@ -37,7 +41,8 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<con
     if (info.unit == LengthUnit::kDegree && !ignore) {
       refuse(name,
              "its coordinate reference system is in degrees, expected lengths; project the scan "
-             "first (for example with PDAL), or use --ignore-crs");
+             "first",
+             Remedy::kIgnoreCrs);
     }
     if (i == 0) {
       common.unit = info.unit;
@@ -45,18 +50,21 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<con
       continue;
     }
     if (info.unit != common.unit && !ignore) {
-      refuse(name, "its unit of length is " + to_string(info.unit) + ", expected " +
-                       to_string(common.unit) + " as in " + files[0].string() +
-                       " (or --ignore-crs)");
+      refuse(name,
+             "its unit of length is " + to_string(info.unit) + ", expected " +
+                 to_string(common.unit) + " as in " + files[0].string(),
+             Remedy::kIgnoreCrs);
     }
     if (info.crs_wkt != common.wkt) {
-      common.remarks.push_back(name + ": another coordinate reference system than " +
-                               files[0].string() + "; the first one's is kept");
+      warn(common, "other-crs",
+           name + ": another coordinate reference system than " + files[0].string() +
+               "; the first one's is kept");
     }
   }
   if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
-    common.remarks.push_back("the coordinates are in feet (" + to_string(common.unit) +
-                             "): radius, model and trajectory must be in feet too");
+    warn(common, "feet",
+         "the coordinates are in feet (" + to_string(common.unit) +
+             "): radius, model and trajectory must be in feet too");
   }
   return common;
 }
@@ -76,8 +84,8 @@ std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path>
     if (!shift) {
       if (scale || !own) return std::nullopt;
       refuse(files[i].string(),
-             "its scale or offset does not agree with that of " + files[0].string() +
-                 "; --scale sets one for all, for example --scale " + brief(first[0]));
+             "its scale or offset does not agree with that of " + files[0].string(), Remedy::kScale,
+             first[0]);
     }
     common.shifts.push_back(*shift);
   }
@@ -93,8 +101,8 @@ void refuse_mixture(std::span<const std::filesystem::path> files,
            std::string("its coordinates are ") +
                (integers ? "floating-point numbers" : "integers times a scale") + ", expected " +
                (integers ? "integers" : "floating-point numbers") + " as in " + files[0].string() +
-               ". Does it belong to the environment (a model does not)? If so, --scale METRES "
-               "rounds all of them to one scale");
+               ". Does it belong to the environment (a model does not)? If so, all need one scale",
+           Remedy::kScale);
   }
 }
 

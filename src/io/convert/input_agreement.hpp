@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/progress.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/formats/point_reader.hpp"
 
@@ -19,7 +20,7 @@ namespace clearway {
 struct CommonCrs {
   LengthUnit unit = LengthUnit::kUnknown;
   std::string wkt;
-  std::vector<std::string> remarks;  ///< for the log: different CRS, feet
+  std::vector<Message> warnings;  ///< different CRS, feet
 };
 
 /// The first input's. Degrees, and other units than the first one's, are refused unless `ignore`.

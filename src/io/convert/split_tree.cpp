@@ -118,8 +118,7 @@ std::vector<TopNode> SplitTree::top_nodes(std::uint32_t cell_points) const {
     const std::uint64_t cells = right == 0
                                     ? divide_up(nodes_[i].count, cell_points)
                                     : std::uint64_t{top[i + 1].cell_count} + top[right].cell_count;
-    if (cells > 0xFFFFFFFFU)
-      throw ResourceError("more than 2^32 cells; with more --cell-points there are fewer");
+    if (cells > 0xFFFFFFFFU) throw ResourceError("more than 2^32 cells", Remedy::kMoreCellPoints);
     top[i] = {0, static_cast<std::uint32_t>(cells), right};
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {

@@ -174,7 +174,7 @@ void export_result(const ResultReader& result, const std::filesystem::path& outp
 void export_clearances(const ResultReader& result, const std::filesystem::path& output,
                        bool overwrite, Progress& progress) {
   if (!(result.header().clearance > 0)) {
-    throw UsageError(result.name() + ": has no clearances; run with --clearance");
+    throw UsageError(result.name() + ": has no clearances", Remedy::kAskForClearance);
   }
   if (ending_of(output) != ".csv") {
     throw UsageError(output.string() + ": clearances are exported as .csv only");

@@ -1,7 +1,9 @@
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 
 #include <cmath>
 
+#include "core/util/format.hpp"
+#include "io/formats/point_reader.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -16,7 +18,7 @@ void append(const PointBatch& batch, const CloudInfo& info, std::vector<Vec3>& p
 
 }  // namespace
 
-std::vector<Vec3> read_model(const std::filesystem::path& path, CloudInfo* info) {
+std::vector<Vec3> read_model(const std::filesystem::path& path, std::vector<Message>* warnings) {
   const auto reader = open_point_file(path);
   std::vector<Vec3> points;
   PointBatch batch;
@@ -32,8 +34,16 @@ std::vector<Vec3> read_model(const std::filesystem::path& path, CloudInfo* info)
       }
     }
   }
-  if (info != nullptr) *info = reader->info();
   if (points.empty()) refuse(path.string(), "the model has no points; expected one at least");
+  const std::uint64_t faces = reader->info().faces;
+  if (faces > 0 && warnings != nullptr) {
+    warnings->push_back({Message::Severity::kWarning, "mesh-faces",
+                         path.string() + ": its " + format_count(faces) +
+                             " faces are not read: the model is its " +
+                             format_count(points.size()) +
+                             " points; sample the surface where they are farther apart than the "
+                             "radius"});
+  }
   return points;
 }
 

@@ -18,14 +18,7 @@ namespace {
 
 constexpr unsigned kRootAttributes = 64;
 
-/// Before the first other call. No automatic printing, and no clean-up at exit, which crashes on a
-/// file whose closing failed (a full disk); an Id closes what is open.
-/// And no filter plug-ins: which code runs is not a file's to choose.
-void silence() {
-  static const herr_t once =
-      (H5dont_atexit(), H5PLset_loading_state(0), H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
-  (void)once;
-}
+constexpr unsigned kNoPlugins = 0;
 
 Id latest_format() {
   Id access = property_list(H5P_FILE_ACCESS);
@@ -53,10 +46,11 @@ void check_superblock(const File& file) {
   }
   const unsigned version = load<std::uint8_t>(bytes.data() + kVersionAt);
   if (version != kVersion || load<std::uint16_t>(bytes.data() + kSizesAt) != kEightByteSizes) {
-    throw InputError(file.name() + ": HDF5 superblock of version " + std::to_string(version) +
-                     ", expected " + std::to_string(kVersion) +
-                     ": another tool (h5repack, a copy by h5py) wrote or rewrote the file; convert "
-                     "the scans again, or run again for a result, or copy the file as it is");
+    throw InputError(
+        file.name() + ": HDF5 superblock of version " + std::to_string(version) + ", expected " +
+        std::to_string(kVersion) +
+        ". Another tool (h5repack, a copy by h5py) wrote or rewrote the file; convert the scans "
+        "again, run again for a result, or copy the file as it is");
   }
   if (load<std::uint8_t>(bytes.data() + kFlagsAt) != 0) {
     throw InputError(file.name() + ": damaged HDF5 file: it was not closed by its writer");
@@ -108,6 +102,24 @@ void malformed(const std::string& file, const std::string& name, const std::stri
   throw InputError(file + ": dataset or attribute '" + name + "': expected " + expected);
 }
 
+void silence_for_good() {
+  H5dont_atexit();
+  H5PLset_loading_state(kNoPlugins);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+QuietScope::QuietScope() {
+  H5Eget_auto2(H5E_DEFAULT, &print_, &print_data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5PLget_loading_state(&plugins_);
+  H5PLset_loading_state(kNoPlugins);
+}
+
+QuietScope::~QuietScope() {
+  H5PLset_loading_state(plugins_);
+  H5Eset_auto2(H5E_DEFAULT, print_, print_data_);
+}
+
 Id property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "HDF5 property list"}; }
 
 Id untimed(hid_t kind) {
@@ -122,7 +134,6 @@ Id simple_space(std::uint64_t rows, std::uint64_t columns) {
 }
 
 Id::Id(hid_t id, Close close_with, const std::string& what) : id_(id), close_(close_with) {
-  silence();
   if (id < 0) fail(what);
 }
 
@@ -147,7 +158,6 @@ void check(herr_t status, const std::string& what) {
 }
 
 Id create_file(const std::filesystem::path& path) {
-  silence();
   const Id creation = untimed(H5P_FILE_CREATE);
   // Attributes stay in the root's checksummed header: the heap that holds many or long ones
   // otherwise has no checksum for those of a few kilobytes and more.
@@ -158,7 +168,6 @@ Id create_file(const std::filesystem::path& path) {
 }
 
 Id open_file(const std::filesystem::path& path) {
-  silence();
   check_superblock(File::open_regular(path));
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
@@ -194,6 +203,7 @@ Id open_dataset(const Id& parent, const std::string& name, const std::string& fi
 }
 
 bool holds(const std::filesystem::path& path, const std::string& name) {
+  const QuietScope quiet;
   const Id file = open_file(path);
   const htri_t found = H5Lexists(file.get(), name.c_str(), H5P_DEFAULT);
   if (found < 0) malformed(path.string(), name, "an intact group (" + reason() + ")");

@@ -21,6 +21,25 @@ struct Failure : ResourceError {
   using ResourceError::ResourceError;
 };
 
+/// While it lives, HDF5 prints nothing on this thread and loads no filter plug-ins: which code runs
+/// is not a file's to choose. Then everything is as the caller had it.
+class QuietScope {
+ public:
+  QuietScope();
+  ~QuietScope();
+  QuietScope(const QuietScope&) = delete;
+  QuietScope& operator=(const QuietScope&) = delete;
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* print_data_ = nullptr;
+  unsigned plugins_ = 0;
+};
+
+/// For programs, before any other call: the same for the life of the process, and no clean-up of
+/// HDF5 at exit, which crashes on a file whose closing failed (a full disk); an Id closes its own.
+void silence_for_good();
+
 /// Move-only owner of an HDF5 identifier; closes it with the function for its kind.
 class Id {
  public:
@@ -42,9 +61,10 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// Runs `call`, putting the file's name before the message of a failure that lacks it.
+/// Runs `call` quietly, putting the file's name before the message of a failure that lacks it.
 template <typename Call>
 auto naming(const std::string& file, Call call) {
+  const QuietScope quiet;
   try {
     return call();
   } catch (const ResourceError& error) {

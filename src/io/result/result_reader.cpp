@@ -18,6 +18,7 @@ namespace names = result_names;
 /// system call failed.
 template <typename Call>
 auto as_input(const std::string& name, Call call) {
+  const hdf5::QuietScope quiet;
   try {
     return call();
   } catch (const hdf5::Failure& error) {
@@ -186,7 +187,10 @@ ResultReader::ResultReader(const std::filesystem::path& path) {
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
 }
 
-ResultReader::~ResultReader() = default;
+ResultReader::~ResultReader() {
+  const hdf5::QuietScope quiet;
+  state_.reset();
+}
 ResultReader::ResultReader(ResultReader&&) noexcept = default;
 
 const std::string& ResultReader::name() const { return state_->name; }

@@ -224,7 +224,10 @@ ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader
         return std::make_unique<State>(path, header, collisions, clearances);
       })) {}
 
-ResultWriter::~ResultWriter() = default;
+ResultWriter::~ResultWriter() {
+  const hdf5::QuietScope quiet;
+  state_.reset();
+}
 
 void ResultWriter::append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
                           std::span<const std::uint32_t> first_pose) {

@@ -111,9 +111,10 @@ void check_not_rewritten(const hdf5::Id& file, const CellIndex& index, const std
     hsize_t bytes = 0;
     if (H5Dget_chunk_info_by_coord(dataset.get(), at.data(), &filter_mask, &address, &bytes) < 0 ||
         filter_mask != 0 || address != index.address[4 * cell] || bytes != index.bytes[4 * cell]) {
-      refuse(name,
-             "its chunks are not where 'clearway convert' put them: another tool (h5repack, a "
-             "copy by h5py) rewrote the file; convert the scans again, or copy the file as it is");
+      refuse(
+          name,
+          "its chunks are not where 'clearway convert' put them. Another tool (h5repack, a copy by "
+          "h5py) rewrote the file; convert the scans again, or copy the file as it is");
     }
   }
 }
@@ -199,6 +200,7 @@ StoreIndex read_index(const hdf5::Id& file, std::uint64_t file_bytes, const std:
 
 StoreIndex read_store_index(const std::filesystem::path& path, std::uint64_t file_bytes) {
   const std::string name = path.string();
+  const hdf5::QuietScope quiet;
   const hdf5::Id file = hdf5::open_file(path);
   try {
     return read_index(file, file_bytes, name);

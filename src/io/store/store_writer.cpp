@@ -174,9 +174,13 @@ void StoreWriter::create(std::uint64_t cells) {
       create_packed<std::uint64_t>(group, kPointDatasets[3], cells, metadata.cell_points);
 }
 
-StoreWriter::~StoreWriter() = default;
+StoreWriter::~StoreWriter() {
+  const hdf5::QuietScope quiet;
+  state_.reset();
+}
 
 void StoreWriter::append(const PackedCell& packed) {
+  const hdf5::QuietScope quiet;
   State& state = *state_;
   CellIndex& index = state.index;
   const std::uint64_t cell = index.count.size();

@@ -7,16 +7,17 @@
 
 namespace clearway {
 
-void refuse(const std::string& name, const std::string& what) {
-  throw InputError(name + ": " + what);
+void refuse(const std::string& name, const std::string& what, Remedy remedy, double amount) {
+  throw InputError(name + ": " + what, remedy, amount);
 }
 
 void refuse_byte(const std::string& name, std::uint64_t byte, const std::string& what) {
   refuse(name, "byte " + std::to_string(byte) + ": " + what);
 }
 
-void refuse_line(const std::string& name, std::uint64_t line, const std::string& what) {
-  refuse(name, "line " + std::to_string(line) + ": " + what);
+void refuse_line(const std::string& name, std::uint64_t line, const std::string& what,
+                 Remedy remedy) {
+  refuse(name, "line " + std::to_string(line) + ": " + what, remedy);
 }
 
 std::string excerpt(std::string_view text) {

@@ -4,16 +4,20 @@
 #include <string>
 #include <string_view>
 
+#include "clearway/error.hpp"
+
 namespace clearway {
 
 /// Throws InputError "name: what".
-[[noreturn]] void refuse(const std::string& name, const std::string& what);
+[[noreturn]] void refuse(const std::string& name, const std::string& what,
+                         Remedy remedy = Remedy::kNone, double amount = 0);
 
 /// Throws InputError "name: byte N: what". `byte` counts from 0.
 [[noreturn]] void refuse_byte(const std::string& name, std::uint64_t byte, const std::string& what);
 
 /// Throws InputError "name: line N: what". `line` counts from 1.
-[[noreturn]] void refuse_line(const std::string& name, std::uint64_t line, const std::string& what);
+[[noreturn]] void refuse_line(const std::string& name, std::uint64_t line, const std::string& what,
+                              Remedy remedy = Remedy::kNone);
 
 /// The start of a text from a file in double quotes, fit for a message: at most 40 characters,
 /// unprintable bytes as '?'.

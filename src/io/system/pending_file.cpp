@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 }
 
 void check_output_name(const fs::path& path, bool overwrite) {
-  if (path.empty()) throw UsageError("--output: expected the name of a file");
+  if (path.empty()) throw UsageError("the output needs the name of a file");
   std::error_code unknown;
   if (fs::is_directory(path, unknown)) {
     throw UsageError(path.string() + ": is a directory, expected a file name for the output");
@@ -31,7 +31,7 @@ void check_output_name(const fs::path& path, bool overwrite) {
     throw UsageError(path.string() + ": is a device or pipe, expected a file name for the output");
   }
   if (!overwrite && fs::exists(fs::symlink_status(path, unknown))) {
-    throw UsageError(path.string() + ": exists already; --force overwrites it");
+    throw UsageError(path.string() + ": exists already", Remedy::kOverwrite);
   }
   if (!fs::is_directory(folder_of(path), unknown)) {
     throw ResourceError(folder_of(path).string() + ": no such folder for the output");

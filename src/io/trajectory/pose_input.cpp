@@ -18,17 +18,18 @@ Objection objection_to(const Stretch& stretch, bool allow_non_rigid) {
                             " to " + shown(stretch.greatest) + " and determinant " +
                             shown(stretch.determinant);
   if (!(stretch.least > 0) || !std::isfinite(stretch.greatest)) {
-    return found + "; expected an invertible matrix";
+    return {found + "; expected an invertible matrix"};
   }
   if (allow_non_rigid || is_rigid(stretch)) return {};
-  return found + "; expected a rigid motion: singular values within " + shown(kRigidTolerance) +
-         " of 1 and a positive determinant (--allow-non-rigid accepts any invertible matrix)";
+  return {found + "; expected a rigid motion: singular values within " + shown(kRigidTolerance) +
+              " of 1 and a positive determinant",
+          Remedy::kAllowNonRigid};
 }
 
 }  // namespace
 
 Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, Pose& pose) {
-  if (!all_finite(numbers)) return "expected finite numbers";
+  if (!all_finite(numbers)) return {"expected finite numbers"};
   for (std::size_t row = 0; row < 3; ++row) {
     std::copy_n(numbers.data() + 4 * row, 3, pose.rotation + 3 * row);
     pose.translation[row] = numbers[4 * row + 3];
@@ -37,7 +38,7 @@ Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, 
     constexpr double kNoise = 1e-9;
     for (std::size_t column = 0; column < 4; ++column) {
       if (std::abs(numbers[12 + column] - (column == 3 ? 1 : 0)) > kNoise) {
-        return "the last row of the 4x4 matrix is not 0 0 0 1; expected row-major order";
+        return {"the last row of the 4x4 matrix is not 0 0 0 1; expected row-major order"};
       }
     }
   }
@@ -47,12 +48,12 @@ Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, 
 
 Objection pose_of_quaternion(std::span<const double, 3> position,
                              std::span<const double, 4> quaternion, Pose& pose) {
-  if (!all_finite(position) || !all_finite(quaternion)) return "expected finite numbers";
+  if (!all_finite(position) || !all_finite(quaternion)) return {"expected finite numbers"};
   constexpr double kNormTolerance = 0.01;
   const double norm = std::sqrt(quaternion[0] * quaternion[0] + quaternion[1] * quaternion[1] +
                                 quaternion[2] * quaternion[2] + quaternion[3] * quaternion[3]);
   if (!(std::abs(norm - 1) <= kNormTolerance)) {
-    return "the quaternion has norm " + shown(norm) + "; expected 1 within 0.01";
+    return {"the quaternion has norm " + shown(norm) + "; expected 1 within 0.01"};
   }
   const double x = quaternion[0] / norm;
   const double y = quaternion[1] / norm;

@@ -3,12 +3,16 @@
 #include <span>
 #include <string>
 
+#include "clearway/error.hpp"
 #include "clearway/pose.hpp"
 
 namespace clearway {
 
-/// Why numbers of a file are no pose; empty where they are one.
-using Objection = std::string;
+/// Why numbers of a file are no pose; without text where they are one.
+struct Objection {
+  std::string text;
+  Remedy remedy = Remedy::kNone;
+};
 
 /// numbers: 12 or 16, a row-major 3x4 or 4x4 matrix. The last row of a 4x4 must be 0 0 0 1. Rigid
 /// within kRigidTolerance or, with allow_non_rigid, invertible.

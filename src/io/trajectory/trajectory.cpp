@@ -1,4 +1,4 @@
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 #include <array>
 #include <cmath>
@@ -47,8 +47,8 @@ class TrajectoryParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    refuse_line(input_.name(), input_.line(), what);
+  [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
+    refuse_line(input_.name(), input_.line(), what, remedy);
   }
 
   bool reads_names() const {
@@ -67,8 +67,9 @@ class TrajectoryParser {
     columns_ = pose_columns(parse_column_names(line));
     if (!columns_) {
       fail(excerpt(line) +
-           "; expected numbers, or a header that names one column each x y z (or tx, p_x, pos_x, "
-           "...) and qx qy qz qw (or q_x, ...) or r00 to r22");
+           "; expected numbers, or a header with the columns x y z (or tx, p_x, pos_x, ...) and qx "
+           "qy "
+           "qz qw (or q_x, ...) or r00 to r22");
     }
     format_ = TrajectoryFormat::kCsv;
     return true;
@@ -105,14 +106,16 @@ class TrajectoryParser {
       constexpr double kSurelyNanoseconds = 1e14;
       if (numbers_[0] >= kSurelyNanoseconds) {
         fail(
-            "8 numbers with a time in nanoseconds, but no header; expected "
-            "--trajectory-format tum (qx qy qz qw) or euroc (qw qx qy qz)");
+            "8 numbers with a time in nanoseconds, but no header; the format can be tum (qx qy qz "
+            "qw) or euroc (qw qx qy qz)",
+            Remedy::kNameFormat);
       }
       format_ = TrajectoryFormat::kTum;
     } else {
-      refuse_count(line, count,
-                   "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the "
-                   "columns; EuRoC without one needs --trajectory-format euroc");
+      refuse_count(
+          line, count,
+          "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the columns. "
+          "EuRoC without a header has to be named");
     }
   }
 
@@ -121,7 +124,7 @@ class TrajectoryParser {
     if (!count) fail(excerpt(line) + "; expected numbers only, in blanks or commas: " + expected);
     if (count == 4u || count == 3u) {
       fail(std::to_string(*count) +
-           " numbers; a matrix spread over several lines is not read; expected each pose on one "
+           " numbers; a matrix spread over several lines is not read. Expected each pose on one "
            "line: " +
            expected);
     }
@@ -135,7 +138,7 @@ class TrajectoryParser {
     const Objection objection = format_ == TrajectoryFormat::kMatrix ? parse_matrix(line, pose)
                                 : format_ == TrajectoryFormat::kTum  ? parse_tum(line, pose)
                                                                      : parse_columns(line, pose);
-    if (!objection.empty()) fail(objection);
+    if (!objection.text.empty()) fail(objection.text, objection.remedy);
     poses_.push_back(pose);
   }
 
@@ -144,8 +147,8 @@ class TrajectoryParser {
     if (count != 12u && count != 16u) refuse_count(line, count, "12 or 16, a row-major matrix");
     if (row_numbers_ == 0) row_numbers_ = *count;
     if (count != row_numbers_) {
-      return std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
-             " as in line " + std::to_string(first_line_);
+      return {std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
+              " as in line " + std::to_string(first_line_)};
     }
     return pose_of_matrix(std::span(numbers_).first(*count), options_.allow_non_rigid, pose);
   }
@@ -153,7 +156,7 @@ class TrajectoryParser {
   Objection parse_tum(std::string_view line, Pose& pose) {
     const auto count = parse_number_line(line, numbers_);
     if (count != 8u) refuse_count(line, count, "8: t x y z qx qy qz qw");
-    if (!std::isfinite(numbers_[0])) return "expected a finite time";
+    if (!std::isfinite(numbers_[0])) return {"expected a finite time"};
     const std::span<const double> numbers(numbers_);
     return pose_of_quaternion(numbers.subspan<1, 3>(), numbers.subspan<4, 4>(), pose);
   }
@@ -161,8 +164,8 @@ class TrajectoryParser {
   Objection parse_columns(std::string_view line, Pose& pose) {
     split_fields(line, columns_->separator, fields_);
     if (fields_.size() != columns_->fields) {
-      return std::to_string(fields_.size()) + " columns; expected " +
-             std::to_string(columns_->fields) + " as before";
+      return {std::to_string(fields_.size()) + " columns; expected " +
+              std::to_string(columns_->fields) + " as before"};
     }
     std::array<double, 3> position{};
     for (std::size_t k = 0; k < 3; ++k) position[k] = number_in(columns_->position[k]);

@@ -81,7 +81,7 @@ TEST_CASE("a store says what it holds") {
   CHECK(report.non_finite_points == 0);
   CHECK(report.temporary_bytes == 777 * 20);
   CHECK(report.output_bytes == std::filesystem::file_size(scan.options.output));
-  CHECK(report.remarks.empty());
+  CHECK(report.warnings.empty());
   const StoreReader store(scan.options.output);
   const StoreMetadata& metadata = store.metadata();
   CHECK(metadata.point_count == 777);
@@ -145,8 +145,8 @@ TEST_CASE("cubes too small for their cells are remarked on") {
   Scan scan(cube_cloud(2000, -3000, 3000, 8), 1000);
   scan.options.regular_size = 1.0;
   const ConversionReport report = scan.convert();
-  REQUIRE(report.remarks.size() == 1);
-  CHECK_THAT(report.remarks[0], Contains("smaller --cell-points"));
+  REQUIRE(report.warnings.size() == 1);
+  CHECK_THAT(report.warnings[0].text, Contains("fewer points a cell"));
 }
 
 TEST_CASE("a regular layout over the whole range of the integers") {

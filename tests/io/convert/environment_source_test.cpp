@@ -23,7 +23,7 @@ struct Environment {
   std::vector<StoredPoint> points;
   std::uint64_t input_points, non_finite_points;
   double largest_change;
-  std::vector<std::string> remarks;
+  std::vector<Message> warnings;
   LengthUnit unit;
 };
 
@@ -41,7 +41,7 @@ Environment read_environment(const std::vector<std::filesystem::path>& inputs,
   out.input_points = source.input_points();
   out.non_finite_points = source.non_finite_points();
   out.largest_change = source.largest_change();
-  out.remarks = source.remarks();
+  out.warnings = source.warnings();
   out.unit = source.unit();
   return out;
 }
@@ -294,9 +294,9 @@ TEST_CASE("feet are reported, other units than the first file's refused") {
   put_bytes(folder / "metres.las", las_with_wkt(kMetreWkt));
   const Environment feet = read_environment({folder / "feet.las"});
   CHECK(feet.unit == LengthUnit::kUsSurveyFoot);
-  REQUIRE(feet.remarks.size() == 1);
-  CHECK_THAT(feet.remarks[0], Contains("feet"));
-  CHECK(read_environment({folder / "metres.las"}).remarks.empty());
+  REQUIRE(feet.warnings.size() == 1);
+  CHECK_THAT(feet.warnings[0].text, Contains("feet"));
+  CHECK(read_environment({folder / "metres.las"}).warnings.empty());
   CHECK_THAT(refusal({folder / "metres.las", folder / "feet.las"}), Contains("unit of length"));
   CHECK(read_environment({folder / "metres.las", folder / "feet.las"}, {.ignore_crs = true})
             .points.size() == 6);

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 #include "support/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/formats/model.hpp"
+#include "clearway/model.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "io/formats/model.hpp"
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "support/reader_fixture.hpp"
 #include "support/test_data.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

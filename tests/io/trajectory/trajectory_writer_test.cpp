@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "io/trajectory/trajectory.hpp"
+#include "clearway/trajectory.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 

@@ -3,15 +3,15 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "core/geometry/predicate.hpp"
 #include "io/formats/las/las_reader.hpp"
-#include "io/formats/model.hpp"
-#include "io/trajectory/trajectory.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using namespace clearway::tool;
+using namespace clearway::bench;
 
 namespace {
 

@@ -1,4 +1,4 @@
-// The built program's `bench`, on scenes of a few thousand points.
+// The built program clearway-bench, on scenes of a few thousand points.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,9 +19,10 @@ class Experiment {
       : name_(name), repetitions_(repetitions) {}
 
   Outcome run(const std::string& more = "") const {
-    return run_program(folder_, "bench " + name_ + " --size smoke --device cpu --repetitions " +
-                                    std::to_string(repetitions_) + " -o " + quoted(file()) +
-                                    " --work " + quoted(work()) + " " + more);
+    return run_program_at(CLEARWAY_BENCH_PROGRAM, folder_,
+                          name_ + " --size smoke --device cpu --repetitions " +
+                              std::to_string(repetitions_) + " -o " + quoted(file()) + " --work " +
+                              quoted(work()) + " " + more);
   }
   std::filesystem::path work() const { return folder_ / "work"; }
   std::filesystem::path file() const { return folder_ / "figures.json"; }
@@ -36,7 +37,7 @@ class Experiment {
 
 }  // namespace
 
-TEST_CASE("bench table: every exact engine finds the same points") {
+TEST_CASE("table: every exact engine finds the same points") {
   const Experiment table("table");
   const Outcome done = table.run();
   REQUIRE(done.exit_code == 0);
@@ -148,17 +149,17 @@ TEST_CASE("scenes are chosen where an experiment is about any") {
   const Experiment scaling("scaling");
   const Outcome refused = scaling.run("--scenes hall");
   CHECK(refused.exit_code == 2);
-  CHECK_THAT(refused.err, Contains("--scenes is of table and datasets"));
+  CHECK_THAT(refused.err, Contains("--scenes is for table, datasets, equality"));
   CHECK_FALSE(std::filesystem::exists(scaling.file()));
 }
 
 TEST_CASE("a work folder is of one bench at a time") {
   const Experiment datasets("datasets");
   {
-    const clearway::tool::WorkFolder taken(datasets.work());
+    const clearway::bench::WorkFolder taken(datasets.work());
     const Outcome refused = datasets.run("--scenes hall");
     CHECK(refused.exit_code == 4);
-    CHECK_THAT(refused.err, Contains("another bench uses it"));
+    CHECK_THAT(refused.err, Contains("another clearway-bench uses it"));
     CHECK_FALSE(std::filesystem::exists(datasets.file()));
   }
   CHECK(datasets.run("--scenes hall").exit_code == 0);
@@ -171,7 +172,7 @@ TEST_CASE("a work folder of another program is refused, whatever it holds") {
   Json program = Json::parse(bytes_of(note));
   const Json header = datasets.figures()["clearway"];
   for (const char* name : {"version", "commit", "build"}) CHECK(program[name] == header[name]);
-  const bool clean = !clearway::tool::may_have_changed(program);
+  const bool clean = !clearway::bench::may_have_changed(program);
   const Outcome resumed = datasets.run("--scenes hall --resume");
   CHECK(resumed.exit_code == 0);
   const std::string changed = "but the source may have changed";
@@ -198,7 +199,7 @@ TEST_CASE("a failure that says nothing of the method ends the experiment") {
   CHECK(scaling.figures()["cases"].empty());
 }
 
-TEST_CASE("bench grid: its regular layouts say how many points a chunk has") {
+TEST_CASE("grid: its regular layouts say how many points a chunk has") {
   const Experiment grid("grid", 1);
   REQUIRE(grid.run().exit_code == 0);
   std::set<std::string> varied;
@@ -213,7 +214,7 @@ TEST_CASE("bench grid: its regular layouts say how many points a chunk has") {
   CHECK(varied.size() == 3);
 }
 
-TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {
+TEST_CASE("accuracy: exact engines err nowhere, the others say where") {
   const Experiment accuracy("accuracy");
   const Outcome done = accuracy.run("--limit 4");
   CAPTURE(done.err);
@@ -245,4 +246,87 @@ TEST_CASE("bench accuracy: exact engines err nowhere, the others say where") {
   const Outcome wrong = accuracy.run("--limit 4 --resume");
   CHECK(wrong.exit_code != 0);
   CHECK_THAT(wrong.err, Contains("engines that decide exactly are wrong: exact/sweep cpu/"));
+}
+
+TEST_CASE("equality: counts and writes what differs from the sweep on the CPU") {
+  const Experiment equality("equality", 1);
+  const Outcome done = equality.run("--scenes hall");
+  CAPTURE(done.err);
+  REQUIRE(done.exit_code == 0);
+  CHECK_THAT(done.out, Contains("12 runs: 0 differ") && Contains("0 took more"));
+  Json figures = equality.figures();
+  CHECK(figures["cases"].size() == 13);
+  CHECK(figures["cases"][12]["key"] == "all");
+  CHECK(figures["cases"][12]["findings"]["runs"] == 12);
+  figures["cases"][3]["findings"]["equal"] = false;
+  equality.write(figures);
+  const Outcome differs = equality.run("--scenes hall --resume");
+  CHECK(differs.exit_code == 1);
+  CHECK_THAT(differs.out, Contains("12 runs: 1 differ"));
+  CHECK(equality.figures()["cases"][12]["findings"]["differing"] == 1);
+}
+
+TEST_CASE("equality: a query of the user's is compared too") {
+  const Experiment scene("datasets", 1);
+  REQUIRE(scene.run("--scenes tunnel").exit_code == 0);
+  const auto files = scene.work() / "tunnel-smoke";
+  const Experiment equality("equality", 1);
+  const std::string query = "--scenes hall --env " + quoted(scene.work() / "tunnel-smoke.h5");
+  CHECK(equality.run(query).exit_code == 2);
+  const Outcome done = equality.run(query + " --model " + quoted(files / "model.ply") +
+                                    " --trajectory " + quoted(files / "trajectory.txt"));
+  CAPTURE(done.err);
+  CHECK(done.exit_code == 0);
+  CHECK_THAT(done.out, Contains("18 runs: 0 differ"));
+}
+
+TEST_CASE("hard: the sweep and the k-d tree give the same bytes") {
+  const Experiment hard("hard", 1);
+  const Outcome done = hard.run();
+  CAPTURE(done.err);
+  REQUIRE(done.exit_code == 0);
+  std::set<std::string> cases;
+  const Json figures = hard.figures();
+  for (const Json& one : figures["cases"]) {
+    CAPTURE(one["key"]);
+    cases.insert(one["parameters"]["case"]);
+    const bool compared = one["parameters"]["engine"] == "kdtree cpu";
+    CHECK(one.contains("findings") == compared);
+    if (compared) CHECK(one["findings"]["equal"]);
+  }
+  CHECK(cases.size() == 13);
+}
+
+TEST_CASE("another clearway is measured where it is named") {
+  const Experiment datasets("datasets", 1);
+  const Outcome none = datasets.run("--scenes hall --program /dev/null");
+  CHECK(none.exit_code == 2);
+  CHECK_THAT(none.err, Contains("--program"));
+  const Outcome done = datasets.run("--scenes hall --cold --program '" CLEARWAY_PROGRAM "'");
+  CAPTURE(done.err);
+  CHECK(done.exit_code == 0);
+  const Json program = datasets.figures()["clearway"];
+  CHECK(program["build"] == CLEARWAY_PROGRAM);
+  CHECK(program["commit"] == "unknown");
+  CHECK(datasets.figures()["parameters"]["cold"] == true);
+}
+
+TEST_CASE("stages and peers print one JSON object") {
+  const Experiment scene("datasets", 1);
+  REQUIRE(scene.run("--scenes hall").exit_code == 0);
+  const auto files = scene.work() / "hall-smoke";
+  const ScratchFolder folder;
+  const std::string query = " --env " + quoted(scene.work() / "hall-smoke.h5") + " --model " +
+                            quoted(files / "model.ply") + " --trajectory " +
+                            quoted(files / "trajectory.txt");
+  const Outcome stages = run_program_at(CLEARWAY_BENCH_PROGRAM, folder, "stages --cold" + query);
+  CAPTURE(stages.err);
+  REQUIRE(stages.exit_code == 0);
+  CHECK(Json::parse(stages.out)["cells_read"] == 1);
+  const Outcome help = run_program_at(CLEARWAY_BENCH_PROGRAM, folder, "--help");
+  if (help.out.find("nanoflann") == std::string::npos) return;  // not found by the build
+  const Outcome peers = run_program_at(CLEARWAY_BENCH_PROGRAM, folder, "peers" + query);
+  CAPTURE(peers.err);
+  REQUIRE(peers.exit_code == 0);
+  CHECK(Json::parse(peers.out)["differing_points"] == 0);
 }

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace clearway::tool;
+using namespace clearway::bench;
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 using namespace clearway;
 using namespace clearway::test;
-using namespace clearway::tool;
+using namespace clearway::bench;
 using Catch::Contains;
 
 namespace {

@@ -2,7 +2,7 @@
 
 #include "bench/experiments/thread_counts.hpp"
 
-using namespace clearway::tool;
+using namespace clearway::bench;
 
 TEST_CASE("one thread, all cores and twice as many are measured on every machine") {
   for (int cores = 1; cores <= 300; ++cores) {

@@ -6,19 +6,19 @@
 #include <set>
 
 #include "clearway/error.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "core/geometry/rigid.hpp"
 #include "io/formats/las/las_writer.hpp"
-#include "io/formats/model.hpp"
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/formats/point_reader.hpp"
-#include "io/trajectory/trajectory.hpp"
 #include "scene/random.hpp"
 #include "support/las_bytes.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
-using namespace clearway::tool;
+using namespace clearway::bench;
 using Catch::Contains;
 
 namespace {
@@ -407,4 +407,50 @@ TEST_CASE("non-rigid poses stretch the model along its x axis") {
     for (int k = 0; k < 3; ++k) CHECK(std::abs(moved[k] - expected[k]) < 1e-9);
   }
   CHECK_THROWS_AS(write_non_rigid_poses(folder / "in.txt", folder / "out.txt", -1), UsageError);
+}
+
+TEST_CASE("a pose turns on the spot, once around") {
+  const ScratchFolder folder;
+  const auto poses = put_trajectory(folder / "in.txt", 21);
+  write_turning_poses(folder / "in.txt", folder / "out.txt", 5);
+  const auto out = read_trajectory(folder / "out.txt", {});
+  REQUIRE(out.size() == 5);
+  const Vec3 axes[] = {{1, 2, 3}, {-2, 1, 3}, {-1, -2, 3}, {2, -1, 3}, {1, 2, 3}};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Vec3 moved = transform(out[i], {1, 2, 3}), expected = transform(poses[10], axes[i]);
+    for (int k = 0; k < 3; ++k) CHECK(std::abs(moved[k] - expected[k]) < 1e-9);
+  }
+  CHECK_THROWS_AS(write_turning_poses(folder / "in.txt", folder / "out.txt", 1), UsageError);
+}
+
+TEST_CASE("every second pass is backwards, and each is moved as a whole") {
+  const ScratchFolder folder;
+  const auto poses = put_trajectory(folder / "in.txt", 7);
+  write_to_and_fro(folder / "in.txt", folder / "out.txt", 4, 0.01, 1);
+  const auto out = read_trajectory(folder / "out.txt", {.allow_non_rigid = true});
+  REQUIRE(out.size() == 28);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::size_t pass = i / 7, at = pass % 2 == 0 ? i % 7 : 6 - i % 7;
+    for (int k = 0; k < 9; ++k) CHECK(out[i].rotation[k] == poses[at].rotation[k]);
+    const std::size_t first = pass % 2 == 0 ? 0 : 6;
+    for (int k = 0; k < 3; ++k) {
+      const double shift = out[i].translation[k] - poses[at].translation[k];
+      const double of_pass = out[7 * pass].translation[k] - poses[first].translation[k];
+      CHECK(std::abs(shift) <= 0.035);
+      CHECK(shift != 0);
+      CHECK(std::abs(shift - of_pass) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("poses are moved along their own y axis") {
+  const ScratchFolder folder;
+  const auto poses = put_trajectory(folder / "in.txt", 5);
+  write_poses_aside(folder / "in.txt", folder / "out.txt", 0.5);
+  const auto out = read_trajectory(folder / "out.txt", {});
+  REQUIRE(out.size() == poses.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Vec3 moved = transform(out[i], {1, 2, 3}), expected = transform(poses[i], {1, 2.5, 3});
+    for (int k = 0; k < 3; ++k) CHECK(std::abs(moved[k] - expected[k]) < 1e-9);
+  }
 }

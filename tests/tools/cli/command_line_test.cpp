@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
-#include "io/formats/model.hpp"
-#include "io/trajectory/trajectory.hpp"
 #include "support/clouds.hpp"
 #include "support/las_bytes.hpp"
 #include "tools/cli/hall.hpp"
@@ -69,6 +69,7 @@ TEST_CASE("wrong usage exits with 2") {
   const Work work;
   check_refused(work.run(""), 2, "subcommand");
   check_refused(work.run("fly"), 2, "no such command");
+  check_refused(work.run("bench table -o a.json"), 2, "clearway-bench");
   check_refused(work.run("convert a.las"), 2, "--output");
   const std::string convert =
       "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");

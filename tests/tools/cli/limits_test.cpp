@@ -1,4 +1,4 @@
-// What docs/user-guide.md, "Limits", says of sizes and names.
+// What docs/guide/command-line.md, "Limits", says of sizes and names.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 

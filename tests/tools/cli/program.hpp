@@ -1,9 +1,6 @@
 #pragma once
 
-#include <sys/wait.h>
-
-#include <cstdlib>
-#include <stdexcept>
+#include <filesystem>
 #include <string>
 
 #include "support/result_fixture.hpp"
@@ -15,21 +12,15 @@ struct Outcome {
   std::string out, err;
 };
 
-/// Runs the built program with `arguments` (shell words), its output into files of `folder`;
-/// `pipe`, where given, is a file whose bytes come through a pipe to standard input.
-inline Outcome run_program(const ScratchFolder& folder, const std::string& arguments,
-                           const std::filesystem::path& pipe = {}) {
-  const auto out = folder / "stdout.txt", err = folder / "stderr.txt";
-  const std::string before = pipe.empty() ? "" : "cat '" + pipe.string() + "' | ";
-  const std::string command = before + "'" + CLEARWAY_PROGRAM + "' " + arguments + " >'" +
-                              out.string() + "' 2>'" + err.string() + "'";
-  const int status = std::system(command.c_str());
-  if (status == -1 || !WIFEXITED(status)) throw std::runtime_error("did not exit: " + command);
-  return {WEXITSTATUS(status), bytes_of(out), bytes_of(err)};
-}
+/// Runs a program with `arguments` (shell words), its output into files of `folder`; `pipe`, where
+/// given, is a file whose bytes come through a pipe to standard input.
+Outcome run_program_at(const std::string& program, const ScratchFolder& folder,
+                       const std::string& arguments, const std::filesystem::path& pipe = {});
 
-inline std::string quoted(const std::filesystem::path& path) {
-  return std::string("'").append(path.string()).append("'");
-}
+/// The built program clearway.
+Outcome run_program(const ScratchFolder& folder, const std::string& arguments,
+                    const std::filesystem::path& pipe = {});
+
+std::string quoted(const std::filesystem::path& path);
 
 }  // namespace clearway::test

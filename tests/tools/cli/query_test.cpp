@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
-#include "io/formats/model.hpp"
-#include "io/trajectory/trajectory.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/hall.hpp"
 
@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kClearance = 0.4;
 
-/// The hall's inputs, read back.
+/// The small hall's inputs, read back.
 struct Inputs {
   Inputs() {
-    const Hall& hall = Hall::get();
+    const Hall& hall = Hall::small();
     const StoreReader store(hall.path("site.h5"));
     for (const Quantum& q : points_by_source(store)) {
       environment.push_back(position(store.quantisation(), q[0], q[1], q[2]));
@@ -83,7 +83,7 @@ std::string csv_of(const ClearanceRows& rows) {
 }  // namespace
 
 TEST_CASE("clearances are those of brute force, beside the same collisions") {
-  const Work work;
+  const Work work{Hall::small()};
   const Inputs inputs;
   const bool first_pose = GENERATE(false, true);
   const Outcome run =
@@ -166,7 +166,7 @@ TEST_CASE("an export does not overwrite the result it is of") {
 }
 
 TEST_CASE("between poses both engines find what brute force finds") {
-  const Work work;
+  const Work work{Hall::small()};
   const std::string site = work.hall / "site.h5";
   const std::string sweep = work.path("sweep.h5"), kdtree = work.path("kdtree.h5");
   for (const std::string& options :

@@ -141,7 +141,7 @@ TEST_CASE("a second signal ends a run at once") {
   process.send(SIGINT);
   process.send(SIGCONT);
   CHECK(process.wait() == 5);
-  CHECK_THAT(process.log(), Contains("before what was in flight was finished"));
+  CHECK_THAT(process.log(), Contains("before the work in flight was finished"));
   CHECK(work.run("--resume").exit_code == 0);
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("an unfinished journal is neither used nor dropped unasked") {
   const Work work;
   work.start_and(SIGKILL);
   const std::string found = bytes_of(work.journal);
-  check_refused(work.run(""), 2, "--resume goes on with it, --force starts afresh");
+  check_refused(work.run(""), 2, "--resume continues it, --force starts again");
   check_refused(work.run(""), 2, "an unfinished run with engine grid on cpu, radius 0.1");
   check_refused(work.run("--resume --force"), 2, "--force");
   check_refused(work.run("--resume", "0.2"), 2, "its radius is 0.1, expected 0.2");
@@ -185,9 +185,9 @@ TEST_CASE("resuming without a journal starts afresh and says so") {
   const Work work;
   const Outcome outcome = work.run("--resume");
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("no journal to resume, starts afresh"));
+  CHECK_THAT(outcome.err, Contains("no journal to resume, starts from the beginning"));
   put_bytes(work.journal, "CLWYJ");
-  CHECK_THAT(work.run("--force").err, Contains("removed, starts afresh"));
+  CHECK_THAT(work.run("--force").err, Contains("removed, starts from the beginning"));
   std::filesystem::remove(work.output);
   put_bytes(work.journal, "CLWYJ");
   CHECK_THAT(work.run("").err, Contains("nothing in it yet"));
@@ -201,7 +201,7 @@ TEST_CASE("a resumed run leaves a result alone that answers its query, and no ot
   const std::string bytes = bytes_of(work.output);
   const Outcome again = work.run("--resume --json", "0.1", "sweep");
   CHECK(again.exit_code == 0);
-  CHECK_THAT(again.err, Contains("is the answer already"));
+  CHECK_THAT(again.err, Contains("is the finished result of this query already"));
   const json found = json::parse(first.out), kept = json::parse(again.out);
   for (const char* same : {"environment_points", "colliding_points", "cells_total"}) {
     CHECK(kept[same] == found[same]);
@@ -245,7 +245,7 @@ TEST_CASE("an existing result stays until a resumed run replaces it, and only wh
   put_bytes(work.output, done);  // as if killed between the result's name and its journal's end
   const Outcome outcome = work.run("--resume");
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("is the answer already"));
+  CHECK_THAT(outcome.err, Contains("is the finished result of this query already"));
   CHECK(work.files() == Names{"out.h5"});
 }
 

@@ -1,5 +1,6 @@
 // Commands that are asked to stop, or killed, while they write.
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 
 #include <algorithm>

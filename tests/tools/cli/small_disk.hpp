@@ -1,12 +1,7 @@
 #pragma once
 
-#include <sched.h>
-#include <sys/mount.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <cstdint>
-#include <stdexcept>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,57 +11,26 @@ namespace clearway::test {
 
 /// Lets this process mount file systems, which only it and its children see, and which go with it.
 /// False where the system does not permit that. Before there are threads.
-inline bool may_mount() {
-  static const bool may = [] {
-    const std::string user = "0 " + std::to_string(::getuid()) + " 1";
-    const std::string group = "0 " + std::to_string(::getgid()) + " 1";
-    if (::unshare(CLONE_NEWNS) != 0) {
-      if (::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return false;
-      put_bytes("/proc/self/setgroups", "deny");
-      put_bytes("/proc/self/uid_map", user);
-      put_bytes("/proc/self/gid_map", group);
-    }
-    return ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
-  }();
-  return may;
-}
+bool may_mount();
 
 /// A file system in memory with room for a few bytes. Only where may_mount().
 class SmallDisk {
  public:
-  explicit SmallDisk(std::uint64_t bytes) {
-    std::filesystem::create_directory(folder_ / "disk");
-    if (::mount("none", path().c_str(), "tmpfs", 0, size_option(bytes).c_str()) != 0) {
-      throw std::runtime_error("cannot mount a file system in memory");
-    }
-  }
+  explicit SmallDisk(std::uint64_t bytes);
   SmallDisk(const SmallDisk&) = delete;
   SmallDisk& operator=(const SmallDisk&) = delete;
-  ~SmallDisk() { ::umount2(path().c_str(), MNT_DETACH); }
+  ~SmallDisk();
 
   std::filesystem::path path() const { return folder_ / "disk"; }
   std::filesystem::path operator/(const std::string& name) const { return path() / name; }
 
-  void resize(std::uint64_t bytes) { remount(0, bytes); }
-  void make_read_only(std::uint64_t bytes) { remount(MS_RDONLY, bytes); }
+  void resize(std::uint64_t bytes);
+  void make_read_only(std::uint64_t bytes);
 
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path())) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
+  std::vector<std::string> files() const;
 
  private:
-  static std::string size_option(std::uint64_t bytes) { return "size=" + std::to_string(bytes); }
-  void remount(unsigned long flags, std::uint64_t bytes) {
-    if (::mount(nullptr, path().c_str(), nullptr, MS_REMOUNT | flags, size_option(bytes).c_str()) !=
-        0) {
-      throw std::runtime_error("cannot change the file system in memory");
-    }
-  }
+  void remount(unsigned long flags, std::uint64_t bytes);
 
   ScratchFolder folder_;
 };

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
-#include "io/formats/model.hpp"
-#include "io/trajectory/trajectory.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
 #include "tools/cli/program.hpp"

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "cpu/brute_force.hpp"
-#include "io/formats/model.hpp"
 #include "io/journal/journal.hpp"
-#include "io/trajectory/trajectory.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/hall.hpp"
 

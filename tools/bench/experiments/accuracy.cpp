@@ -4,7 +4,7 @@
 #include "bench/measure/scoring.hpp"
 #include "bench/variants/variants.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 /// A whole UTM coordinate, and the farthest that int32 at 0.1 mm and offsets in metres are used
@@ -105,4 +105,4 @@ void bench_accuracy(Bench& bench) {
   accuracy.finish();
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

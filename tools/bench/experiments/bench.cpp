@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "bench/measure/machine.hpp"
+#include "bench/measure/page_cache.hpp"
 #include "bench/measure/program.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
@@ -14,7 +14,7 @@
 #include "gpu/devices.hpp"
 #endif
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 bool use_cuda(const std::string& device) {
@@ -27,18 +27,31 @@ bool use_cuda(const std::string& device) {
   return found && device != "cpu";
 }
 
-Json header_of(const std::string& experiment, const BenchOptions& options, bool cuda) {
+/// Of the measured program: as of this one, where they were built together.
+Json description_of(const BenchOptions& options, const Program& program) {
+  if (options.program.empty()) return program_description();
+  std::string version = program.output_of({"--version"});
+  version.erase(version.find_last_not_of('\n') + 1);
+  return {{"version", version}, {"commit", "unknown"}, {"build", program.path().string()}};
+}
+
+/// Options of later versions are there only where they are used, as in older files.
+Json header_of(const std::string& experiment, const BenchOptions& options, bool cuda,
+               const Json& program) {
+  Json parameters{{"device", cuda ? "cuda" : "cpu"},
+                  {"repetitions", options.repetitions},
+                  {"scenes", options.scenes},
+                  {"memory", options.memory},
+                  {"device_memory", options.device_memory},
+                  {"limit", options.limit_seconds}};
+  if (!options.gpus.empty()) parameters["gpus"] = options.gpus;
+  if (options.cold) parameters["cold"] = true;
+  if (!options.also.store.empty()) parameters["env"] = options.also.store.string();
   return {{"experiment", experiment},
           {"size", options.size},
           {"machine", machine_description()},
-          {"clearway", program_description()},
-          {"parameters",
-           {{"device", cuda ? "cuda" : "cpu"},
-            {"repetitions", options.repetitions},
-            {"scenes", options.scenes},
-            {"memory", options.memory},
-            {"device_memory", options.device_memory},
-            {"limit", options.limit_seconds}}}};
+          {"clearway", program},
+          {"parameters", std::move(parameters)}};
 }
 
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
@@ -47,9 +60,8 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
 }
 
 /// Locked, and noted as of this program.
-WorkFolder work_folder_at(const std::filesystem::path& path) {
+WorkFolder work_folder_at(const std::filesystem::path& path, const Json& program) {
   WorkFolder folder(path);
-  const Json program = program_description();
   const auto remark = folder.note_program({{"version", program["version"]},
                                            {"commit", program["commit"]},
                                            {"build", program["build"]}});
@@ -65,32 +77,21 @@ constexpr const char* kTruthClearance = "0.3";
 
 }  // namespace
 
-scene::Sizes scene_size(const std::string& name, const std::string& size) {
-  static const std::map<std::string, scene::Sizes> kSmall{{"mine", {4'000'000, 10'000, 1'800}},
-                                                          {"hall", {1'110'000, 20'000, 1'700}},
-                                                          {"plant", {2'000'000, 40'000, 8'000}},
-                                                          {"tunnel", {500'000, 5'000, 1'900}}};
-  if (size == "smoke") return {20'000, 500, 100};
-  if (size == "small") return kSmall.at(name);
-  scene::Sizes sizes = scene::full_sizes(scene::kind_named(name));
-  if (size == "tenth") sizes.points /= 10;
-  return sizes;
-}
-
 EngineChoice EngineChoice::with(const std::vector<std::string>& more) const {
   return {name, joined(options, more), exact};
 }
 
 Bench::Bench(const std::string& experiment, const BenchOptions& options)
     : options_(options),
-      work_(work_folder_at(options.work)),
+      program_(options.program),
+      description_(description_of(options, program_)),
+      work_(work_folder_at(options.work, description_)),
       cuda_(use_cuda(options.device)),
-      record_(options_.output, header_of(experiment, options, cuda_), options.resume,
+      record_(options_.output, header_of(experiment, options, cuda_, description_), options.resume,
               options.force) {
-  const Json program = program_description();
-  if (record_.empty() || !may_have_changed(program)) return;
+  if (record_.empty() || !may_have_changed(description_)) return;
   spdlog::warn("{}: its cases are of commit {} too, but the source may have changed since",
-               options_.output.string(), program["commit"].get<std::string>());
+               options_.output.string(), description_["commit"].get<std::string>());
 }
 
 SceneFiles Bench::scene(const std::string& name) { return scene(name, options_.size); }
@@ -104,13 +105,28 @@ SceneFiles Bench::scene(const std::string& name, const std::string& of_size) {
   if (!std::filesystem::exists(files.trajectory)) {
     const scene::Sizes size = scene_size(name, of_size);
     spdlog::info("{}: making the scene", folder.string());
-    output_of_program({"scene", name, "-o", folder.string(), "--points",
-                       std::to_string(size.points), "--model-points",
-                       std::to_string(size.model_points), "--poses", std::to_string(size.poses),
-                       "--force"});
+    make_scene(folder, name, size);
   }
   files.store = store(name + "-" + of_size, files.environment);
   return files;
+}
+
+SceneFiles Bench::resized(const std::string& name, SceneFiles files, std::uint64_t model_points,
+                          std::uint64_t poses) {
+  const auto folder = work() / (name + "-" + std::to_string(model_points) + "-points-" +
+                                std::to_string(poses) + "-poses");
+  files.model = folder / "model.ply";
+  files.trajectory = folder / "trajectory.txt";
+  if (!std::filesystem::exists(files.trajectory))
+    make_scene(folder, name, {1, model_points, poses});
+  return files;
+}
+
+void Bench::make_scene(const std::filesystem::path& folder, const std::string& name,
+                       const scene::Sizes& size) const {
+  program_.output_of({"scene", name, "-o", folder.string(), "--points", std::to_string(size.points),
+                      "--model-points", std::to_string(size.model_points), "--poses",
+                      std::to_string(size.poses), "--force"});
 }
 
 std::filesystem::path Bench::store(const std::string& name,
@@ -119,18 +135,23 @@ std::filesystem::path Bench::store(const std::string& name,
   std::filesystem::path path = work() / (name + ".h5");
   if (!std::filesystem::exists(path)) {
     spdlog::info("{}: converting", path.string());
-    output_of_program(joined({"convert", environment.string(), "-o", path.string(), "--memory",
-                              options_.memory, "--force"},
-                             options));
+    program_.output_of(joined({"convert", environment.string(), "-o", path.string(), "--memory",
+                               options_.memory, "--force"},
+                              options));
   }
   return path;
+}
+
+void Bench::run(const SceneFiles& files, const std::filesystem::path& result,
+                const std::vector<std::string>& run_options) const {
+  program_.output_of(command(files, result, run_options));
 }
 
 std::filesystem::path Bench::answer(const std::string& name, const SceneFiles& files,
                                     const std::vector<std::string>& run_options) {
   std::filesystem::path path = work_.answers() / (name + "-" + options_.size + ".h5");
   std::filesystem::create_directories(work_.answers());
-  if (!std::filesystem::exists(path)) output_of_program(command(files, path, run_options));
+  if (!std::filesystem::exists(path)) run(files, path, run_options);
   return path;
 }
 
@@ -159,10 +180,10 @@ SceneFiles Bench::shifted(const std::string& name, const SceneFiles& files, cons
 Json Bench::convert(const std::string& key, const std::filesystem::path& environment,
                     const std::filesystem::path& path,
                     const std::vector<std::string>& convert_options) {
-  const ProgramRun run = run_program(joined({"convert", environment.string(), "-o", path.string(),
-                                             "--memory", options_.memory, "--force"},
-                                            convert_options),
-                                     options_.limit_seconds);
+  const ProgramRun run = program_.run(joined({"convert", environment.string(), "-o", path.string(),
+                                              "--memory", options_.memory, "--force"},
+                                             convert_options),
+                                      options_.limit_seconds);
   if (run.exit_code != 0) return {{"failed", finding(key, run, Refusal::kMemory)}};
   return {{"convert_seconds", run.wall_seconds},
           {"convert_peak_bytes", run.peak_bytes},
@@ -210,6 +231,9 @@ std::vector<std::string> Bench::command(const SceneFiles& files,
     return std::find(run_options.begin(), run_options.end(), word) != run_options.end();
   };
   if (!given("--radius")) arguments = joined(std::move(arguments), {"--radius", kRadius});
+  if (given("cuda") && !options_.gpus.empty()) {
+    arguments = joined(std::move(arguments), {"--gpus", options_.gpus});
+  }
   if (given("cuda") && !given("--device-memory")) {
     arguments = joined(std::move(arguments), {"--device-memory", options_.device_memory});
   }
@@ -227,7 +251,9 @@ Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& f
   double seconds = 0;
   for (int i = 0; i < repetitions.value_or(options_.repetitions); ++i) {
     if (seconds > kEnoughSeconds) break;
-    const ProgramRun run = run_program(command(files, result, run_options), options_.limit_seconds);
+    if (options_.cold) drop_from_page_cache(files.store);
+    const ProgramRun run =
+        program_.run(command(files, result, run_options), options_.limit_seconds);
     if (run.exit_code != 0) {
       one["failed"] = finding(key, run, expected);
       return record_.add(std::move(one));
@@ -257,4 +283,8 @@ Json Bench::keep(const std::string& key, Json parameters, const std::function<Js
       {{"key", key}, {"parameters", std::move(parameters)}, {"findings", std::move(found)}});
 }
 
-}  // namespace clearway::tool
+void Bench::conclude(Json findings) {
+  record_.add({{"key", "all"}, {"parameters", Json::object()}, {"findings", std::move(findings)}});
+}
+
+}  // namespace clearway::bench

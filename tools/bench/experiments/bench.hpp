@@ -13,27 +13,32 @@
 #include "clearway/vec3.hpp"
 #include "scene/scene.hpp"
 
-namespace clearway::tool {
-
-struct BenchOptions {
-  std::filesystem::path output, work;
-  std::string size = "small";   ///< "smoke", "small" or "full"
-  std::string device = "auto";  ///< "auto", "cpu" or "cuda"
-  int repetitions = 3;
-  std::vector<std::string> scenes{"mine", "hall", "plant", "tunnel"};
-  std::string memory = "4G", device_memory = "2G";
-  double limit_seconds = 60;  ///< of one run; one that takes longer is stopped, and has failed
-  bool resume = false, force = false;
-};
-
-/// size: that of the options, or "tenth" of the points of the paper's.
-scene::Sizes scene_size(const std::string& name, const std::string& size);
+namespace clearway::bench {
 
 /// A query to be asked: a store, a model and a trajectory.
 struct SceneFiles {
   std::filesystem::path environment;  ///< LAS
   std::filesystem::path store, model, trajectory;
 };
+
+struct BenchOptions {
+  std::filesystem::path program;  ///< that is measured; empty: clearway beside this one
+  std::filesystem::path output, work;
+  std::string size = "small";   ///< "smoke", "small" or "full"
+  std::string device = "auto";  ///< "auto", "cpu" or "cuda"
+  int repetitions = 3;
+  std::vector<std::string> scenes{"mine", "hall", "plant", "tunnel"};
+  std::string memory = "4G", device_memory = "2G";
+  std::string gpus;           ///< of every run on a GPU: "0,1"; empty: the first with room
+  bool cold = false;          ///< every run reads its store from the disk
+  SceneFiles also;            ///< a query of the user's, for equality; may be empty
+  double limit_seconds = 60;  ///< of one run; one that takes longer is stopped, and has failed
+  bool resume = false, force = false;
+};
+
+/// size: that of the options; "tenth" of the points of the paper's; "hard" or "equality", the small
+/// sizes of those experiments.
+scene::Sizes scene_size(const std::string& name, const std::string& size);
 
 /// An engine on a device, with options of `clearway run`.
 struct EngineChoice {
@@ -54,6 +59,7 @@ class Bench {
   Bench(const std::string& experiment, const BenchOptions& options);
 
   const BenchOptions& options() const { return options_; }
+  const Program& program() const { return program_; }
   bool full() const { return options_.size == "full"; }
   bool cuda() const { return cuda_; }
   const std::filesystem::path& work() const { return work_.path(); }
@@ -61,9 +67,16 @@ class Bench {
   /// Made on the first call, kept in the work folder, at the size of the options or another one.
   SceneFiles scene(const std::string& name);
   SceneFiles scene(const std::string& name, const std::string& size);
+  /// The scene's environment with a model and a trajectory of other sizes.
+  SceneFiles resized(const std::string& name, SceneFiles files, std::uint64_t model_points,
+                     std::uint64_t poses);
   /// A store of an environment, made on the first call; `name` is that of its file.
   std::filesystem::path store(const std::string& name, const std::filesystem::path& environment,
                               const std::vector<std::string>& options = {});
+
+  /// Runs `clearway` into a file that is replaced; no case.
+  void run(const SceneFiles& files, const std::filesystem::path& result,
+           const std::vector<std::string>& run_options) const;
 
   /// A result, made on the first call and kept; no case.
   std::filesystem::path answer(const std::string& name, const SceneFiles& files,
@@ -104,7 +117,13 @@ class Bench {
   /// Any other case.
   Json keep(const std::string& key, Json parameters, const std::function<Json()>& findings);
 
+  /// The case "all", made anew: what is found of all cases together.
+  void conclude(Json findings);
+
  private:
+  void make_scene(const std::filesystem::path& folder, const std::string& name,
+                  const scene::Sizes& size) const;
+
   std::vector<std::string> command(const SceneFiles& files, const std::filesystem::path& result,
                                    const std::vector<std::string>& run_options) const;
 
@@ -112,6 +131,8 @@ class Bench {
   Json finding(const std::string& key, const ProgramRun& failed, Refusal expected) const;
 
   BenchOptions options_;
+  Program program_;
+  Json description_;  ///< of the program
   WorkFolder work_;
   bool cuda_;
   Record record_;
@@ -129,5 +150,7 @@ void bench_points(Bench& bench);
 void bench_accuracy(Bench& bench);
 void bench_stability(Bench& bench);
 void bench_scaling(Bench& bench);
+void bench_hard(Bench& bench);
+void bench_equality(Bench& bench);
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

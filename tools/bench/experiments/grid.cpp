@@ -1,7 +1,7 @@
 // Fig. 2: time of each step by grid resolution, in the adaptive layout and the paper's regular one.
 #include "bench/experiments/bench.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 constexpr const char* kGridCells[] = {"0.04", "0.05", "0.07", "0.1", "0.14", "0.2", "0.28", "0.4"};
@@ -41,4 +41,4 @@ void bench_grid(Bench& bench) {
   }
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

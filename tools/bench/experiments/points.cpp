@@ -2,13 +2,13 @@
 #include "bench/experiments/bench.hpp"
 #include "bench/variants/variants.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 constexpr int kSamples = 111;
 constexpr int kSlowEvery = 10;  ///< forward engines: every tenth sample
 constexpr int kStride = 40;     ///< order of the samples: a part of them covers the range
-constexpr std::uint64_t kSeed = 4;
+constexpr std::uint64_t kSampleSeed = 4;
 
 }  // namespace
 
@@ -30,7 +30,8 @@ void bench_points(Bench& bench) {
       if (bench.find(key)) continue;
       if (!made) {
         std::filesystem::remove(files.store);
-        sample_environment(hall.environment, sample, points, kSeed + static_cast<std::uint64_t>(i));
+        sample_environment(hall.environment, sample, points,
+                           kSampleSeed + static_cast<std::uint64_t>(i));
         bench.store("sample", sample);
         made = true;
       }
@@ -45,4 +46,4 @@ void bench_points(Bench& bench) {
   std::filesystem::remove(sample);
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

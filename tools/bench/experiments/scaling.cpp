@@ -1,22 +1,8 @@
 // Time by the number of poses, of model points, the radius, and the points of a cell.
 #include "bench/experiments/bench.hpp"
-#include "bench/measure/program.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
-
-/// Model and trajectory of the hall at other sizes than its own.
-SceneFiles resized(Bench& bench, SceneFiles hall, std::uint64_t model_points, std::uint64_t poses) {
-  const auto folder = bench.work() / ("hall-" + std::to_string(model_points) + "-points-" +
-                                      std::to_string(poses) + "-poses");
-  hall.model = folder / "model.ply";
-  hall.trajectory = folder / "trajectory.txt";
-  if (!std::filesystem::exists(hall.trajectory)) {
-    output_of_program({"scene", "hall", "-o", folder.string(), "--points", "1", "--model-points",
-                       std::to_string(model_points), "--poses", std::to_string(poses), "--force"});
-  }
-  return hall;
-}
 
 class Scaling {
  public:
@@ -25,14 +11,14 @@ class Scaling {
   void poses() {
     for (const std::uint64_t n : {100, 300, 1'000, 3'000, 10'000, 30'000}) {
       if (!bench_.full() && n > 10'000) continue;
-      measure("poses", n, resized(bench_, hall_, size_.model_points, n), {});
+      measure("poses", n, bench_.resized("hall", hall_, size_.model_points, n), {});
     }
   }
 
   void model_points() {
     for (const std::uint64_t n : {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000}) {
       if (!bench_.full() && n > 100'000) continue;
-      measure("model points", n, resized(bench_, hall_, n, size_.poses), {});
+      measure("model points", n, bench_.resized("hall", hall_, n, size_.poses), {});
     }
   }
 
@@ -76,4 +62,4 @@ void bench_scaling(Bench& bench) {
   scaling.cell_points();
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -2,7 +2,7 @@
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 /// The engines that decide exactly, and float alone as the paper's GPU method.
@@ -42,4 +42,4 @@ void bench_datasets(Bench& bench) {
   }
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -2,7 +2,7 @@
 
 #include <set>
 
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// One thread, all cores and twice as many, and some sixteen steps between them.
 inline std::set<int> thread_counts(int cores) {
@@ -12,4 +12,4 @@ inline std::set<int> thread_counts(int cores) {
   return counts;
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -4,7 +4,7 @@
 #include "bench/experiments/bench.hpp"
 #include "bench/experiments/thread_counts.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 void bench_threads(Bench& bench) {
   // Large enough to keep all threads busy.
   const bool small = bench.options().size == "small";
@@ -19,4 +19,4 @@ void bench_threads(Bench& bench) {
   }
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -5,7 +5,7 @@
 
 #include "cli/exit_code.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 
 bool is_finding(const ProgramRun& failed, Refusal expected) {
   if (failed.timed_out) return true;
@@ -14,10 +14,10 @@ bool is_finding(const ProgramRun& failed, Refusal expected) {
       return false;
     case Refusal::kMemory: {
       static const std::regex kTooLittle("--(device-)?memory( [0-9.]+ [KMGT]?i?B)? is too little");
-      return failed.exit_code == kResource && std::regex_search(failed.log, kTooLittle);
+      return failed.exit_code == tool::kResource && std::regex_search(failed.log, kTooLittle);
     }
     case Refusal::kNonRigidPoses:
-      return failed.exit_code == kBadInput &&
+      return failed.exit_code == tool::kBadInput &&
              failed.log.find("(--allow-non-rigid accepts") != std::string::npos;
   }
   return false;
@@ -38,4 +38,4 @@ std::string reason_of(const Json& failure) {
   return log.substr(log.rfind('\n') + 1) + " (exit code " + failure["exit_code"].dump() + ")";
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

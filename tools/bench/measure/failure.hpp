@@ -3,7 +3,7 @@
 #include "bench/measure/program.hpp"
 #include "bench/measure/record.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// A refusal that says something of the method, so that a case may end with it.
 enum class Refusal {
@@ -22,4 +22,4 @@ Json failure_of(const ProgramRun& failed, double limit_seconds);
 /// In a line, from what is kept.
 std::string reason_of(const Json& failure);
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -16,7 +16,7 @@
 #include "gpu/devices.hpp"
 #endif
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 /// The value of the first line "key<separator>value" of a file, quotes left out; empty where there
@@ -71,4 +71,4 @@ nlohmann::ordered_json program_description() {
           {"libraries", libraries}};
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -8,7 +8,7 @@
 #include "io/result/result_cursor.hpp"
 #include "io/system/input_error.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 constexpr double kDecades[] = {1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8,
@@ -103,4 +103,4 @@ NearBoundary points_near_boundary(const ResultReader& truth, double radius) {
   return out;
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -8,7 +8,7 @@
 /// How wrong an answer is, given the truth: a result with clearances of a distance D beyond its
 /// radius r (`run --radius r --clearance D`), so that it holds the exact distance d of every point
 /// that can be expected to be decided wrongly.
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// Points on which two answers differ. A wrong point's distance is |d - r|, how far it lies from
 /// the decision boundary.
@@ -37,4 +37,4 @@ using NearBoundary = std::array<std::uint64_t, 41>;
 /// Throws InputError unless the clearances reach 2^40 ulps beyond the radius, about 2.5e-4 of it.
 NearBoundary points_near_boundary(const ResultReader& truth, double radius);
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

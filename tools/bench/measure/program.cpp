@@ -19,7 +19,7 @@
 #include "core/util/stopwatch.hpp"
 #include "io/system/file.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 /// How often a signal to this program, and the limit, are looked at.
@@ -45,14 +45,14 @@ std::string joined(const std::vector<std::string>& arguments) {
   return line;
 }
 
-/// In the child: this program, with these files as standard output and error. Asked to stop when
+/// In the child: that program, with these files as standard output and error. Asked to stop when
 /// its parent dies. Does not return.
-[[noreturn]] void become_program(char** words, int output, int log) {
+[[noreturn]] void become_program(const char* path, char** words, int output, int log) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(log, STDERR_FILENO) >= 0) {
-    ::execv("/proc/self/exe", words);
+    ::execv(path, words);
   }
-  ::_exit(kResource);
+  ::_exit(tool::kResource);
 }
 
 /// Waits for the end of the process that `handle` is of, or until it has taken longer than the
@@ -62,7 +62,7 @@ bool wait_within(pid_t process, const File& handle, double limit_seconds, const 
   for (;;) {
     if (::poll(&ended, 1, kLookMilliseconds) > 0) return false;
     const bool late = limit_seconds > 0 && wall.seconds() > limit_seconds;
-    if (!late && !stop_requested()) continue;
+    if (!late && !tool::stop_requested()) continue;
     ::kill(process, SIGTERM);
     return late;
   }
@@ -82,17 +82,26 @@ Ending reaped(pid_t process) {
 
 }  // namespace
 
-ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds) {
+Program::Program(std::filesystem::path path) : path_(std::move(path)) {
+  if (path_.empty())
+    path_ = std::filesystem::read_symlink("/proc/self/exe").replace_filename("clearway");
+  if (::access(path_.c_str(), X_OK) == 0) return;
+  throw UsageError(path_.string() + ": is no program to be run; --program names another clearway");
+}
+
+ProgramRun Program::run(std::vector<std::string> arguments, double limit_seconds) const {
   const std::string line = joined(arguments);
   arguments.insert(arguments.begin(), "clearway");
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   const File output = memory_file("standard output"), log = memory_file("standard error");
   const Stopwatch wall;
   const pid_t child = ::fork();
   if (child < 0) throw ResourceError(line + ": cannot start: " + std::strerror(errno));
-  if (child == 0) become_program(words.data(), output.descriptor(), log.descriptor());
+  if (child == 0)
+    become_program(path_.c_str(), words.data(), output.descriptor(), log.descriptor());
   bool timed_out = false;
   try {
     const File handle = opened(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)), "pidfd_open");
@@ -109,19 +118,19 @@ ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds)
                  .log = text_of(log),
                  .wall_seconds = wall.seconds(),
                  .peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
-  if (stop_requested()) throw Interrupted(line + ": interrupted");
+  if (tool::stop_requested()) throw Interrupted(line + ": interrupted");
   if (timed_out) return run;
-  if (run.exit_code == kInterrupted) throw Interrupted(line + ": interrupted");
+  if (run.exit_code == tool::kInterrupted) throw Interrupted(line + ": interrupted");
   if (run.exit_code < 0) {
     throw ResourceError(line + ": ended by signal " + std::to_string(WTERMSIG(status)));
   }
   return run;
 }
 
-std::string output_of_program(const std::vector<std::string>& arguments) {
-  ProgramRun run = run_program(arguments);
-  if (run.exit_code != 0) throw ResourceError(joined(arguments) + ": " + run.log);
-  return std::move(run.output);
+std::string Program::output_of(const std::vector<std::string>& arguments) const {
+  ProgramRun done = run(arguments);
+  if (done.exit_code != 0) throw ResourceError(joined(arguments) + ": " + done.log);
+  return std::move(done.output);
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-namespace clearway::tool {
+namespace clearway::bench {
 
-/// What a process of this program did.
+/// What a process of the measured program did.
 struct ProgramRun {
   int exit_code = 0;
   bool timed_out = false;
@@ -15,12 +16,24 @@ struct ProgramRun {
   std::uint64_t peak_bytes = 0;  ///< of resident memory, mapped files included
 };
 
-/// Runs this program in a process of its own with these arguments, `clearway` itself left out; it
-/// is asked to stop where it takes longer than that (0: as long as it likes). Throws ResourceError
-/// where it cannot be started or dies of a signal, Interrupted where it was.
-ProgramRun run_program(std::vector<std::string> arguments, double limit_seconds = 0);
+/// The program `clearway` that is measured.
+class Program {
+ public:
+  /// An empty path stands for the one beside this program. Throws UsageError where there is none.
+  explicit Program(std::filesystem::path path);
 
-/// Its standard output; throws ResourceError with its command and log unless it exits with 0.
-std::string output_of_program(const std::vector<std::string>& arguments);
+  const std::filesystem::path& path() const { return path_; }
 
-}  // namespace clearway::tool
+  /// Runs it in a process of its own with these arguments. The process is asked to stop after
+  /// `limit_seconds` (0: never). Throws ResourceError where it cannot be started or a signal ends
+  /// it, Interrupted where this program or it was interrupted.
+  ProgramRun run(std::vector<std::string> arguments, double limit_seconds = 0) const;
+
+  /// Its standard output; throws ResourceError with command and log unless it exits with 0.
+  std::string output_of(const std::vector<std::string>& arguments) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace clearway::bench

@@ -5,7 +5,7 @@
 #include "io/system/file.hpp"
 #include "io/system/pending_file.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// Has write(const File&) fill a file that replaces `out` once it is complete. Throws UsageError
 /// where `out` is `in`, and what PendingFile, File and `write` throw; then `out` is as it was.
@@ -17,4 +17,4 @@ void publish(const std::filesystem::path& in, const std::filesystem::path& out, 
   pending.publish();
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

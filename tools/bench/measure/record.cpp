@@ -7,7 +7,7 @@
 #include "clearway/error.hpp"
 #include "io/system/pending_file.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 Json read(const std::filesystem::path& path) {
@@ -18,7 +18,7 @@ Json read(const std::filesystem::path& path) {
   };
   if (!in || !all.is_object() || !all.contains("cases") || !all["cases"].is_array() ||
       !std::all_of(all["cases"].begin(), all["cases"].end(), is_case)) {
-    throw InputError(path.string() + ": is not a file of clearway bench");
+    throw InputError(path.string() + ": is not a file of clearway-bench");
   }
   return all;
 }
@@ -26,11 +26,11 @@ Json read(const std::filesystem::path& path) {
 /// Of a parameter that may differ; that of each case it has stopped is kept with it.
 constexpr const char* kLimit = "limit";
 
-std::string text_of(const Json& value) {
+std::string plain_text(const Json& value) {
   if (value.is_null()) return "nothing";
   if (!value.is_array()) return value.is_string() ? value.get<std::string>() : value.dump();
   std::string text;
-  for (const Json& one : value) text += (text.empty() ? "" : ",") + text_of(one);
+  for (const Json& one : value) text += (text.empty() ? "" : ",") + plain_text(one);
   return text;
 }
 
@@ -45,8 +45,8 @@ void check_same(const std::filesystem::path& path, const std::string& name, cons
                 const Json& now) {
   if (earlier == now) return;
   if (!now.is_object() || !earlier.is_object()) {
-    throw UsageError(path.string() + ": differs in " + name + ": " + text_of(earlier) +
-                     " in the file, " + text_of(now) + " now; --force replaces it");
+    throw UsageError(path.string() + ": differs in " + name + ": " + plain_text(earlier) +
+                     " in the file, " + plain_text(now) + " now; --force replaces it");
   }
   Json both = now;
   both.update(earlier);
@@ -114,4 +114,4 @@ void Record::write() const {
   pending.publish();
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace clearway::tool {
+namespace clearway::bench {
 
 using Json = nlohmann::ordered_json;
 
@@ -33,4 +33,4 @@ class Record {
   Json all_;
 };
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

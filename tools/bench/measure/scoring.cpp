@@ -1,10 +1,19 @@
 #include "bench/measure/scoring.hpp"
 
-#include "bench/measure/misclassified.hpp"
-#include "clearway/error.hpp"
-#include "io/result/compare_results.hpp"
+#include <cstring>
 
-namespace clearway::tool {
+#include "bench/measure/misclassified.hpp"
+#include "io/result/compare_results.hpp"
+#include "io/system/mapped_file.hpp"
+
+namespace clearway::bench {
+
+bool same_bytes(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const MappedFile one(a), other(b);
+  return one.bytes().size() == other.bytes().size() &&
+         std::memcmp(one.bytes().data(), other.bytes().data(), one.bytes().size()) == 0;
+}
+
 Json compared(const std::filesystem::path& result, const std::filesystem::path& reference) {
   const Comparison found = compare_results(ResultReader(result), ResultReader(reference), 0);
   return {{"common", found.common},
@@ -33,7 +42,7 @@ void WrongCases::look_at(const Json& of_case) {
 }
 
 void WrongCases::refuse() const {
-  if (!keys_.empty()) throw Error("engines that decide exactly are wrong: " + keys_);
+  if (!keys_.empty()) throw ResultsDiffer("engines that decide exactly are wrong: " + keys_);
 }
 
 Json near_boundary(const std::filesystem::path& truth) {
@@ -42,4 +51,4 @@ Json near_boundary(const std::filesystem::path& truth) {
           {"within_ulps", points_near_boundary(reader, reader.header().radius)}};
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

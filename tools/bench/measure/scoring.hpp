@@ -4,9 +4,13 @@
 #include <string>
 
 #include "bench/measure/record.hpp"
+#include "clearway/error.hpp"
 
 /// What is said of a result.
-namespace clearway::tool {
+namespace clearway::bench {
+
+/// Whether two files have the same bytes.
+bool same_bytes(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// How its set differs from a reference's, about the same environment.
 Json compared(const std::filesystem::path& result, const std::filesystem::path& reference);
@@ -14,12 +18,18 @@ Json compared(const std::filesystem::path& result, const std::filesystem::path& 
 /// How many points it decides wrongly, and how far from the boundary (misclassified.hpp).
 Json judged(const std::filesystem::path& result, const std::filesystem::path& truth);
 
+/// Results that must be equal are not.
+class ResultsDiffer : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Notes which cases are wrong of engines that decide exactly.
 class WrongCases {
  public:
   /// Looks at the findings of compared() or judged(), where the case has them.
   void look_at(const Json& of_case);
-  /// Throws Error with the keys of the wrong ones.
+  /// Throws ResultsDiffer with the keys of the wrong ones.
   void refuse() const;
 
  private:
@@ -29,4 +39,4 @@ class WrongCases {
 /// How many points lie within 2^i ulps of the radius, i from 0.
 Json near_boundary(const std::filesystem::path& truth);
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -11,7 +11,7 @@
 #include "io/system/file_lock.hpp"
 #include "io/system/pending_file.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +35,7 @@ File locked(const fs::path& folder) {
   File file = File::adopt(descriptor, path.string());
   if (!lock_whole(file)) {
     throw ResourceError(folder.string() +
-                        ": another bench uses it; wait for it, or take another --work");
+                        ": another clearway-bench uses it; wait for it, or take another --work");
   }
   return file;
 }
@@ -94,4 +94,4 @@ std::optional<std::string> WorkFolder::note_program(const Json& program) const {
 
 WorkFolder::WorkFolder(fs::path path) : path_(made(std::move(path))), lock_(locked(path_)) {}
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -7,7 +7,7 @@
 #include "bench/measure/record.hpp"
 #include "io/system/file.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// Whether a program of this description, its "commit", may be of another source than one of the
 /// same description.
@@ -36,4 +36,4 @@ class WorkFolder {
   File lock_;
 };
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

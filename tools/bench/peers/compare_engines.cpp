@@ -7,9 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/peers/nanoflann_search.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
 #include "cpu/kdtree_engine.hpp"
+#include "io/store/store_reader.hpp"
 
-namespace clearway {
+namespace clearway::bench {
 namespace {
 
 constexpr std::size_t kPeerLeafPoints = 12;
@@ -54,8 +57,7 @@ std::uint64_t differing_points(const PackedCloud& cloud, const HitSet& hits,
   return differing;
 }
 
-}  // namespace
-
+/// The positions of a cloud's used slots, in order.
 std::vector<Vec3> positions_by_slot(const PackedCloud& cloud) {
   std::vector<Vec3> points;
   points.reserve(cloud.point_count());
@@ -68,13 +70,14 @@ std::vector<Vec3> positions_by_slot(const PackedCloud& cloud) {
   return points;
 }
 
-nlohmann::json compare_engines(const PackedCloud& cloud, std::span<const Vec3> points,
-                               const Query& query, const CompareOptions& options) {
+nlohmann::json compare(const PackedCloud& cloud, const Query& query,
+                       const CompareOptions& options) {
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
   NoProgress progress;
   KdTreeStatistics statistics;
   HitSet hits(0, false);
   std::vector<double> ours;
+  ours.reserve(static_cast<std::size_t>(options.repetitions));
   for (int i = 0; i < options.repetitions; ++i) {
     ours.push_back(
         seconds_of([&] { hits = run_kdtree(cloud, query, {threads}, progress, &statistics); }));
@@ -93,11 +96,13 @@ nlohmann::json compare_engines(const PackedCloud& cloud, std::span<const Vec3> p
       static_cast<double>(statistics.allocated_bytes) / static_cast<double>(cloud.point_count());
   if (!options.peer) return out;
 
+  const std::vector<Vec3> points = positions_by_slot(cloud);
   std::unique_ptr<NanoflannSearch> peer;
   const double build =
       seconds_of([&] { peer = std::make_unique<NanoflannSearch>(points, kPeerLeafPoints); });
   NanoflannSearch::SearchResult answer;
   std::vector<double> theirs;
+  theirs.reserve(static_cast<std::size_t>(options.repetitions));
   for (int i = 0; i < options.repetitions; ++i) {
     theirs.push_back(seconds_of([&] { answer = peer->run(query, threads); }));
   }
@@ -109,4 +114,15 @@ nlohmann::json compare_engines(const PackedCloud& cloud, std::span<const Vec3> p
   return out;
 }
 
-}  // namespace clearway
+}  // namespace
+
+nlohmann::json compare_engines(const CompareOptions& options) {
+  const StoreReader store(options.environment);
+  const std::vector<Vec3> model = read_model(options.model);
+  const std::vector<Pose> all = read_trajectory(options.trajectory, {});
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < all.size(); i += options.every_pose) poses.push_back(all[i]);
+  return compare(store, {model, poses, {options.radius, options.first_pose}}, options);
+}
+
+}  // namespace clearway::bench

@@ -1,27 +1,23 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <span>
-#include <vector>
 
-#include "clearway/query.hpp"
-#include "core/cloud/packed_cloud.hpp"
-
-namespace clearway {
+namespace clearway::bench {
 
 struct CompareOptions {
-  int threads = 0;  ///< 0: all
+  std::filesystem::path environment, model, trajectory;
+  double radius = 0.1;
+  std::uint64_t every_pose = 1;  ///< takes every N-th pose only
+  bool first_pose = false;       ///< also finds first poses, the kdtree engine alone
+  int threads = 0;               ///< 0: all
   int repetitions = 3;
   bool peer = true;  ///< also nanoflann
 };
 
 /// Times run_kdtree and nanoflann's radiusSearch on the same points and query, `repetitions`
-/// times each, and compares their sets. `points` are the cloud's positions by slot, the used ones
-/// only, in the order of their slots.
-nlohmann::json compare_engines(const PackedCloud& cloud, std::span<const Vec3> points,
-                               const Query& query, const CompareOptions& options);
+/// times each, and compares their sets.
+nlohmann::json compare_engines(const CompareOptions& options);
 
-/// The positions of a cloud's used slots, in order.
-std::vector<Vec3> positions_by_slot(const PackedCloud& cloud);
-
-}  // namespace clearway
+}  // namespace clearway::bench

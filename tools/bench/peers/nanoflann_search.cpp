@@ -5,7 +5,7 @@
 
 #include "core/geometry/predicate.hpp"
 
-namespace clearway {
+namespace clearway::bench {
 namespace {
 
 struct Adaptor {
@@ -71,4 +71,4 @@ NanoflannSearch::SearchResult NanoflannSearch::run(const Query& query, int threa
   return answer;
 }
 
-}  // namespace clearway
+}  // namespace clearway::bench

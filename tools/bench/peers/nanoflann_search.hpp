@@ -7,7 +7,7 @@
 
 #include "clearway/query.hpp"
 
-namespace clearway {
+namespace clearway::bench {
 
 /// The peer: one nanoflann radiusSearch for every pose and model point, in double, unsorted, poses
 /// in parallel, results marked in an atomic bit set.
@@ -28,4 +28,4 @@ class NanoflannSearch {
   std::unique_ptr<Index> index_;
 };
 
-}  // namespace clearway
+}  // namespace clearway::bench

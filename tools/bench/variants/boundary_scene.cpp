@@ -12,7 +12,7 @@
 #include "io/result/result_cursor.hpp"
 #include "scene/random.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 constexpr int kOctaves = 31;
@@ -73,4 +73,4 @@ Json decided_at_boundary(const std::filesystem::path& result) {
   return {{"false_hits", false_hits}, {"misses", misses}, {"points", points}, {"wrong", wrong}};
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -8,7 +8,7 @@
 
 /// A scene whose points lie at the decision boundary: a model of one point in the origin, a pose
 /// that leaves it there, and points on the x axis that are `radius` and a few ulps away, exactly.
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// By how many ulps of the radius each point lies beyond it: 0, and random numbers of every octave
 /// from 1 to 2^31, of both signs.
@@ -23,4 +23,4 @@ void write_boundary_scene(const std::filesystem::path& las, const std::filesyste
 /// first), and how many of them are decided wrongly.
 Json decided_at_boundary(const std::filesystem::path& result);
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

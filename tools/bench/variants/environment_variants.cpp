@@ -15,7 +15,7 @@
 #include "scene/random.hpp"
 
 /// Bytes of the LAS header: ASPRS LAS 1.4 R15, section 2.4.
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ int stretch_environment(const fs::path& las_in, const fs::path& las_out, double 
   return multiple;
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -6,12 +6,12 @@
 #include "bench/measure/publish.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
+#include "clearway/model.hpp"
 #include "core/geometry/predicate.hpp"
-#include "io/formats/model.hpp"
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/system/input_error.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 struct Candidate {
@@ -60,4 +60,4 @@ void write_thinned_model(const std::filesystem::path& in, const std::filesystem:
   });
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

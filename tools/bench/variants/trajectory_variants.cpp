@@ -1,17 +1,19 @@
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "bench/measure/publish.hpp"
 #include "bench/variants/variants.hpp"
 #include "clearway/error.hpp"
+#include "clearway/trajectory.hpp"
 #include "core/util/progress.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/trajectory.hpp"
 #include "io/trajectory/trajectory_writer.hpp"
 #include "scene/random.hpp"
 
-namespace clearway::tool {
+namespace clearway::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,6 +85,43 @@ void write_noisy_poses(const fs::path& in, const fs::path& out, double sigma_m, 
   });
 }
 
+void write_turning_poses(const fs::path& in, const fs::path& out, std::uint64_t count) {
+  if (count < 2) throw UsageError("fewer than two poses to turn; expected 2 or more");
+  const auto poses = read_trajectory(in, {.allow_non_rigid = true});
+  std::vector<Pose> turned(count, poses[poses.size() / 2]);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    const Eigen::AngleAxisd about_z(2 * std::numbers::pi * share, Eigen::Vector3d::UnitZ());
+    Eigen::Map<RowMajor> matrix(turned[i].rotation);
+    matrix = (matrix * about_z.toRotationMatrix()).eval();
+  }
+  write_poses(in, out, turned);
+}
+
+void write_to_and_fro(const fs::path& in, const fs::path& out, int passes, double sigma_m,
+                      std::uint64_t seed) {
+  check_sigma(sigma_m);
+  const scene::Random random(seed, 0);
+  auto poses = read_trajectory(in, {.allow_non_rigid = true});
+  std::vector<Pose> all;
+  for (int pass = 0; pass < passes; ++pass) {
+    const std::size_t first = all.size();
+    all.insert(all.end(), poses.begin(), poses.end());
+    std::reverse(poses.begin(), poses.end());
+    for (int k = 0; k < 3; ++k) {
+      const double shift = sigma_m * scene::Random::to_normal(random.bits(3 * pass + k));
+      for (std::size_t i = first; i < all.size(); ++i) all[i].translation[k] += shift;
+    }
+  }
+  write_poses(in, out, all);
+}
+
+void write_poses_aside(const fs::path& in, const fs::path& out, double metres) {
+  write_changed(in, out, [&](Pose& pose, std::size_t) {
+    for (int k = 0; k < 3; ++k) pose.translation[k] += metres * pose.rotation[3 * k + 1];
+  });
+}
+
 void write_non_rigid_poses(const fs::path& in, const fs::path& out, double stretch) {
   if (!(stretch > -1 && std::isfinite(stretch))) {
     throw UsageError("a stretch of " + shown(stretch) + "; expected more than -1");
@@ -92,4 +131,4 @@ void write_non_rigid_poses(const fs::path& in, const fs::path& out, double stret
   });
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

@@ -11,7 +11,7 @@
 ///
 /// Environments are LAS as `clearway scene` writes it, read and written in constant memory; points
 /// keep their order. There is none of another scale: `clearway convert --scale S` rounds LAS to S.
-namespace clearway::tool {
+namespace clearway::bench {
 
 /// The same environment elsewhere: every byte of the points is kept, the header's offsets and
 /// bounds are moved. shift: whole metres, such that offset + shift is exact (else UsageError).
@@ -62,9 +62,23 @@ void write_shifted_poses(const std::filesystem::path& in, const std::filesystem:
 void write_noisy_poses(const std::filesystem::path& in, const std::filesystem::path& out,
                        double sigma_m, double sigma_rad, std::uint64_t seed);
 
+/// The middle pose, turned about the model's z axis in `count` equal steps from 0 to 360 degrees.
+/// count > 1.
+void write_turning_poses(const std::filesystem::path& in, const std::filesystem::path& out,
+                         std::uint64_t count);
+
+/// The trajectory `passes` times, every second time backwards. Normal noise of sigma_m metres an
+/// axis moves each pass as a whole.
+void write_to_and_fro(const std::filesystem::path& in, const std::filesystem::path& out, int passes,
+                      double sigma_m, std::uint64_t seed);
+
+/// Every pose moved along its own y axis.
+void write_poses_aside(const std::filesystem::path& in, const std::filesystem::path& out,
+                       double metres);
+
 /// Every pose stretches the model along the model's x axis by 1 + stretch: the rotation's first
 /// column times that. stretch > -1.
 void write_non_rigid_poses(const std::filesystem::path& in, const std::filesystem::path& out,
                            double stretch);
 
-}  // namespace clearway::tool
+}  // namespace clearway::bench

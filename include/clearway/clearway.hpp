@@ -1,0 +1,14 @@
+#pragma once
+
+/// Clearway: which points of a scanned environment lie within the search radius of a moving model?
+/// docs/guide/library.md walks through it.
+
+#include "clearway/convert.hpp"     // IWYU pragma: export
+#include "clearway/error.hpp"       // IWYU pragma: export
+#include "clearway/model.hpp"       // IWYU pragma: export
+#include "clearway/progress.hpp"    // IWYU pragma: export
+#include "clearway/query.hpp"       // IWYU pragma: export
+#include "clearway/result.hpp"      // IWYU pragma: export
+#include "clearway/search.hpp"      // IWYU pragma: export
+#include "clearway/store.hpp"       // IWYU pragma: export
+#include "clearway/trajectory.hpp"  // IWYU pragma: export

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "clearway/progress.hpp"
+
+namespace clearway {
+
+struct ConvertOptions : CallOptions {
+  std::optional<double> scale;  ///< metres, of the stored integers; none: as the input has it, else
+                                ///< the finest power of ten from 1e-6 that fits
+  std::uint32_t cell_points = 65536;   ///< 64 to 2^20
+  std::optional<double> regular_size;  ///< metres: cells are cubes of it; none: adaptive
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  int threads = 0;          ///< 0: all cores
+  bool ignore_crs = false;  ///< coordinates in degrees, or in different units, as they are
+  bool strict = false;      ///< refuses points that are not finite
+  bool overwrite = false;   ///< an existing store
+  bool resume = false;      ///< leaves a store of the same inputs as it is
+};
+
+struct ConvertReport {
+  bool was_finished = false;  ///< the store was there already: nothing was converted
+  std::uint64_t points = 0;   ///< stored
+  std::uint64_t cells = 0;
+  std::uint64_t non_finite_points = 0;  ///< left out
+  double largest_change = 0;            ///< of any coordinate by rounding to the scale, metres
+  std::uint64_t temporary_bytes = 0;
+  std::uint64_t output_bytes = 0;
+  double count_seconds = 0, distribute_seconds = 0, partition_seconds = 0, confirm_seconds = 0;
+  std::vector<Message> warnings;
+};
+
+/// Turns scans (LAS, PLY, XYZ text; files and folders, or "-" alone for LAS on standard input) into
+/// a store. Throws UsageError, InputError, ResourceError; Interrupted when asked to stop. Whatever
+/// happens, nothing stands under the output's name that is not complete.
+ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
+                      const std::filesystem::path& output, const ConvertOptions& options = {});
+
+}  // namespace clearway

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/progress.hpp"
+#include "clearway/query.hpp"
+#include "clearway/store.hpp"
+
+namespace clearway {
+
+enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: sweep
+enum class Device { kAuto, kCpu, kCuda };             ///< kAuto: a GPU where there is one with room
+
+const char* name_of(Engine engine);  ///< "auto", "sweep", "grid" or "kdtree"
+const char* name_of(Device device);  ///< "auto", "cpu" or "cuda"
+
+/// How a query is searched. Without a tolerance and with exact precision the result's bytes depend
+/// on none of it.
+struct SearchOptions : CallOptions {
+  Engine engine = Engine::kAuto;
+  Device device = Device::kAuto;
+  std::vector<int> gpus;  ///< CUDA's numbers; empty: the first with room
+  int threads = 0;        ///< 0: all cores
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  std::uint64_t device_memory_bytes = 0;  ///< of each device; 0: 2 GiB, or what is free
+  double field_voxel = 0;                 ///< metres, engine sweep; 0: chosen
+  double grid_cell = 0;                   ///< metres, engine grid; 0: chosen
+  bool float_precision = false;           ///< engine grid decides in floats, for comparison
+  bool overwrite = false;                 ///< an existing result, and the journal of an earlier run
+  bool resume = false;                    ///< goes on from the journal of an earlier run
+  double journal_interval_seconds = 5;    ///< between two syncs of the journal to the disk
+};
+
+/// What a tolerance spared.
+struct ToleranceReport {
+  std::uint64_t model_points_kept = 0, poses_kept = 0;
+  std::uint64_t resolved_by_bounds = 0;  ///< exact tests of a point at a single pose not made
+};
+
+/// Wall clock, seconds. Those of the search overlap: each is the time in which at least one worker
+/// of that stage was busy.
+struct SearchSeconds {
+  double total = 0;
+  double context = 0;  ///< of making the GPUs' contexts
+  double thin = 0;     ///< of choosing what a tolerance keeps
+  double field = 0;    ///< of making what the engine looks up: the model field, the grid's groups
+  double plan = 0;
+  double engine = 0;  ///< of making the engine with its slots
+  double search = 0, read = 0, upload = 0, compute = 0, collect = 0;
+  double write = 0;  ///< of the result
+};
+
+/// What was found, and how.
+struct SearchReport {
+  bool was_finished = false;  ///< the result was there already: nothing was searched
+  std::uint64_t environment_points = 0, model_points = 0, poses = 0;
+  std::uint64_t colliding_points = 0;
+  std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
+  std::vector<Message> warnings;
+
+  Engine engine = Engine::kAuto;  ///< that searched
+  Device device = Device::kCpu;
+  std::string device_name = "the CPU";  ///< for people
+  std::uint64_t searches = 0;           ///< pairs of pose and model point
+  std::optional<ToleranceReport> tolerance;
+  double field_voxel = 0, grid_cell = 0;  ///< metres, of what the engine built; 0: nothing
+  std::uint64_t cells_total = 0, cells_read = 0, bytes_read = 0;
+  std::uint64_t resumed_cells = 0, resumed_poses = 0;  ///< known from a journal
+  std::uint64_t pages = 0, page_bytes = 0;             ///< pages run, and the largest they may be
+  std::uint32_t slots = 0;
+  std::uint64_t needed_host_bytes = 0;  ///< memory that the search takes at the most
+  std::uint64_t pinned_bytes = 0;       ///< of the host, for the GPUs
+  std::uint64_t peak_device_bytes = 0;  ///< allocated, without the CUDA context
+  SearchSeconds seconds;
+};
+
+/// Searches the store for every point within the query's radius of the moving model and writes the
+/// result file. Until that is complete, what was found is kept in a journal beside it
+/// (`OUTPUT.journal`), from which a call with options.resume goes on. Throws UsageError for a query
+/// that the engine cannot answer, an output that exists or a journal of another query; InputError
+/// for a damaged store; ResourceError for a full disk, too little memory or a GPU that is not
+/// there; Interrupted when asked to stop.
+SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
+                    const SearchOptions& options = {});
+
+/// Throws what search() would throw before it looks at store, model and trajectory: for callers
+/// that read large inputs first.
+void check_search(const QueryParameters& query, const std::filesystem::path& output,
+                  const SearchOptions& options = {});
+
+}  // namespace clearway

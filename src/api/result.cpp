@@ -1,0 +1,46 @@
+#include "clearway/result.hpp"
+
+#include "io/result/result.hpp"
+
+namespace clearway {
+
+Result::Result(const std::filesystem::path& path) : reader_(std::make_unique<ResultReader>(path)) {}
+Result::~Result() = default;
+Result::Result(Result&&) noexcept = default;
+Result& Result::operator=(Result&&) noexcept = default;
+
+std::uint64_t Result::size() const { return reader_->collisions(); }
+const QueryParameters& Result::parameters() const { return reader_->header(); }
+std::uint64_t Result::environment_points() const { return reader_->header().environment_points; }
+std::uint64_t Result::poses() const { return reader_->header().poses; }
+
+std::vector<std::uint64_t> Result::source() const {
+  std::vector<std::uint64_t> out(size());
+  reader_->read_source(0, out);
+  return out;
+}
+
+std::vector<Vec3> Result::xyz() const {
+  std::vector<Vec3> out(size());
+  reader_->read_xyz(0, out);
+  return out;
+}
+
+std::vector<std::uint32_t> Result::first_pose() const {
+  if (!parameters().first_pose) return {};
+  std::vector<std::uint32_t> out(size());
+  reader_->read_first_pose(0, out);
+  return out;
+}
+
+Clearances Result::clearance() const {
+  const std::uint64_t rows = reader_->clearances();
+  Clearances out;
+  out.source.resize(rows);
+  out.distance.resize(rows);
+  out.pose.resize(rows);
+  if (rows > 0) reader_->read_clearances(0, out.source, out.distance, out.pose);
+  return out;
+}
+
+}  // namespace clearway

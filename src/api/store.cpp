@@ -1,0 +1,25 @@
+#include "clearway/store.hpp"
+
+#include "io/store/store_reader.hpp"
+
+namespace clearway {
+
+Store::Store(const std::filesystem::path& path)
+    : path_(path), reader_(std::make_unique<StoreReader>(path)) {}
+Store::~Store() = default;
+Store::Store(Store&&) noexcept = default;
+Store& Store::operator=(Store&&) noexcept = default;
+
+std::uint64_t Store::point_count() const { return reader_->point_count(); }
+std::uint64_t Store::cell_count() const { return reader_->cells().size(); }
+
+Box Store::box() const {
+  if (reader_->tree().empty()) return {};
+  return position_box(reader_->quantisation(), reader_->tree()[0].box);
+}
+
+const std::string& Store::crs_wkt() const { return reader_->metadata().crs_wkt; }
+std::string Store::length_unit() const { return to_string(reader_->metadata().unit); }
+const std::filesystem::path& Store::path() const { return path_; }
+
+}  // namespace clearway

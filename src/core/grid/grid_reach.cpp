@@ -1,0 +1,49 @@
+#include "core/grid/grid_reach.hpp"
+
+#include "core/geometry/sweep_bounds.hpp"
+
+namespace clearway {
+namespace {
+
+/// A node is split for a box while it moves more than this many times the box's half diagonal.
+constexpr double kMotionPerBox = 1.0;
+
+}  // namespace
+
+GridReach::GridReach(const Query& query, const MotionTree& motion, const ModelTree& model,
+                     const PackedCloud& cloud)
+    : motion_(motion),
+      model_(model),
+      radius_(query.radius),
+      rounding_(motion.rounding(largest_coordinate(cloud) + query.radius) + 1e-150) {}
+
+void GridReach::narrow(const Box& box, std::span<const std::uint32_t> nodes,
+                       std::vector<std::uint32_t>& out) const {
+  out.clear();
+  const Vec3 centre = centre_of(box);
+  const double rho = half_diagonal(box);
+  for (const std::uint32_t node : nodes) narrow_node(centre, rho, node, out);
+}
+
+/// Bounds: docs/design/numerics.md ("Sweep"), with the model's points in the place of the field.
+bool GridReach::may_reach(const MotionNode& node, const Vec3& centre, double rho) const {
+  const InversePose& back = motion_.inverse_pose(node.mid);
+  const double reach = radius_ + node.delta + rho + rounding_;
+  const double ball = reach / back.least * kRoundedUp;
+  return model_.ref().any_within(back.apply(centre), ball * ball * kRoundedUp,
+                                 [](const Vec3&) { return true; });
+}
+
+void GridReach::narrow_node(const Vec3& centre, double rho, std::uint32_t index,
+                            std::vector<std::uint32_t>& out) const {
+  const MotionNode& node = motion_.nodes()[index];
+  if (!may_reach(node, centre, rho)) return;
+  if (node.count == 1 || node.delta <= kMotionPerBox * rho) {
+    out.push_back(index);
+    return;
+  }
+  narrow_node(centre, rho, index + 1, out);
+  narrow_node(centre, rho, node.later, out);
+}
+
+}  // namespace clearway

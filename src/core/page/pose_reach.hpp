@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/box.hpp"
+#include "core/trajectory/motion_tree.hpp"
+
+namespace clearway {
+
+/// The one interface by which the plan knows an engine: which poses may bring the model within
+/// reach of a box.
+class PoseReach {
+ public:
+  virtual ~PoseReach() = default;
+
+  virtual const MotionTree& motion() const = 0;
+
+  /// Of `nodes` of the motion tree and the nodes below them, those that may matter to a point of
+  /// the box, as fine as the box is small; replaces `out`. In the order of the poses when `nodes`
+  /// are. Thread safe.
+  virtual void narrow(const Box& box, std::span<const std::uint32_t> nodes,
+                      std::vector<std::uint32_t>& out) const = 0;
+};
+
+}  // namespace clearway

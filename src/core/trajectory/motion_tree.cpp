@@ -1,0 +1,116 @@
+#include "core/trajectory/motion_tree.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/rigid.hpp"
+#include "core/geometry/sweep_bounds.hpp"
+
+namespace clearway {
+namespace {
+
+/// Ranges up to this long get their delta pose by pose, longer ones from nodes kLevels below.
+constexpr std::uint32_t kExactPoses = 8;
+constexpr int kLevels = 4;
+
+/// Where the determinant lies within this and its reciprocal, nothing that matters to the bound of
+/// the inverse's rounding under- or overflows.
+constexpr double kLeastDeterminant = 1e-270;
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+InversePose inverse_pose_of(const Pose& pose) {
+  const RowMajor inverse = Eigen::Map<const RowMajor>(pose.rotation).inverse();
+  Pose inverse_pose{};
+  std::copy(inverse.data(), inverse.data() + 9, inverse_pose.rotation);
+  InversePose out{};
+  std::copy(inverse.data(), inverse.data() + 9, out.inverse);
+  std::copy(pose.translation, pose.translation + 3, out.translation);
+  out.greatest = greatest_stretch_bound(pose);
+  // Singular values of the inverse are the reciprocals; the inverse by cofactors errs by less than
+  // 20 u condition^2 (docs/design/numerics.md, "Sweep").
+  const double inverse_greatest = greatest_stretch_bound(inverse_pose);
+  const double condition = out.greatest * inverse_greatest;
+  out.least = 1 / (inverse_greatest * (1 + 64 * kUnitRoundoff * (1 + condition * condition)));
+  const double determinant = std::abs(Eigen::Map<const RowMajor>(pose.rotation).determinant());
+  if (!(determinant > kLeastDeterminant && determinant < 1 / kLeastDeterminant)) out.least = 0;
+  return out;
+}
+
+}  // namespace
+
+MotionTree::MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses)
+    : poses_(poses), between_poses_(between_poses) {
+  if (poses.empty()) return;
+  inverse_poses_.resize(poses.size());
+  travelled_.resize(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    inverse_poses_[i] = inverse_pose_of(poses[i]);
+    if (i > 0)
+      travelled_[i] = travelled_[i - 1] + displacement_bound(model, poses[i - 1], poses[i]);
+    condition_ = std::max(condition_, inverse_poses_[i].greatest / inverse_poses_[i].least);
+    for (const double p : poses[i].translation) magnitude_ = std::max(magnitude_, std::abs(p));
+  }
+  for (const InversePose& p : inverse_poses_) greatest_ = std::max(greatest_, p.greatest);
+  const Vec3 reach = reach_of(model);
+  magnitude_ += 2 * greatest_ * std::max({reach.x, reach.y, reach.z});
+  nodes_.reserve(2 * poses.size());
+  add(0, static_cast<std::uint32_t>(poses.size()));
+  for (auto node = static_cast<std::uint32_t>(nodes_.size()); node-- > 0;) {
+    nodes_[node].delta = delta_of(node, model);
+  }
+  travelled_ = {};
+}
+
+void MotionTree::add(std::uint32_t first, std::uint32_t count) {
+  const std::size_t self = nodes_.size();
+  const auto begin = travelled_.begin() + first;
+  const double half = (*begin + *(begin + count - 1)) / 2;
+  const auto at = std::lower_bound(begin, begin + count, half);
+  auto mid = static_cast<std::uint32_t>(at - begin);
+  if (!(travelled_[first] < travelled_[first + count - 1])) mid = count / 2;  // a stop
+  mid = std::min(mid, count - 1);
+  nodes_.push_back({first, count, first + mid, 0, 0});
+  if (count == 1) return;
+  const std::uint32_t split = std::clamp(mid, 1U, count - 1);
+  add(first, split);
+  nodes_[self].later = static_cast<std::uint32_t>(nodes_.size());
+  add(first + split, count - split);
+}
+
+double MotionTree::delta_of(std::uint32_t node, const Box& model) const {
+  const MotionNode& n = nodes_[node];
+  if (n.count > kExactPoses) return delta_below(node, n.mid, kLevels, model);
+  double delta = 0;
+  const bool moves_on = between_poses_ && n.first + n.count < poses_.size();
+  for (std::uint32_t i = n.first; i < n.first + n.count + (moves_on ? 1 : 0); ++i) {
+    if (i != n.mid) delta = std::max(delta, displacement_bound(model, poses_[n.mid], poses_[i]));
+  }
+  // Between poses, a computed hit may lie outside the radius by 4 u times the step's length, which
+  // is at most 2 delta (docs/design/numerics.md).
+  return between_poses_ ? delta * kRoundedUp : delta;
+}
+
+/// From the nodes `levels` below, whose own delta is known: how far their poses are from `mid`.
+double MotionTree::delta_below(std::uint32_t node, std::uint32_t mid, int levels,
+                               const Box& model) const {
+  const MotionNode& n = nodes_[node];
+  if (levels > 0 && n.count > 1) {
+    return std::max(delta_below(node + 1, mid, levels - 1, model),
+                    delta_below(n.later, mid, levels - 1, model));
+  }
+  const double between = n.mid == mid ? 0 : displacement_bound(model, poses_[mid], poses_[n.mid]);
+  return (n.delta + between) * (1 + 4 * kUnitRoundoff);
+}
+
+double MotionTree::rounding(double reach, double lattice) const {
+  const double magnitude = reach + greatest_ * lattice + magnitude_;
+  return 256 * kUnitRoundoff * magnitude * (1 + condition_) * (1 + condition_);
+}
+
+std::uint64_t MotionTree::allocated_bytes() const {
+  return nodes_.capacity() * sizeof(MotionNode) + inverse_poses_.capacity() * sizeof(InversePose);
+}
+
+}  // namespace clearway

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "gpu/device_buffer.hpp"
+
+namespace clearway {
+
+/// Arrays on the current device, filled and owned together. A copy may still be under way, though
+/// the values have been read: streams that do not wait for the legacy default stream begin after a
+/// cudaDeviceSynchronize. Throws ResourceError.
+class DeviceArrays {
+ public:
+  template <typename Value>
+  const Value* copy(const Value* values, std::size_t count) {
+    Value* to = add<Value>(count);
+    if (count > 0)
+      check_cuda(cudaMemcpy(to, values, count * sizeof(Value), cudaMemcpyHostToDevice));
+    return to;
+  }
+
+  template <typename Value>
+  Value* zeros(std::size_t count) {
+    Value* to = add<Value>(count);
+    if (count > 0) check_cuda(cudaMemset(to, 0, count * sizeof(Value)));
+    return to;
+  }
+
+  std::uint64_t bytes() const {
+    std::uint64_t sum = 0;
+    for (const DeviceBuffer& buffer : buffers_) sum += buffer.bytes();
+    return sum;
+  }
+
+ private:
+  template <typename Value>
+  Value* add(std::size_t count) {
+    return reinterpret_cast<Value*>(buffers_.emplace_back(count * sizeof(Value)).data());
+  }
+
+  std::vector<DeviceBuffer> buffers_;
+};
+
+/// Takes nothing, and says what DeviceArrays would take for the same calls.
+class DeviceArrayCount {
+ public:
+  template <typename Value>
+  const Value* copy(const Value*, std::size_t count) {
+    return zeros<Value>(count);
+  }
+
+  template <typename Value>
+  Value* zeros(std::size_t count) {
+    bytes_ += count * sizeof(Value);
+    return nullptr;
+  }
+
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace clearway

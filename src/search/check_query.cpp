@@ -1,0 +1,111 @@
+#include "search/check_query.hpp"
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "clearway/error.hpp"
+
+namespace clearway {
+namespace {
+
+[[noreturn]] void refuse_engine(const std::string& engine, const std::string& why) {
+  throw UsageError("engine " + engine + " " + why, Remedy::kSweepEngine);
+}
+
+/// A tolerance is the sweep's, and only for sets.
+void check_tolerance(const QueryParameters& query, Engine engine) {
+  const char* other = query.first_pose      ? "first poses"
+                      : query.clearance > 0 ? "clearances"
+                      : query.between_poses ? "motion between poses"
+                                            : nullptr;
+  if (other != nullptr) {
+    throw UsageError(std::string("a tolerance and ") + other +
+                     " cannot be combined: without a tolerance, engine sweep answers them exactly");
+  }
+  if (engine != Engine::kSweep) {
+    refuse_engine(name_of(engine), "is always exact and has no tolerance");
+  }
+  if (!(query.tolerance < query.radius)) {
+    throw UsageError(
+        "the tolerance has to be below the radius: otherwise a result without any collision would "
+        "be right");
+  }
+}
+
+void check_numbers(const QueryParameters& query, const SearchOptions& options) {
+  const auto check = [](const char* name, double value, bool may_be_zero) {
+    if (std::isfinite(value) && (value > 0 || (may_be_zero && value == 0))) return;
+    throw UsageError(std::string(name) + " has to be a finite number of metres above 0");
+  };
+  check("the radius", query.radius, false);
+  check("the clearance", query.clearance, true);
+  check("the tolerance", query.tolerance, true);
+  check("the field's voxel", options.field_voxel, true);
+  check("the grid cell", options.grid_cell, true);
+  if (options.threads < 0) throw UsageError("the number of threads cannot be negative");
+  if (!(options.journal_interval_seconds >= 0)) {
+    throw UsageError("the journal's interval has to be 0 seconds or more");
+  }
+  if (options.overwrite && options.resume) {
+    throw UsageError("a run either resumes or overwrites");
+  }
+}
+
+}  // namespace
+
+Engine chosen_engine(const SearchOptions& options) {
+  return options.engine == Engine::kAuto ? Engine::kSweep : options.engine;
+}
+
+void check_query(const QueryParameters& query, const SearchOptions& options) {
+  check_numbers(query, options);
+  const Engine engine = chosen_engine(options);
+  if (query.tolerance > 0) check_tolerance(query, engine);
+  if (query.clearance > 0 && query.between_poses) {
+    throw UsageError(
+        "clearances and motion between poses cannot be combined: clearances are at poses");
+  }
+  if (query.clearance > 0 && engine != Engine::kSweep) {
+    refuse_engine(name_of(engine), "has no clearances");
+  }
+  if (query.between_poses && engine == Engine::kGrid) {
+    refuse_engine(name_of(engine), "searches at poses, not between them");
+  }
+  if (engine != Engine::kGrid && (options.grid_cell > 0 || options.float_precision)) {
+    throw UsageError("a grid cell and float precision are of engine grid");
+  }
+  if (engine != Engine::kSweep && options.field_voxel > 0) {
+    throw UsageError("a field voxel is of engine sweep");
+  }
+  if (engine == Engine::kKdtree && options.device_memory_bytes > 0) {
+    throw UsageError(
+        "device memory is of the engines sweep and grid: engine kdtree runs on the CPU");
+  }
+  if (engine == Engine::kKdtree && (options.device == Device::kCuda || !options.gpus.empty())) {
+    refuse_engine("kdtree", "runs on the CPU alone");
+  }
+  if (std::set(options.gpus.begin(), options.gpus.end()).size() < options.gpus.size()) {
+    throw UsageError("a GPU is named twice");
+  }
+  if (options.device == Device::kCpu &&
+      (!options.gpus.empty() || options.device_memory_bytes > 0)) {
+    throw UsageError("GPUs and device memory are of device cuda");
+  }
+}
+
+void check_sizes(const Query& query) {
+  constexpr std::uint64_t kEnd = std::uint64_t{1} << 31;  // trees have up to 2 n - 1 nodes
+  if (query.poses.size() >= kEnd) {
+    throw InputError("the trajectory has " + std::to_string(query.poses.size()) +
+                     " poses, expected fewer than " + std::to_string(kEnd));
+  }
+  if (query.model.empty()) throw InputError("the model has no points");
+  if (query.model.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError("the model has " + std::to_string(query.model.size()) +
+                     " points, expected fewer than 2^32");
+  }
+}
+
+}  // namespace clearway

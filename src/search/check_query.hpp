@@ -1,0 +1,17 @@
+#pragma once
+
+#include "clearway/search.hpp"
+
+namespace clearway {
+
+/// The engine that searches: kSweep, kGrid or kKdtree.
+Engine chosen_engine(const SearchOptions& options);
+
+/// Throws UsageError, saying what can do it, where the engine cannot answer such a query, whatever
+/// its model and poses, or where the options contradict each other.
+void check_query(const QueryParameters& query, const SearchOptions& options);
+
+/// Throws InputError where the trees over model and poses cannot have as many nodes.
+void check_sizes(const Query& query);
+
+}  // namespace clearway

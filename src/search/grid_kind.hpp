@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+
+#include "core/grid/grid_reach.hpp"
+#include "core/grid/grid_scene.hpp"
+#include "io/store/store_reader.hpp"
+#include "search/page_engine_kind.hpp"
+
+namespace clearway {
+
+/// What the grid engine's forms share: its scene, and how far the model reaches.
+class GridKind : public PageEngineKind {
+ public:
+  /// options.threads is not 0. All references outlive it.
+  GridKind(PageEngineNeeds needs, const StoreReader& store, const Query& query,
+           const SearchOptions& options)
+      : PageEngineKind(std::move(needs)),
+        store_(store),
+        query_(query),
+        scene_options_{options.grid_cell,
+                       options.float_precision ? GridPrecision::kFloat : GridPrecision::kExact} {}
+
+  const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
+  std::uint64_t index_bytes() const override { return scene_->size_bytes(); }
+  void report_index(SearchReport& report, const MessageLog&) const override {
+    report.grid_cell = scene_->grid_cell();
+  }
+
+ protected:
+  void report_statistics(const GridStatistics& statistics, const MessageLog& log) const;
+
+  const StoreReader& store_;
+  const Query& query_;
+  std::optional<GridScene> scene_;
+
+ private:
+  GridOptions scene_options_;
+  std::optional<GridReach> reach_;
+};
+
+class CpuGridKind final : public GridKind {
+ public:
+  CpuGridKind(const StoreReader& store, const Query& query, const SearchOptions& options);
+
+  std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
+  PageEngines make(const SlotLayout& layout) override;
+  void report_search(const PageEngines& engines, SearchReport& report,
+                     const MessageLog& log) const override;
+};
+
+}  // namespace clearway

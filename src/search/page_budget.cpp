@@ -1,0 +1,128 @@
+#include "search/page_budget.hpp"
+
+#include <algorithm>
+
+#include "search/memory_budget.hpp"
+#include "stream/paginate.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
+#include "stream/write_result.hpp"
+
+namespace clearway {
+namespace {
+
+/// With less memory pages get smaller once fewer slots than this are left.
+constexpr std::uint32_t kFewSlots = 4;
+
+/// The layouts of an engine from the best to the least.
+std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t least_page_bytes) {
+  std::vector<SlotLayout> out;
+  for (std::uint32_t cells = needs.page_cells; cells > 0; cells /= 2) {
+    const std::uint64_t wanted = needs.page_bytes / needs.page_cells * cells;
+    const std::uint32_t fewest = cells > 1 ? std::min(needs.most_slots, kFewSlots) : 1;
+    for (std::uint32_t slots = needs.most_slots; slots >= fewest; --slots) {
+      out.push_back({slots, std::max(wanted, least_page_bytes), cells});
+    }
+  }
+  if (out.back().page_bytes > least_page_bytes) out.push_back({1, least_page_bytes, 1});
+  return out;
+}
+
+/// While the trees over model and poses are built: 48 bytes a model point, and 168 a pose. Choosing
+/// what a tolerance keeps takes less.
+std::uint64_t tree_building_bytes(const Query& query) {
+  return 48 * query.model.size() + 168 * query.poses.size();
+}
+
+std::uint64_t most_poses_of(const MotionTree& motion, const std::vector<PlannedCell>& cells) {
+  std::uint64_t most = 0;
+  for (const PlannedCell& cell : cells) {
+    std::uint64_t poses = 0;
+    for (const std::uint32_t node : cell.nodes) poses += motion.nodes()[node].count;
+    most = std::max(most, poses);
+  }
+  return most;
+}
+
+}  // namespace
+
+PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
+                       std::uint64_t thinned_bytes, std::uint64_t memory_bytes,
+                       PageEngineKind& kind)
+    : store_(store),
+      asked_(asked),
+      memory_bytes_(memory_bytes),
+      kind_(kind),
+      trees_(searched),
+      building_bytes_(tree_building_bytes(asked)),
+      kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
+                  search_result_bytes(store, asked)) {}
+
+void PageBudget::find() {
+  const std::vector<PageEngineKind::IndexSize> sizes = kind_.index_sizes();
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (fits_with(sizes[i], i + 1 == sizes.size())) return;
+  }
+  if (smallest_bytes_) refuse_memory(*smallest_bytes_, memory_bytes_);
+  refuse_device_memory(smallest_device_bytes_, kind_.needs().most_device_bytes,
+                       kind_.needs().short_device);
+}
+
+/// From here to the end of the run. A page under way has one record of the journal at a time.
+std::uint64_t PageBudget::kept_bytes(const SlotLayout& layout) const {
+  const std::uint64_t pages = std::uint64_t{kind_.needs().devices} * layout.slots;
+  const auto threads = static_cast<std::uint64_t>(kind_.needs().threads);
+  return kept_bytes_ +
+         SearchJournal::most_bytes(store_, asked_, static_cast<int>(std::min(pages, threads)));
+}
+
+/// What the search starts with: trees, index and plan.
+std::uint64_t PageBudget::planned_bytes() const {
+  constexpr std::uint64_t kHeapBlock = 16;
+  // While cells are sorted, half of them are there twice.
+  std::uint64_t bytes = trees_.allocated_bytes() + kind_.index_bytes() +
+                        3 * cells_.capacity() * sizeof(PlannedCell) / 2 +
+                        run_pages_bytes(cells_.size());
+  for (const PlannedCell& cell : cells_) {
+    bytes += cell.nodes.capacity() * sizeof(std::uint32_t) + kHeapBlock;
+  }
+  return bytes;
+}
+
+/// Whether there is a plan with such an index, and a layout, or the best of them only, that fit.
+bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layout) {
+  const std::uint64_t building =
+      std::max(trees_.allocated_bytes() + size.while_built, building_bytes_);
+  if (size.while_built > 0 && kept_bytes_ + building > memory_bytes_) return false;
+  cells_.clear();
+  const Stopwatch clock;
+  const PoseReach& reach = kind_.build_index(trees_, size.bytes);
+  const double indexed = clock.seconds();
+  cells_ = plan(store_, reach);
+  index_seconds_ += indexed;
+  plan_seconds_ += clock.seconds() - indexed;
+  const std::uint64_t planned = planned_bytes();
+  const std::uint64_t most_poses = most_poses_of(trees_.motion, cells_);
+  for (const SlotLayout& layout : layouts(kind_.needs(), smallest_page_bytes(store_, cells_))) {
+    if (fits(layout, planned, building, most_poses)) return true;
+    if (!any_layout && !kind_.needs().on_gpu) break;  // for a GPU fewer slots are cheaper
+  }
+  return false;
+}
+
+bool PageBudget::fits(const SlotLayout& layout, std::uint64_t planned, std::uint64_t building,
+                      std::uint64_t most_poses) {
+  const std::uint64_t searching = planned + kind_.host_bytes(layout, most_poses);
+  const std::uint64_t kept = kept_bytes(layout);
+  layout_ = layout;
+  needed_bytes_ = kept + std::max(searching, least_write_bytes());
+  const std::uint64_t budget = std::max(needed_bytes_, kept + building);
+  const std::uint64_t on_device = kind_.device_bytes(layout);
+  const bool device_fits = on_device <= kind_.needs().most_device_bytes;
+  if (device_fits && budget <= memory_bytes_) return true;
+  if (device_fits) smallest_bytes_ = std::min(smallest_bytes_.value_or(budget), budget);
+  smallest_device_bytes_ = std::min(smallest_device_bytes_, on_device);
+  return false;
+}
+
+}  // namespace clearway

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clearway/search.hpp"
+#include "core/page/page_engine.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/page/pose_reach.hpp"
+#include "core/util/message_log.hpp"
+#include "search/query_trees.hpp"
+
+namespace clearway {
+
+/// One for each device.
+using PageEngines = std::vector<std::unique_ptr<PageEngine>>;
+
+/// Slots of an engine on the CPU beside those that are searched: for pages that are read meanwhile.
+inline constexpr std::uint32_t kSlotsAhead = 2;
+
+/// What an engine that works on pages wants, at the most and at the least.
+struct PageEngineNeeds {
+  std::uint32_t most_slots = 1;  ///< with less memory, fewer
+  std::uint32_t page_cells = 1;  ///< the most cells of a page
+  std::uint64_t page_bytes = 0;  ///< wanted; more where a cell needs it, less with little memory
+  int threads = 1;               ///< that run the pipeline, those that wait for a device included
+  std::uint32_t devices = 1;     ///< engines that are made
+  bool on_gpu = false;
+  std::uint64_t most_device_bytes = 0;  ///< of each GPU
+  std::string short_device = {};        ///< as refuse_device_memory takes it
+};
+
+/// An engine that works on pages before it is made: builds its index of the query, with which the
+/// cells are planned, says what memory it takes, and makes it.
+class PageEngineKind {
+ public:
+  /// What an index may take, bytes.
+  struct IndexSize {
+    std::uint64_t bytes = 0;
+    std::uint64_t while_built = 0;  ///< beside the trees, more than afterwards; 0: not counted
+  };
+
+  explicit PageEngineKind(PageEngineNeeds needs) : needs_(std::move(needs)) {}
+  virtual ~PageEngineKind() = default;
+
+  const PageEngineNeeds& needs() const { return needs_; }
+
+  /// From the best to the least. With a smaller one the search is slower, never another.
+  virtual std::vector<IndexSize> index_sizes() const { return {IndexSize{}}; }
+
+  /// Builds the index, in the place of an earlier one. The trees outlive it.
+  virtual const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) = 0;
+
+  // With an index:
+
+  virtual std::uint64_t index_bytes() const = 0;
+  /// Memory on the host with this layout, bytes: what make() allocates and what searches do.
+  /// most_poses: of the motion nodes of any planned cell.
+  virtual std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const = 0;
+  /// Memory on each device likewise.
+  virtual std::uint64_t device_bytes(const SlotLayout&) const { return 0; }
+  /// For the log and the report.
+  virtual void report_index(SearchReport& report, const MessageLog& log) const = 0;
+  /// Slots of the layout are those of each device. The index outlives the engines.
+  virtual PageEngines make(const SlotLayout& layout) = 0;
+  /// Called once after the last page: for the log, and for what only the engines can report.
+  virtual void report_search(const PageEngines& engines, SearchReport& report,
+                             const MessageLog& log) const = 0;
+
+ protected:
+  PageEngineNeeds needs_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,90 @@
+#include "search/page_search.hpp"
+
+#include <optional>
+#include <vector>
+
+#include "core/sweep/tolerance.hpp"
+#include "core/util/format.hpp"
+#include "search/page_budget.hpp"
+#include "stream/paginate.hpp"
+#include "stream/run_pages.hpp"
+
+namespace clearway {
+namespace {
+
+/// The query as it is searched: with a tolerance, less of model and trajectory.
+class SearchedQuery {
+ public:
+  SearchedQuery(const Query& asked, SearchReport& report, const MessageLog& log) : asked_(asked) {
+    if (!(asked.tolerance > 0)) return;
+    const Stopwatch clock;
+    thinned_.emplace(asked);
+    report.seconds.thin = clock.seconds();
+    const std::size_t points = get().model.size(), poses = get().poses.size();
+    report.tolerance = {.model_points_kept = points, .poses_kept = poses, .resolved_by_bounds = 0};
+    log.note("tolerance " + format_number(asked.tolerance) + " m: " + format_count(points) +
+             " of " + format_count(asked.model.size()) + " model points and " +
+             format_count(poses) + " of " + format_count(asked.poses.size()) +
+             " poses are searched");
+  }
+
+  const Query& get() const { return thinned_ ? thinned_->query() : asked_; }
+  std::uint64_t allocated_bytes() const { return thinned_ ? thinned_->allocated_bytes() : 0; }
+
+ private:
+  const Query& asked_;
+  std::optional<ThinnedQuery> thinned_;
+};
+
+void report_plan(const PageBudget& budget, const PageEngineKind& kind, SearchReport& report,
+                 const MessageLog& log) {
+  report.seconds.plan = budget.plan_seconds();
+  report.seconds.field = budget.index_seconds();
+  report.needed_host_bytes = budget.needed_bytes();
+  report.page_bytes = budget.layout().page_bytes;
+  kind.report_index(report, log);
+}
+
+void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
+  seconds.read = stages.read;
+  seconds.upload = stages.upload;
+  seconds.compute = stages.compute;
+  seconds.collect = stages.collect;
+  seconds.search = stages.total;
+}
+
+}  // namespace
+
+Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
+                   PageEngineKind& kind, const std::function<SearchJournal&()>& open_journal,
+                   Progress& progress, SearchReport& report, const MessageLog& log) {
+  const SearchedQuery searched(query, report, log);
+  throw_if_stopped(progress);
+  PageBudget budget(store, query, searched.get(), searched.allocated_bytes(), memory_bytes, kind);
+  budget.find();
+  report_plan(budget, kind, report, log);
+
+  throw_if_stopped(progress);
+  const Stopwatch making;
+  const PageEngines engines = kind.make(budget.layout());
+  report.seconds.engine = making.seconds();
+  SearchJournal& journal = open_journal();
+  std::vector<PlannedCell>& cells = budget.cells();
+  std::erase_if(cells, [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
+  const std::vector<PlannedPage> pages =
+      paginate(store, cells, budget.layout().page_bytes, budget.layout().cells);
+  report.pages = pages.size();
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) {
+    report.slots += engine->slots();
+    lanes.push_back(engine.get());
+  }
+  StageTimes stages;
+  SearchResult result = run_pages(store, cells, pages, lanes, query, kind.needs().threads, progress,
+                                  stages, &journal);
+  report_stages(stages, report.seconds);
+  kind.report_search(engines, report, log);
+  return {std::move(result), budget.write_bytes()};
+}
+
+}  // namespace clearway

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/query/search_result.hpp"
+#include "core/util/progress.hpp"
+#include "io/store/store_reader.hpp"
+#include "search/page_engine_kind.hpp"
+#include "stream/search_journal.hpp"
+
+namespace clearway {
+
+/// What was found, and what of the memory is left to write it with.
+struct Found {
+  SearchResult result;
+  std::uint64_t write_bytes = 0;
+};
+
+/// Plans the query within options.memory_bytes, makes the engine and, with the journal that is then
+/// asked for, runs it. Throws ResourceError, before the journal is asked for, naming the smallest
+/// budget that works.
+Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
+                   PageEngineKind& kind, const std::function<SearchJournal&()>& open_journal,
+                   Progress& progress, SearchReport& report, const MessageLog& log);
+
+}  // namespace clearway

@@ -1,0 +1,170 @@
+#include "search/run_journal.hpp"
+
+#include "clearway/error.hpp"
+#include "core/util/format.hpp"
+#include "io/result/verify_result.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kReplaces = "overwrites";
+
+std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+std::string work_text(const JournalledWork& work) {
+  if (work.poses > 0) return format_count(work.poses) + " poses finished";
+  return format_count(work.cells) + " cells finished";
+}
+
+std::string value_of(const JournalIdentity& identity, const std::string& name) {
+  for (const auto& [field, value] : identity) {
+    if (field == name) return value;
+  }
+  return "unknown";
+}
+
+JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header,
+                            const SearchOptions& options, const std::string& engine,
+                            const std::string& device, bool replaces) {
+  JournalIdentity identity{{"environment", hash_text(store.fingerprint())},
+                           {"model", hash_text(header.model_hash)},
+                           {"trajectory", hash_text(header.trajectory_hash)},
+                           {"radius", format_number(header.radius)},
+                           {"first_pose", yes_or_no(header.first_pose)},
+                           {"clearance", format_number(header.clearance)},
+                           {"between_poses", yes_or_no(header.between_poses)},
+                           {"tolerance", format_number(header.tolerance)},
+                           {"engine", engine},
+                           {"device", device},
+                           {kReplaces, yes_or_no(replaces)}};
+  if (header.tolerance > 0) {  // then the answer depends on the field
+    identity.emplace_back("field_voxel", format_number(options.field_voxel));
+  }
+  if (options.float_precision) {  // then the answer depends on the cells
+    identity.emplace_back("precision", "float");
+    identity.emplace_back("grid_cell", format_number(options.grid_cell));
+  }
+  return identity;
+}
+
+bool answers(const fs::path& file, const ResultHeader& query, Progress& progress) {
+  try {
+    const ResultReader result(file);
+    return result.header() == query && !verify_result(result, progress);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code failed;
+  fs::remove(path, failed);
+  if (failed) throw ResourceError(path.string() + ": cannot remove: " + failed.message());
+}
+
+}  // namespace
+
+RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const SearchOptions& options,
+                       MessageLog& log)
+    : pending_(pending),
+      output_(output),
+      options_(options),
+      log_(log),
+      path_(journal_of(output)),
+      replaces_(options.overwrite && fs::exists(output)) {
+  std::error_code none;
+  if (!fs::exists(fs::symlink_status(path_, none))) {
+    if (options.resume && !fs::exists(output)) {
+      log_.note(path_.string() + ": no journal to resume, starts from the beginning");
+    }
+    return;
+  }
+  if (!fs::is_regular_file(fs::symlink_status(path_)) || fs::hard_link_count(path_) > 1 ||
+      (fs::file_size(path_) > 0 && !is_journal(path_))) {
+    throw UsageError(path_.string() +
+                     ": is in the place of this output's journal and is none; move it away, or "
+                     "choose another output");
+  }
+  if (options.overwrite) {
+    unwanted_ = "journal of an unfinished run removed, starts from the beginning";
+    return;
+  }
+  JournalReader read(path_);
+  if (!read.identity() || read.records() == 0) {
+    unwanted_ = "nothing in it yet, starts from the beginning";
+    return;
+  }
+  earlier_ = journalled_work(read);
+  if (!options.resume) {
+    throw UsageError(path_.string() + ": an unfinished run with engine " +
+                         value_of(*read.identity(), "engine") + " on " +
+                         value_of(*read.identity(), "device") + ", radius " +
+                         value_of(*read.identity(), "radius") + ", " + work_text(earlier_),
+                     Remedy::kResumeOrOverwrite);
+  }
+  if (!read.torn().empty()) {
+    log_.note(path_.string() + ": " + read.torn() + "; it is cut off and computed again");
+  }
+  replaces_ = value_of(*read.identity(), kReplaces) == yes_or_no(true);
+  read_.emplace(std::move(read));
+}
+
+bool RunJournal::already_done(const StoreReader& store, const ResultHeader& header,
+                              Progress& progress) {
+  if (replaces_) return false;
+  if (options_.resume && fs::exists(output_) && is_of(store, header) &&
+      answers(output_, header, progress)) {
+    if (read_ || !unwanted_.empty()) remove_file(path_);
+    return true;
+  }
+  pending_.refuse_existing();
+  return false;
+}
+
+bool RunJournal::is_of(const StoreReader& store, const ResultHeader& header) const {
+  if (!read_) return header.tolerance == 0 && !header.float_precision;
+  const JournalIdentity& earlier = *read_->identity();
+  return difference(earlier, identity_of(store, header, options_, value_of(earlier, "engine"),
+                                         value_of(earlier, "device"), false))
+      .empty();
+}
+
+SearchJournal& RunJournal::open(const StoreReader& store, const Query& query,
+                                const ResultHeader& header, Engine engine, Device device) {
+  const JournalIdentity identity =
+      identity_of(store, header, options_, name_of(engine), name_of(device), replaces_);
+  if (read_) {
+    const std::string differs = difference(*read_->identity(), identity);
+    if (!differs.empty()) {
+      throw UsageError(path_.string() + ": belongs to another run: its " + differs,
+                       Remedy::kRestoreOptions);
+    }
+    log_.note(path_.string() + ": resumes with " + work_text(earlier_));
+  }
+  if (!unwanted_.empty()) {
+    log_.note(path_.string() + ": " + unwanted_);
+    remove_file(path_);
+  }
+  return results_.emplace(path_, identity, read_ ? &*read_ : nullptr, store, query,
+                          options_.journal_interval_seconds);
+}
+
+Device RunJournal::earlier_device() const {
+  if (!read_) return Device::kAuto;
+  return value_of(*read_->identity(), "device") == name_of(Device::kCuda) ? Device::kCuda
+                                                                          : Device::kCpu;
+}
+
+void RunJournal::remove_after_publication() {
+  if (!results_->is_in_place()) return;
+  try {
+    remove_file(path_);
+  } catch (const ResourceError& error) {
+    log_.warn("journal-left", std::string(error.what()) + "; the result is complete");
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,79 @@
+#include "search/sweep_kind.hpp"
+
+#include <algorithm>
+
+#include "core/sweep/tolerance.hpp"
+#include "core/util/format.hpp"
+#include "cpu/sweep_engine.hpp"
+
+namespace clearway {
+namespace {
+
+/// The coarse lattice is a quarter more.
+constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
+  const std::uint64_t bytes = mebibytes << 20;
+  return {bytes, bytes + bytes / 4};
+}
+
+}  // namespace
+
+/// With a tolerance the result depends on the field, which memory must not decide.
+std::vector<PageEngineKind::IndexSize> SweepKind::index_sizes() const {
+  constexpr std::uint64_t kMost = std::uint64_t{64} << 20, kLeast = std::uint64_t{1} << 20;
+  if (options_.field_voxel > 0 || query_.tolerance > 0) return {{kMost, 0}};
+  return {size_of(64), size_of(16), size_of(4), {kLeast, 0}};
+}
+
+const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t most_bytes) {
+  filter_.reset();
+  field_.reset();
+  field_.emplace(trees.model, search_radius(query_),
+                 ModelFieldOptions{.voxel = options_.field_voxel,
+                                   .fineness = fineness_,
+                                   .reach = query_.clearance,
+                                   .most_bytes = most_bytes},
+                 options_.threads);
+  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
+}
+
+void SweepKind::report_index(SearchReport& report, const MessageLog& log) const {
+  report.field_voxel = field_->voxel();
+  log.note("model field: voxel " + format_brief(field_->voxel()) + " m, " +
+           format_count(field_->bricks()) + " bricks, " + format_size(field_->allocated_bytes()));
+}
+
+void SweepKind::report_statistics(const SweepStatistics& s, SearchReport& report,
+                                  const MessageLog& log) {
+  log.note("tests: " + format_count(s.node_tests) + " of boxes, " + format_count(s.point_tests) +
+           " of points (" + format_count(s.points_tested) + " points), " +
+           format_count(s.exact_tests) + " exact");
+  if (report.tolerance) {
+    report.tolerance->resolved_by_bounds = s.resolved_tests;
+    log.note("tolerance: " + format_count(s.resolved_tests) + " exact tests spared by bounds");
+  }
+}
+
+CpuSweepKind::CpuSweepKind(const StoreReader& store, const Query& query,
+                           const SearchOptions& options)
+    : SweepKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
+                 .threads = options.threads},
+                store, query, options, 1) {}
+
+std::uint64_t CpuSweepKind::host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const {
+  const auto threads = static_cast<std::uint32_t>(options_.threads);
+  return layout.slots * PagePool::slot_bytes(store_, query_, layout) +
+         std::min(layout.slots, threads) * CellSearch::most_bytes(store_, query_, most_poses);
+}
+
+PageEngines CpuSweepKind::make(const SlotLayout& layout) {
+  PageEngines engines;
+  engines.push_back(std::make_unique<SweepEngine>(store_, *filter_, layout));
+  return engines;
+}
+
+void CpuSweepKind::report_search(const PageEngines& engines, SearchReport& report,
+                                 const MessageLog& log) const {
+  report_statistics(dynamic_cast<const SweepEngine&>(*engines.front()).statistics(), report, log);
+}
+
+}  // namespace clearway

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+
+#include "core/sweep/model_field.hpp"
+#include "core/sweep/sweep_filter.hpp"
+#include "io/store/store_reader.hpp"
+#include "search/page_engine_kind.hpp"
+
+namespace clearway {
+
+/// What the sweep engine's forms share: the model field and the filter over it.
+class SweepKind : public PageEngineKind {
+ public:
+  /// options.threads is not 0. fineness: of the field (core/sweep/model_field.hpp). All references
+  /// outlive it.
+  SweepKind(PageEngineNeeds needs, const StoreReader& store, const Query& query,
+            const SearchOptions& options, double fineness)
+      : PageEngineKind(std::move(needs)),
+        store_(store),
+        query_(query),
+        options_(options),
+        fineness_(fineness) {}
+
+  std::vector<IndexSize> index_sizes() const override;
+  const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
+  std::uint64_t index_bytes() const override { return field_->allocated_bytes(); }
+  void report_index(SearchReport& report, const MessageLog& log) const override;
+
+ protected:
+  static void report_statistics(const SweepStatistics& statistics, SearchReport& report,
+                                const MessageLog& log);
+
+  const StoreReader& store_;
+  const Query& query_;
+  const SearchOptions& options_;
+  std::optional<ModelField> field_;
+  std::optional<SweepFilter> filter_;
+
+ private:
+  double fineness_;
+};
+
+class CpuSweepKind : public SweepKind {
+ public:
+  CpuSweepKind(const StoreReader& store, const Query& query, const SearchOptions& options);
+
+  std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
+  PageEngines make(const SlotLayout& layout) override;
+  void report_search(const PageEngines& engines, SearchReport& report,
+                     const MessageLog& log) const override;
+};
+
+}  // namespace clearway

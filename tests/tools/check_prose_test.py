@@ -1,0 +1,196 @@
+"""tools/check_prose.py accepts clean prose and names what is wrong in planted faults."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CHECKER = Path(__file__).resolve().parents[2] / "tools" / "check_prose.py"
+
+PROGRAM = """#!/bin/sh
+case "$*" in
+"run --help") cat <<END
+Search
+Usage: toy run [OPTIONS]
+
+Options:
+  -h,--help                   Print this help message and exit
+  --radius METRES REQUIRED    Search radius in metres
+  --engine TEXT:{sweep,grid}=sweep
+                              The engine
+  --force Excludes: --resume  Overwrite
+
+%s
+Example: toy run --radius 1
+END
+;;
+*) cat <<END
+A toy
+Usage: toy [OPTIONS] SUBCOMMAND
+
+Options:
+  -h,--help                   Print this help message and exit
+
+Subcommands:
+  run                         Search
+END
+;;
+esac
+"""
+
+COMMANDS = """# Commands
+
+`--help` prints the options.
+
+## toy run
+
+| option | meaning |
+|---|---|
+| `--radius METRES` | search radius |
+| `--engine NAME` | the engine |
+| `--force` | overwrite |
+
+    cmake --build build && toy run --radius 1 --engine grid   # --build is of cmake
+    toy run \\
+        --force
+
+```text
+error: out.h5: exists already; --force overwrites it
+```
+"""
+
+WORDS = " ".join(["word"] * 28)
+
+
+class CheckProse(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        self.write("README.md", "# Toy\n\nRead the [commands](docs/guide/commands.md#toy-run).\n")
+        self.write("docs/guide/commands.md", COMMANDS)
+        self.program = self.root / "toy"
+        self.set_footer("All is well.")
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+    def append(self, name, text):
+        self.write(name, (self.root / name).read_text(encoding="utf-8") + text)
+
+    def set_footer(self, footer):
+        self.program.write_text(PROGRAM % footer, encoding="utf-8")
+        self.program.chmod(0o755)
+
+    def check(self):
+        """The exit code, the faults, and the lines of figures."""
+        done = subprocess.run([sys.executable, CHECKER, "--root", self.root, self.program],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.stderr, "")
+        lines = done.stdout.splitlines()
+        figures = [line for line in lines if line.endswith(" at most")]
+        return done.returncode, [line for line in lines if line not in figures], figures
+
+    def assert_clean(self):
+        self.assertEqual(self.check()[:2], (0, []))
+
+    def assert_fault(self, *parts):
+        """Exactly one, whose line holds all parts."""
+        code, faults, _ = self.check()
+        self.assertEqual((code, len(faults)), (1, 1), faults)
+        for part in parts:
+            self.assertIn(part, faults[0])
+
+    def test_clean_prose_passes(self):
+        self.assert_clean()
+
+    def test_mean_is_of_words_a_sentence(self):
+        self.write("README.md", "# Toy\n\nOne two three. Four `a code span` [six](toy).\n")
+        self.assertIn("README.md: 2 sentences, 3.0 words each, 3 at most", self.check()[2])
+
+    def test_thirty_words_pass(self):
+        self.append("README.md", f"\nOne {WORDS}\nlast.\n")
+        self.assert_clean()
+
+    def test_long_sentence(self):
+        self.append("README.md", f"\nShort.\n\nShort too. One two {WORDS}\nlast.\n")
+        self.assert_fault("README.md:7: 31 words", "One two word")
+
+    def test_long_sentence_in_the_guide(self):
+        self.append("docs/guide/commands.md", f"\n- Short.\n- *One* `two` {WORDS}\n  last\n")
+        self.assert_fault("docs/guide/commands.md:22: 31 words")
+
+    def test_long_sentence_in_a_footer(self):
+        self.set_footer(f"One two\n{WORDS} last.\n  {WORDS} {WORDS}")
+        self.assert_fault("toy run --help: 31 words")
+
+    def test_list_items_are_sentences(self):
+        self.append("README.md", f"\n{WORDS}:\n\n- {WORDS}\n- {WORDS}\n  goes on\n")
+        self.assert_clean()
+
+    def test_tables_code_and_headings_do_not_count(self):
+        self.append("README.md", f"\n## {WORDS} {WORDS}\n\n| {WORDS} {WORDS} |\n|---|\n\n"
+                                 f"    {WORDS} {WORDS}\n\n```\n{WORDS} {WORDS}\n```\n")
+        self.assert_clean()
+
+    def test_abbreviations_and_numbers_do_not_end_a_sentence(self):
+        self.append("README.md", f"\nSee Fig. 4 of J. Doe, 0.5 m, {WORDS}.\n")
+        self.assert_fault("README.md:5: 36 words")
+
+    def test_broken_link(self):
+        self.append("README.md", "\nSee [this\npage](docs/guide/nothing.md).\n")
+        self.assert_fault("README.md:5: broken link: docs/guide/nothing.md: no such file")
+
+    def test_broken_link_in_any_markdown(self):
+        self.write("docs/design/new.md", "# New\n\n| [a](../guide/commands.md#nothing) |\n")
+        self.assert_fault("docs/design/new.md:3: broken link", "no such heading")
+
+    def test_broken_image_and_reference(self):
+        self.append("README.md", "\n[![picture](none.png)](toy)\n")
+        self.assert_fault("README.md:5: broken link: none.png")
+        self.write("README.md", "[a]: none.md\n")
+        self.assert_fault("README.md:1: broken link: none.md")
+
+    def test_links_to_the_web_and_in_code_are_not_followed(self):
+        self.append("README.md", "\n[web](https://example.org/x) `[a](b)` [here](#toy) [dir](docs)\n")
+        self.assert_clean()
+
+    def test_unknown_option(self):
+        self.append("README.md", "\nGive\n`--nothing`.\n")
+        self.assert_fault("README.md:6: --nothing: no such option")
+
+    def test_unknown_option_in_a_command_and_a_message(self):
+        self.append("README.md", "\n    ls --all | toy run --radius 1 --all\n")
+        self.assert_fault("README.md:5: --all: no such option: toy run")
+        self.write("README.md", "```text\nerror: take --all\n```\n")
+        self.assert_fault("README.md:2: --all: no such option: error")
+
+    def test_option_of_another_program(self):
+        self.append("README.md", "\n`ls --all`, `FLAG=1 ctest --test-dir build`, `run --force`\n")
+        self.assert_clean()
+
+    def test_option_of_another_command(self):
+        self.append("README.md", "\n`toy other --radius` and `run --other`\n")
+        self.assert_fault("README.md:5: --other: no such option: run")
+
+    def test_missing_option(self):
+        self.write("docs/guide/commands.md", COMMANDS.replace("--engine", "engine"))
+        self.assert_fault("docs/guide: --engine of toy run: not described below the heading toy run")
+
+    def test_missing_option_below_its_heading(self):
+        text = COMMANDS.replace("--force", "force")
+        self.write("docs/guide/commands.md", f"{text}\n## Other\n\n`--force`\n")
+        self.assert_fault("docs/guide: --force of toy run: not described below the heading toy run")
+
+    def test_missing_option_without_a_heading(self):
+        text = COMMANDS.replace("--radius", "radius").replace("## toy run", "## Run")
+        self.write("docs/guide/commands.md", text)
+        self.write("README.md", "`--radius`\n")
+        self.assert_fault("docs/guide: --radius of toy run: not described anywhere")
+
+
+if __name__ == "__main__":
+    unittest.main()

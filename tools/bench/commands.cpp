@@ -1,0 +1,234 @@
+#include "bench/commands.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/experiments/bench.hpp"
+#include "bench/measure/scoring.hpp"
+#include "bench/peers/compare_engines.hpp"
+#include "bench/stages/time_stages.hpp"
+#include "clearway/error.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/options.hpp"
+#include "cli/signals.hpp"
+#include "cli/standard_output.hpp"
+
+namespace clearway::bench {
+namespace {
+
+constexpr const char* kHowToResume = "the same command with --resume goes on from there";
+
+struct Experiment {
+  const char* name;
+  void (*run)(Bench&);
+  const char* help;
+  bool of_any_scene = false;  ///< takes --scenes; the others need certain ones
+  bool of_any_query = false;  ///< takes --env, --model and --trajectory too
+};
+
+constexpr Experiment kExperiments[] = {
+    {"table", bench_table, "Colliding points of every engine on the four scenes (Table 1)", true},
+    {"threads", bench_threads, "Speed by the number of threads (Fig. 1)"},
+    {"grid", bench_grid, "Time of each step by grid resolution and layout (Fig. 2)"},
+    {"datasets", bench_datasets, "Time of every engine and device on the four scenes (Fig. 3)",
+     true},
+    {"points", bench_points, "Time by the number of environment points, 111 samples (Fig. 4)"},
+    {"accuracy", bench_accuracy, "Time and misclassified points, exact and approximate"},
+    {"stability", bench_stability, "Where methods fail: origin, sparseness, radius, memory, poses"},
+    {"scaling", bench_scaling, "Time by poses, model points, radius and cell size"},
+    {"hard", bench_hard, "Time of the sweep and the k-d tree on cases that are hard for a sweep"},
+    {"equality", bench_equality,
+     "Compares the results of all engines, devices and modes with the sweep's on the CPU, byte by "
+     "byte",
+     true, true},
+};
+
+/// Throws UsageError with the experiments that take --scenes.
+void check_scenes(const Experiment& experiment, bool given) {
+  if (!given || experiment.of_any_scene) return;
+  std::string others;
+  for (const Experiment& other : kExperiments) {
+    if (other.of_any_scene) others += std::string(others.empty() ? "" : ", ") + other.name;
+  }
+  throw UsageError("--scenes is for " + others + "; " + experiment.name + " has scenes of its own");
+}
+
+/// The exit code.
+int run_bench(const Experiment& experiment, const BenchOptions& options) {
+  try {
+    tool::run_stoppable(options.output, kHowToResume, [&] {
+      Bench bench(experiment.name, options);
+      experiment.run(bench);
+    });
+  } catch (const ResultsDiffer& differ) {
+    spdlog::error("{}", differ.what());
+    return tool::kDiffers;
+  }
+  return tool::kDone;
+}
+
+void add_files(CLI::App& command, BenchOptions& options) {
+  command.add_option("-o,--output", options.output, "The figures, a JSON file")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--work", options.work,
+                  "Folder for scenes, stores and results, which stay there; for one experiment at "
+                  "a time and one build of clearway")
+      ->type_name("DIR")
+      ->required();
+  command
+      .add_option("--program", options.program,
+                  "The clearway that is measured (default: the one beside this program)")
+      ->type_name("FILE");
+  CLI::Option* force = command.add_flag("--force", options.force, "Replace an existing file");
+  command.add_flag("--resume", options.resume, "Go on with a file of the same experiment")
+      ->excludes(force);
+}
+
+void add_cases(CLI::App& command, BenchOptions& options) {
+  command
+      .add_option("--size", options.size,
+                  "small: minutes on 2 cores; full: the paper's sizes, for a machine with a GPU; "
+                  "smoke: seconds, to try the command out")
+      ->check(CLI::IsMember({"smoke", "small", "full"}))
+      ->capture_default_str();
+  command
+      .add_option("--device", options.device,
+                  "cpu measures no GPU; auto measures one where there is one")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  command
+      .add_option("--repetitions", options.repetitions,
+                  "Runs of every case; table, equality and most of stability run each case once")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--limit", options.limit_seconds,
+          "Seconds after which a run is stopped and counts as failed; --resume with a larger limit "
+          "repeats such cases")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+  command.add_flag("--cold", options.cold,
+                   "Drop the store from the page cache before every run, so that it is read from "
+                   "the disk");
+}
+
+void add_bounds(CLI::App& command, BenchOptions& options) {
+  const auto is_size = [](const std::string& text) {
+    tool::parse_size("a size", text);  // throws
+    return std::string();
+  };
+  command.add_option("--memory", options.memory, "--memory of every run and conversion")
+      ->check(is_size)
+      ->capture_default_str();
+  command.add_option("--device-memory", options.device_memory, "--device-memory of every run")
+      ->check(is_size)
+      ->capture_default_str();
+  command
+      .add_option("--gpus", options.gpus,
+                  "--gpus of every run on a GPU, for example 0,1 (default: the first with room)")
+      ->type_name("N,...");
+}
+
+/// Gives back the option.
+const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
+  return command
+      .add_option("--scenes", options.scenes,
+                  "Scenes, for table, datasets and equality (default: all)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
+}
+
+/// All three are given, or none.
+void add_query(CLI::App& command, std::filesystem::path& environment, std::filesystem::path& model,
+               std::filesystem::path& trajectory, bool required) {
+  CLI::Option* files[] = {command.add_option("--env", environment, "A store of clearway convert"),
+                          command.add_option("--model", model, "The model's points"),
+                          command.add_option("--trajectory", trajectory, "The poses")};
+  for (CLI::Option* file : files) {
+    file->type_name("FILE")->required(required);
+    for (CLI::Option* other : files) {
+      if (other != file) file->needs(other);
+    }
+  }
+}
+
+void add_radius_and_threads(CLI::App& command, double& radius, int& threads) {
+  command.add_option("--radius", radius, "Search radius in metres")
+      ->type_name("METRES")
+      ->check(tool::positive_length())
+      ->capture_default_str();
+  tool::add_threads_option(command, threads);
+}
+
+}  // namespace
+
+void add_experiments(CLI::App& program, int& exit_code) {
+  for (const Experiment& experiment : kExperiments) {
+    const auto options = std::make_shared<BenchOptions>();
+    CLI::App* command = program.add_subcommand(experiment.name, experiment.help);
+    add_files(*command, *options);
+    add_cases(*command, *options);
+    const CLI::Option* scenes = add_scenes(*command, *options);
+    add_bounds(*command, *options);
+    if (experiment.of_any_query) {
+      add_query(*command, options->also.store, options->also.model, options->also.trajectory,
+                false);
+    }
+    command->callback([&experiment, &exit_code, options, scenes] {
+      check_scenes(experiment, scenes->count() > 0);
+      exit_code = run_bench(experiment, *options);
+    });
+  }
+  program.footer(
+      "Every case of an experiment is a `clearway run` in a process of its own.\n"
+      "tools/charts.py draws the files.\n"
+      "Example: clearway-bench table -o table.json --work /tmp/scenes");
+}
+
+void add_stages(CLI::App& program) {
+  const auto options = std::make_shared<StageOptions>();
+  CLI::App* command = program.add_subcommand(
+      "stages", "Times reading alone and, with a GPU, sending and searching alone; prints JSON");
+  add_query(*command, options->environment, options->model, options->trajectory, true);
+  add_radius_and_threads(*command, options->radius, options->threads);
+  command->add_option("--slots", options->slots, "Pages in flight")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command->add_option("--cells", options->cells, "Cells of a page")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command->add_flag("--cold", options->cold, "Drop the store from the page cache before");
+  command->callback([options] { tool::print(time_stages(*options).dump(2) + "\n"); });
+}
+
+#ifdef CLEARWAY_NANOFLANN
+void add_peers(CLI::App& program) {
+  const auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = program.add_subcommand(
+      "peers", "Times the kdtree engine and nanoflann on the same points; prints JSON");
+  add_query(*command, options->environment, options->model, options->trajectory, true);
+  add_radius_and_threads(*command, options->radius, options->threads);
+  command->add_option("--every-pose", options->every_pose, "Take every N-th pose only")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--repetitions", options->repetitions, "Runs of each engine; the median counts")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_flag("--first-pose", options->first_pose, "Also first poses, of kdtree alone");
+  command->add_flag("!--no-peer", options->peer, "Without nanoflann");
+  command->callback([options] { tool::print(compare_engines(*options).dump(2) + "\n"); });
+}
+#endif
+
+}  // namespace clearway::bench

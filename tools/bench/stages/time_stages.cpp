@@ -1,0 +1,130 @@
+#include "bench/stages/time_stages.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bench/measure/page_cache.hpp"
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
+#include "core/page/page_pool.hpp"
+#include "core/sweep/model_field.hpp"
+#include "core/sweep/sweep_filter.hpp"
+#include "io/store/store_reader.hpp"
+#include "search/query_trees.hpp"
+#include "stream/paginate.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
+#ifdef CLEARWAY_CUDA
+#include "gpu/devices.hpp"
+#include "gpu/sweep_engine.hpp"
+#include "stream/stage_page.hpp"
+#endif
+
+namespace clearway::bench {
+namespace {
+
+/// Finds nothing, at once.
+class NoEngine final : public PageEngine {
+ public:
+  NoEngine(const PackedCloud& cloud, const Query& query, const SlotLayout& layout)
+      : pool_(cloud, query, layout), shapes_(layout.slots) {
+    for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
+      std::ranges::fill(pool_.page(slot), std::byte{0});  // touched, as page-locked memory is
+      std::ranges::fill(pool_.hits(slot), 0);
+    }
+  }
+
+  std::uint32_t slots() const override { return pool_.layout().slots; }
+  std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
+  void start(std::uint32_t slot, const PageShape& shape) override { shapes_[slot] = shape; }
+  PageResult finish(std::uint32_t slot) override {
+    return {.hits = pool_.hits(slot).first(std::size_t{shapes_[slot].cells} *
+                                           shapes_[slot].blocks_per_cell),
+            .first_poses = {},
+            .clearances = {}};
+  }
+
+ private:
+  PagePool pool_;
+  std::vector<PageShape> shapes_;
+};
+
+#ifdef CLEARWAY_CUDA
+double seconds_between(Clock::time_point begin, Clock::time_point end) {
+  return std::chrono::duration<double>(end - begin).count();
+}
+
+/// All pages, staged beforehand, are started at once; seconds on the device's clock, the best of
+/// several. Where their number exceeds the slots, the first ones stand for all.
+nlohmann::ordered_json time_device(const StoreReader& store, const SweepFilter& filter,
+                                   std::span<const PlannedCell> cells,
+                                   std::span<const PlannedPage> pages, SlotLayout layout) {
+  constexpr std::size_t kMostSlots = 512;
+  constexpr int kRepetitions = 5;
+  pages = pages.first(std::min(pages.size(), kMostSlots));
+  layout.slots = static_cast<std::uint32_t>(pages.size());
+  CudaSweepEngine engine(0, filter.ref(), store, layout);
+  std::vector<PageShape> shapes;
+  std::uint64_t points = 0, bytes = 0;
+  for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
+    shapes.push_back(stage_page(store, pages[slot].of(cells), engine.page(slot)));
+    bytes += shapes.back().bytes();
+    for (const PlannedCell& cell : pages[slot].of(cells)) points += store.cells()[cell.cell].count;
+  }
+  double upload = 1e9, compute = 1e9;
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    for (std::uint32_t slot = 0; slot < layout.slots; ++slot) engine.start(slot, shapes[slot]);
+    Interval sent = engine.finish(0).upload, searched = engine.finish(0).compute;
+    for (std::uint32_t slot = 1; slot < layout.slots; ++slot) {
+      const PageResult found = engine.finish(slot);
+      sent = {std::min(sent.begin, found.upload.begin), std::max(sent.end, found.upload.end)};
+      searched = {std::min(searched.begin, found.compute.begin),
+                  std::max(searched.end, found.compute.end)};
+    }
+    upload = std::min(upload, seconds_between(sent.begin, sent.end));
+    compute = std::min(compute, seconds_between(searched.begin, searched.end));
+  }
+  return {
+      {"pages", pages.size()},      {"page_bytes", bytes},
+      {"points", points},           {"upload_seconds", upload},
+      {"compute_seconds", compute}, {"points_per_second", static_cast<double>(points) / compute}};
+}
+#endif
+
+}  // namespace
+
+nlohmann::ordered_json time_stages(const StageOptions& options) {
+  if (options.cold) drop_from_page_cache(options.environment);
+  const StoreReader store(options.environment);
+  const std::vector<Vec3> model = read_model(options.model);
+  const std::vector<Pose> poses = read_trajectory(options.trajectory, {});
+  const Query query{model, poses, {.radius = options.radius}};
+  const QueryTrees trees(query);
+#ifdef CLEARWAY_CUDA
+  const bool on_device = cuda_device_count() > 0;
+  if (on_device) open_cuda_device(0);
+#endif
+  const ModelField field(trees.model, query.radius, {.fineness = 3}, options.threads);
+  const SweepFilter filter(query, trees.motion, trees.model, field, store);
+  const std::vector<PlannedCell> cells = plan(store, filter);
+  const std::uint64_t cell_bytes = 6 * std::uint64_t{store.cell_points()} + 4096;
+  const SlotLayout layout{options.slots,
+                          std::max(smallest_page_bytes(store, cells), options.cells * cell_bytes),
+                          options.cells};
+  const std::vector<PlannedPage> pages = paginate(store, cells, layout.page_bytes, layout.cells);
+  NoEngine engine(store, query, layout);
+  NoProgress progress;
+  StageTimes times;
+  PageEngine* const engines[] = {&engine};
+  run_pages(store, cells, pages, engines, query, options.threads, progress, times);
+  nlohmann::ordered_json out{{"pages", pages.size()},
+                             {"cells_read", store.touched().cells},
+                             {"bytes_read", store.touched().bytes},
+                             {"read_seconds", times.total}};
+#ifdef CLEARWAY_CUDA
+  if (on_device) out["device"] = time_device(store, filter, cells, pages, layout);
+#endif
+  return out;
+}
+
+}  // namespace clearway::bench

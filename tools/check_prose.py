@@ -1,0 +1,176 @@
+#!/usr/bin/python3
+"""Checks the prose for users: README.md, docs/guide and the help texts of the programs.
+
+It fails, with file and line, on
+- a sentence of more than 30 words,
+- a relative link or anchor in any Markdown file that leads nowhere,
+- an option in README.md or docs/guide that the program does not have,
+- an option of a program that docs/guide does not describe.
+It prints the mean number of words per sentence.
+
+Words: a code span is one word. Tables, code blocks and headings are left out; a list item is a
+sentence of its own.
+Options: one on a line with a command belongs to it, and is checked where that is one of the
+programs; one alone in a code span or a message may be of any of them. A heading that is a command
+(`## clearway run`) promises all options of that command below it.
+
+Example: tools/check_prose.py build/release/tools/clearway
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import unquote
+
+from prose import markdown
+from prose.program import OPTION, Program
+
+MOST_WORDS = 30
+OUTPUT_LANGUAGES = {"text", "json", "csv", "console"}
+PREFIXES = {"$", "time", "nice", "sudo"}
+
+
+class Checker:
+    def __init__(self, root, programs):
+        self.root, self.programs = root.resolve(), {p.name: p for p in programs}
+        self.problems, self.counts = [], {}
+        self.files = self._files()
+        self.blocks = {path: markdown.parse(path.read_text(encoding="utf-8"))
+                       for path in sorted(self.files) if path.suffix == ".md"}
+        self.described = {"": set()}  # in docs/guide, below each heading that is a command; "": all
+
+    def _files(self):
+        """All files that git does not ignore; where git knows none of them, all."""
+        command = ["git", "-C", str(self.root), "ls-files", "--cached", "--others",
+                   "--exclude-standard", "-z"]
+        listed = subprocess.run(command, capture_output=True, text=True, check=False)
+        if listed.returncode == 0 and listed.stdout:
+            paths = (self.root / name for name in listed.stdout.split("\0") if name)
+        else:
+            paths = self.root.rglob("*")
+        return {path for path in paths if path.is_file()}
+
+    def run(self):
+        for path, blocks in self.blocks.items():
+            name = str(path.relative_to(self.root))
+            self._check_links(path, name, blocks)
+            if name == "README.md" or name.startswith("docs/guide/"):
+                group = "README.md" if name == "README.md" else "docs/guide"
+                for block in blocks:
+                    if block.kind == "prose":
+                        self._check_sentences(group, name + ":{}", block.line, block.text)
+                self._check_options(name, blocks)
+        for program in self.programs.values():
+            for text, where in {text: where for where, text in reversed(program.prose)}.items():
+                self._check_sentences(f"{program.name} --help", where, 0, text)
+            self._check_described(program)
+
+    def _check_sentences(self, group, where, line, text):
+        for at, sentence in markdown.sentences(markdown.plain(text), line):
+            words = markdown.count_words(sentence)
+            if words:
+                self.counts.setdefault(group, []).append(words)
+            if words > MOST_WORDS:
+                self.problems.append(
+                    f"{where.format(at)}: {words} words, expected at most {MOST_WORDS}: {sentence}")
+
+    def _check_links(self, path, name, blocks):
+        for block in blocks:
+            for target in markdown.link_targets(block):
+                if not re.match(r"([a-z][a-z0-9+.-]*:|//)", target):
+                    self._check_target(path, f"{name}:{block.line}", unquote(target))
+
+    def _check_target(self, path, where, target):
+        file, _, anchor = target.partition("#")
+        base = self.root if file.startswith("/") else path.parent
+        found = (base / file.lstrip("/")).resolve() if file else path
+        if found not in self.files and not any(found in known.parents for known in self.files):
+            self.problems.append(f"{where}: broken link: {target}: no such file")
+        elif anchor and found in self.blocks:
+            if anchor not in markdown.anchors(self.blocks[found]):
+                self.problems.append(f"{where}: broken link: {target}: no such heading")
+
+    def _check_options(self, name, blocks):
+        heading = ""
+        for block in blocks:
+            if block.kind == "heading":
+                heading = block.text.replace("`", "")
+            if block.kind == "code":
+                is_text = block.language in OUTPUT_LANGUAGES
+                lines = block.text.replace("\\\n", "  ").splitlines()
+                for offset, line in enumerate(lines):
+                    self._check_code(f"{name}:{block.line + offset}", heading, line, is_text)
+                continue
+            for span in markdown.CODE_SPAN.finditer(block.text):
+                line = block.line + block.text.count("\n", 0, span.start())
+                self._check_code(f"{name}:{line}", heading, span[2], False)
+            rest = markdown.CODE_SPAN.sub("", block.text)
+            self._check_code(f"{name}:{block.line}", heading, rest, True)
+
+    def _check_code(self, where, heading, code, is_text):
+        """One line of code, each command of a pipe by itself; or a line of text."""
+        parts = re.split(r"\||&&|;", re.sub(r"(^|\s)#\s.*", "", code))
+        for part in [code] if is_text else parts:
+            options = OPTION.findall(part)
+            if where.startswith("docs/guide/"):
+                self.described[""].update(options)
+                self.described.setdefault(heading, set()).update(options)
+            known = self._known_options([] if is_text else part.split())
+            for option in options:
+                if known is not None and option not in known:
+                    self.problems.append(f"{where}: {option}: no such option: {part.strip()}")
+
+    def _known_options(self, words):
+        """What may stand on a line of these words; None: another program's options."""
+        while words and (words[0] in PREFIXES or re.match(r"[A-Z_]+=", words[0])):
+            words = words[1:]
+        if not words or not re.fullmatch(r"[\w./+][\w./+-]*", words[0]):
+            return set().union(*(program.all_options() for program in self.programs.values()))
+        program = self.programs.get(Path(words[0]).name)
+        if program:
+            return program.options_of([program.name, *words[1:]])
+        for program in self.programs.values():
+            if f"{program.name} {words[0]}" in program.options:  # "run --json"
+                return program.options_of([program.name, *words])
+        return None
+
+    def _check_described(self, program):
+        for command, options in program.options.items():
+            words = command.split()
+            while words and " ".join(words) not in self.described:
+                words.pop()
+            heading = " ".join(words)
+            for option in sorted(options - self.described[heading]):
+                if option == "--help" and option in self.described[""]:
+                    continue
+                place = f"below the heading {heading}" if heading else "anywhere"
+                self.problems.append(
+                    f"docs/guide: {option} of {command}: not described {place}")
+
+    def report(self):
+        for problem in sorted(set(self.problems)):
+            print(problem)
+        every = [count for counts in self.counts.values() for count in counts]
+        for group, counts in [*sorted(self.counts.items()), ("all", every)]:
+            mean = sum(counts) / max(1, len(counts))
+            print(f"{group}: {len(counts)} sentences, {mean:.1f} words each, "
+                  f"{max(counts, default=0)} at most")
+        return 1 if self.problems else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", nargs="*", metavar="PROGRAM", help="a built program")
+    parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[1],
+                        help="the repository (default: that of this script)")
+    options = parser.parse_args()
+    checker = Checker(options.root, [Program(path) for path in options.programs])
+    checker.run()
+    return checker.report()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,66 @@
+#include "cli/advice.hpp"
+
+#include "core/util/format.hpp"
+
+namespace clearway::tool {
+namespace {
+
+/// A size that the options take, exactly.
+std::string size_option(const std::string& name, double bytes) {
+  return name + " " + std::to_string(static_cast<std::uint64_t>(bytes));
+}
+
+}  // namespace
+
+std::string advice_on(const Error& error) {
+  switch (error.remedy()) {
+    case Remedy::kNone:
+      return "";
+    case Remedy::kMoreMemory:
+      return "; " + size_option("--memory", error.amount()) + " is enough";
+    case Remedy::kMoreDeviceMemory:
+      return "; " + size_option("--device-memory", error.amount()) + " is enough";
+    case Remedy::kOtherGpu:
+      return "; nvidia-smi lists what else uses it: take other GPUs with --gpus, or --device cpu";
+    case Remedy::kCpuDevice:
+      return "; --device cpu does without a GPU; nvidia-smi lists the GPUs that can be used; an "
+             "unfinished run continues with --resume";
+    case Remedy::kLessDeviceMemory:
+      return "; nvidia-smi lists what else uses the GPU: take less --device-memory, or --device "
+             "cpu";
+    case Remedy::kLessMemory:
+      return "; take less --memory, or --device cpu";
+    case Remedy::kFewerThreads:
+      return "; give fewer --threads, or raise the limit";
+    case Remedy::kSweepEngine:
+      return "; take --engine sweep";
+    case Remedy::kMoreCellPoints:
+      return "; with more --cell-points there are fewer cells";
+    case Remedy::kFewerCellPoints:
+      return "; fewer --cell-points avoid that";
+    case Remedy::kScale:
+      return error.amount() > 0 ? "; --scale " + format_number(error.amount()) + " fits"
+                                : "; a coarser --scale is needed";
+    case Remedy::kIgnoreCrs:
+      return "; --ignore-crs takes the coordinates as they are";
+    case Remedy::kOverwrite:
+      return "; --force overwrites it";
+    case Remedy::kResumeOrOverwrite:
+      return "; --resume continues it, --force starts again";
+    case Remedy::kOverwriteNotResume:
+      return "; --force in the place of --resume starts again";
+    case Remedy::kRestoreOptions:
+      return "; give the options and files that it was started with, or --force to start again";
+    case Remedy::kNameFormat:
+      return "; --trajectory-format names it";
+    case Remedy::kAllowNonRigid:
+      return "; --allow-non-rigid accepts any invertible matrix";
+    case Remedy::kAskForClearance:
+      return "; run with --clearance";
+    case Remedy::kResume:
+      return "; the same command with --resume, without --force, continues from the finished work";
+  }
+  return "";
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,104 @@
+#include "cli/program.hpp"
+
+#include <malloc.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <stdlib.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "clearway/error.hpp"
+#include "cli/advice.hpp"
+#include "cli/console.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/standard_output.hpp"
+#include "io/hdf5/hdf5.hpp"
+#include "io/system/mapped_file.hpp"
+
+namespace clearway::tool {
+namespace {
+
+void check_command(const CLI::App& program, const char* program_name, int argc, char** argv) {
+  const std::string name = argc > 1 ? argv[1] : "--help";
+  if (name == "-h" || name == "--help" || name == "--version") return;
+  std::string commands;
+  for (const CLI::App* command : program.get_subcommands({})) {
+    if (command->get_name() == name) return;
+    if (command->get_group().empty()) continue;  // hidden
+    commands += (commands.empty() ? "" : ", ") + command->get_name();
+  }
+  throw UsageError(name + ": no such command; expected one of " + commands + " (" + program_name +
+                   " --help explains them)");
+}
+
+/// Help goes to standard output too: a disk that is full there is an error.
+int finish(const CLI::App& program, const CLI::ParseError& error) {
+  if (program.exit(error) != 0) return kWrongUsage;
+  if (!std::cout.flush()) throw ResourceError("standard output: cannot write");
+  return kDone;
+}
+
+int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands) {
+  CLI::App program{text.description};
+  program.set_version_flag("--version", CLEARWAY_VERSION);
+  program.require_subcommand(1);
+  int exit_code = kDone;
+  add_commands(program, exit_code);
+  check_command(program, text.name, argc, argv);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return finish(program, error);
+  }
+  return exit_code;
+}
+
+/// What belongs to the process, and is not for a library to change.
+void prepare_process() {
+  start_log();
+  hdf5::silence_for_good();
+  ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);  // pages on many streams do not wait in line
+  install_map_fault_handler(kResource);
+  ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error like a full disk
+  ::signal(SIGPIPE, SIG_IGN);  // and so is a pipe that nobody reads
+  // Large blocks go back to the system when freed, so that --memory bounds what it sees.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+}
+
+}  // namespace
+
+int run_program(const ProgramText& text, int argc, char** argv, AddCommands add_commands) {
+  try {
+    occupy_standard_descriptors();
+  } catch (const ResourceError&) {
+    return kResource;
+  }
+  prepare_process();
+  try {
+    return run(text, argc, argv, add_commands);
+  } catch (const UsageError& error) {
+    spdlog::error("{}{}", error.what(), advice_on(error));
+    return kWrongUsage;
+  } catch (const InputError& error) {
+    spdlog::error("{}{}", error.what(), advice_on(error));
+    return kBadInput;
+  } catch (const ResourceError& error) {
+    spdlog::error("{}{}", error.what(), advice_on(error));
+    return kResource;
+  } catch (const Interrupted& stopped) {
+    spdlog::error("{}", stopped.what());
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("out of memory; a smaller --memory or fewer --threads may help");
+    return kResource;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kResource;
+  }
+}
+
+}  // namespace clearway::tool

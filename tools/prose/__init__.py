@@ -1,0 +1,1 @@
+"""What tools/check_prose.py knows of Markdown and of help texts."""

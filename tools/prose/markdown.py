@@ -1,0 +1,114 @@
+"""Markdown as far as prose, links and options need it."""
+
+import re
+
+CODE_SPAN = re.compile(r"(`+)(.+?)\1", re.DOTALL)
+LINK = re.compile(r"!?\[((?:[^\[\]]|\[[^\]]*\])*)\]\(\s*<?([^\s)>]*)>?(?:\s+\"[^\"]*\")?\s*\)")
+REFERENCE = re.compile(r"^ {0,3}\[[^\]]+\]:\s*<?(\S+?)>?(\s|$)")
+FENCE = re.compile(r"^\s*(```+|~~~+)\s*(\w*)")
+HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*#*$")
+LIST_ITEM = re.compile(r"^\s*([-*+]|\d+[.)])\s+")
+SENTENCE_END = re.compile(r"[.!?][\"')\]]*(?=\s+[\"'(\[]*[A-Z0-9`])")
+NO_END = re.compile(r"(\b(e\.g|i\.e|etc|vs|cf|Fig|No|St)|\b[A-Z])\.$")
+
+
+class Block:
+    """Lines of one kind: prose, table, heading, reference or code (then with its language)."""
+
+    def __init__(self, kind, line, text, language=""):
+        self.kind, self.line, self.text, self.language = kind, line, text, language
+
+
+def parse(text):
+    """The blocks of a Markdown file; a list item begins a block of its own."""
+    blocks = [Block("blank", 0, "")]
+    fence, in_list = None, False
+    for number, line in enumerate(text.splitlines(), 1):
+        last, marker = blocks[-1], FENCE.match(line)
+        if fence:
+            if marker and marker[1].startswith(fence):
+                fence = None
+                blocks.append(Block("blank", number, ""))
+            else:
+                last.text += line + "\n"
+        elif marker:
+            fence = marker[1]
+            blocks.append(Block("code", number + 1, "", marker[2]))
+        elif last.kind == "code" and not line.strip():
+            last.text += "\n"
+        elif last.kind == "code" and line.startswith("    "):
+            last.text += line + "\n"
+        elif last.kind == "prose" and _goes_on(line):
+            last.text += "\n" + line.lstrip("> ")
+        else:
+            in_list = bool(LIST_ITEM.match(line)) or in_list and line[:1] in ("", " ")
+            blocks.append(_block_of(number, line, in_list))
+    return [block for block in blocks if block.kind != "blank"]
+
+
+def _goes_on(line):
+    """Whether a line continues a paragraph."""
+    return line.strip() and not (HEADING.match(line) or LIST_ITEM.match(line) or
+                                 REFERENCE.match(line) or line.lstrip().startswith("|"))
+
+
+def _block_of(number, line, in_list):
+    if not line.strip():
+        return Block("blank", number, "")
+    if line.startswith("    ") and not in_list:
+        return Block("code", number, line + "\n")
+    if heading := HEADING.match(line):
+        return Block("heading", number, heading[1])
+    if line.lstrip().startswith("|"):
+        return Block("table", number, line)
+    if REFERENCE.match(line):
+        return Block("reference", number, line)
+    return Block("prose", number, LIST_ITEM.sub("", line).lstrip("> "))
+
+
+def plain(text):
+    """Prose without markup: a code span is one word, a link its text. Line breaks stay."""
+    text = CODE_SPAN.sub(lambda span: "`code`" + "\n" * span[2].count("\n"), text)
+    text = LINK.sub(lambda link: link[1], LINK.sub(lambda link: link[1], text))
+    return re.sub(r"<https?://[^>]*>", "`code`", text).replace("*", "")
+
+
+def sentences(text, line):
+    """Yields (line, sentence) of plain prose that starts in `line`."""
+    start = 0
+    for end in [match.end() for match in SENTENCE_END.finditer(text)] + [len(text)]:
+        if end < len(text) and NO_END.search(text[start:end]):
+            continue
+        lead = len(text[start:end]) - len(text[start:end].lstrip())
+        if text[start:end].strip():
+            yield line + text.count("\n", 0, start + lead), " ".join(text[start:end].split())
+        start = end
+
+
+def count_words(sentence):
+    return sum(1 for word in sentence.split() if re.search(r"\w", word))
+
+
+def link_targets(block):
+    """What the links and images of a block point to."""
+    if block.kind == "code":
+        return []
+    if block.kind == "reference":
+        return [REFERENCE.match(block.text)[1]]
+    text = CODE_SPAN.sub("`code`", block.text)
+    inner = [link[0] for link in LINK.findall(text)]  # an image may be the text of a link
+    return [link[1] for part in [text, *inner] for link in LINK.findall(part)]
+
+
+def anchors(blocks):
+    """The anchors of a Markdown file, as GitHub makes them."""
+    found, seen = set(), {}
+    for block in blocks:
+        if block.kind != "heading":
+            found.update(re.findall(r"<a (?:id|name)=\"([^\"]+)\"", block.text))
+            continue
+        text = LINK.sub(lambda link: link[1], block.text).lower()
+        slug = re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+        found.add(slug if slug not in seen else f"{slug}-{seen[slug]}")
+        seen[slug] = seen.get(slug, 0) + 1
+    return found

@@ -1,0 +1,68 @@
+"""The commands, options and prose of a program, from its help texts."""
+
+import re
+import subprocess
+from pathlib import Path
+
+OPTION = re.compile(r"(?<![\w-])--[a-z][\w-]*")
+SECTION = re.compile(r"^(Positionals|Options|Subcommands):$")
+
+
+class Program:
+    def __init__(self, path):
+        self.name = Path(path).name
+        self.options = {}  # of each command, named by its words: "clearway run"
+        self.prose = []  # (where, text)
+        self._read(str(path), [])
+
+    def _read(self, path, words):
+        """The help of one command, then those of its subcommands."""
+        command = " ".join([self.name, *words])
+        lines = subprocess.run([path, *words, "--help"], capture_output=True, text=True,
+                               check=True).stdout.splitlines()
+        entries, rest = self._split(lines)
+        self._add_paragraphs(f"{command} --help", rest)
+        self.prose += [(f"{command} --help, {name}", text) for _, name, text in entries]
+        self.options[command] = {option for section, name, _ in entries if section == "Options"
+                                 for option in OPTION.findall(name)}
+        for section, name, _ in entries:
+            if section == "Subcommands":
+                self._read(path, [*words, name])
+
+    @staticmethod
+    def _split(lines):
+        """The entries [section, name, text] of all sections, and the lines outside them."""
+        section, entries, rest = "", [], []
+        for line in lines:
+            if title := SECTION.match(line):
+                section = title[1]
+            elif line.startswith("Usage:"):
+                rest.append("")
+            elif section and line.startswith(" " * 6) and entries:
+                entries[-1][2] = f"{entries[-1][2]} {line.strip()}".strip()
+            elif section and line.startswith("  "):
+                names, _, text = line.strip().partition("  ")
+                entries.append([section, names.split()[0], text.strip()])
+            else:
+                section = section if not line else ""
+                rest.append(line)
+        return entries, rest
+
+    def _add_paragraphs(self, where, lines):
+        """Lines at the margin are prose; indented lines and examples are not."""
+        paragraph = []
+        for line in [*lines, ""]:
+            if line and not line.startswith((" ", "Example")):
+                paragraph.append(line)
+            elif paragraph:
+                self.prose.append((where, " ".join(paragraph)))
+                paragraph = []
+
+    def options_of(self, words):
+        """Of the longest command that the words begin with; of a bare program name, all."""
+        while len(words) > 1 and " ".join(words) not in self.options:
+            words = words[:-1]
+        return self.options[" ".join(words)] if len(words) > 1 else self.all_options()
+
+    def all_options(self):
+        return set().union(*self.options.values())
