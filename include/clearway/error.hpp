@@ -18,7 +18,8 @@ enum class Remedy {
   kSweepEngine,  ///< the engine cannot do what was asked; engine sweep can
   kMoreCellPoints,
   kFewerCellPoints,
-  kScale,  ///< amount: a step in metres that fits, 0: a coarser one
+  kScale,     ///< amount: a step in metres that fits, 0: a coarser one
+  kOneScale,  ///< for all inputs; amount: a step in metres, 0: the caller's choice
   kIgnoreCrs,
   kOverwrite,           ///< the output exists
   kResumeOrOverwrite,   ///< an unfinished run of this output exists

@@ -6,7 +6,6 @@
 #include "clearway/error.hpp"
 
 using namespace clearway;
-using namespace clearway;
 using Catch::Contains;
 
 namespace {
@@ -31,18 +30,24 @@ struct Machine {
   }
 };
 
+MessageLog silent() {
+  static const CallOptions nobody;
+  static std::vector<Message> warnings;
+  return {nobody, warnings};
+}
+
 }  // namespace
 
 TEST_CASE("the first GPU with all the memory that is wanted is taken, and no further one opened") {
   Machine machine{{100 * kMiB, 2 * kWanted, 3 * kWanted}};
-  CHECK(one_with_room(machine.count(), machine.open(), kWanted).index == 1);
+  CHECK(one_with_room(machine.count(), machine.open(), kWanted, silent()).index == 1);
   CHECK(machine.opened == std::vector{0, 1});
 }
 
 TEST_CASE("where no GPU has all that is wanted, the one with the most is the last one opened") {
   Machine machine{{300 * kMiB, 500 * kMiB, kWanted, 400 * kMiB}};  // a twentieth is left to others
   const DeviceChoice choice =
-      choice_of({one_with_room(machine.count(), machine.open(), kWanted)}, kWanted);
+      choice_of({one_with_room(machine.count(), machine.open(), kWanted, silent())}, kWanted);
   CHECK(machine.opened.back() == 2);
   CHECK(choice.gpus == std::vector{2});
   CHECK(choice.memory_bytes < kWanted);
@@ -52,12 +57,14 @@ TEST_CASE("where no GPU has all that is wanted, the one with the most is the las
 
 TEST_CASE("a GPU that cannot be used does not hide the others") {
   Machine machine{{kUnusable, 500 * kMiB, kUnusable}};
-  CHECK(one_with_room(machine.count(), machine.open(), kWanted).index == 1);
-  CHECK(automatic_choice(machine.count(), machine.open(), kWanted).gpus == std::vector{1});
+  CHECK(one_with_room(machine.count(), machine.open(), kWanted, silent()).index == 1);
+  CHECK(automatic_choice(machine.count(), machine.open(), kWanted, silent()).gpus ==
+        std::vector{1});
 
   Machine broken{{kUnusable, kUnusable}};
-  CHECK_THROWS_WITH(one_with_room(broken.count(), broken.open(), kWanted), "no context on 1");
-  CHECK_FALSE(automatic_choice(broken.count(), broken.open(), kWanted).is_cuda());
+  CHECK_THROWS_WITH(one_with_room(broken.count(), broken.open(), kWanted, silent()),
+                    "no context on 1");
+  CHECK_FALSE(automatic_choice(broken.count(), broken.open(), kWanted, silent()).is_cuda());
 }
 
 TEST_CASE("of several GPUs the one with the least free bounds what is taken of each") {
@@ -77,9 +84,9 @@ TEST_CASE("of several GPUs the one with the least free bounds what is taken of e
 
 TEST_CASE("the CPU is taken where there is no GPU, or none with room") {
   Machine none{{}}, full{{100 * kMiB, 200 * kMiB}}, room{{100 * kMiB, 300 * kMiB}};
-  CHECK_FALSE(automatic_choice(none.count(), none.open(), kWanted).is_cuda());
-  CHECK_FALSE(automatic_choice(full.count(), full.open(), kWanted).is_cuda());
-  const DeviceChoice choice = automatic_choice(room.count(), room.open(), kWanted);
+  CHECK_FALSE(automatic_choice(none.count(), none.open(), kWanted, silent()).is_cuda());
+  CHECK_FALSE(automatic_choice(full.count(), full.open(), kWanted, silent()).is_cuda());
+  const DeviceChoice choice = automatic_choice(room.count(), room.open(), kWanted, silent());
   CHECK(choice.gpus == std::vector{1});
   CHECK(choice.fallback_allowed);
 }

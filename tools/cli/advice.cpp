@@ -41,6 +41,9 @@ std::string advice_on(const Error& error) {
     case Remedy::kScale:
       return error.amount() > 0 ? "; --scale " + format_number(error.amount()) + " fits"
                                 : "; a coarser --scale is needed";
+    case Remedy::kOneScale:
+      return "; --scale " + (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
+             " sets one for all";
     case Remedy::kIgnoreCrs:
       return "; --ignore-crs takes the coordinates as they are";
     case Remedy::kOverwrite:

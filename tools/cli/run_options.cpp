@@ -1,6 +1,9 @@
 #include "cli/run_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "cli/options.hpp"
 
@@ -50,12 +53,27 @@ void add_query(CLI::App& command, RunOptions& options) {
       ->check(positive_length());
 }
 
-void add_device(CLI::App& command, SearchOptions& options) {
+/// An option that takes the name of one of the values.
+template <typename Value>
+void add_choice(CLI::App& command, const std::string& option, Value& chosen,
+                const std::vector<Value>& values, const std::string& description) {
+  std::vector<std::string> names;
+  for (const Value value : values) names.emplace_back(name_of(value));
   command
-      .add_option("--device", options.device,
-                  "cpu or cuda; auto takes a GPU where the engine and the machine have one")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
-      ->capture_default_str();
+      .add_option_function<std::string>(
+          option,
+          [&chosen, values](const std::string& name) {
+            chosen = *std::ranges::find_if(values,
+                                           [&name](Value value) { return name == name_of(value); });
+          },
+          description)
+      ->check(CLI::IsMember(names))
+      ->default_str(name_of(chosen));
+}
+
+void add_device(CLI::App& command, SearchOptions& options) {
+  add_choice(command, "--device", options.device, {Device::kAuto, Device::kCpu, Device::kCuda},
+             "cpu or cuda; auto takes a GPU where the engine and the machine have one");
   command
       .add_option("--gpus", options.gpus,
                   "Numbers of the GPUs to use, for example 0,1 (default: the first with room)")
@@ -67,18 +85,9 @@ void add_device(CLI::App& command, SearchOptions& options) {
 }
 
 void add_engine(CLI::App& command, SearchOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--engine",
-          [&options](const std::string& name) {
-            options.engine = name == "sweep"    ? Engine::kSweep
-                             : name == "grid"   ? Engine::kGrid
-                             : name == "kdtree" ? Engine::kKdtree
-                                                : Engine::kAuto;
-          },
-          "sweep, grid or kdtree; auto takes sweep")
-      ->check(CLI::IsMember({"auto", "sweep", "grid", "kdtree"}))
-      ->default_str("auto");
+  add_choice(command, "--engine", options.engine,
+             {Engine::kAuto, Engine::kSweep, Engine::kGrid, Engine::kKdtree},
+             "sweep, grid or kdtree; auto takes sweep");
   add_device(command, options);
   add_threads_option(command, options.threads);
   add_memory_option(command, options.memory_bytes);

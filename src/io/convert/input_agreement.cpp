@@ -84,8 +84,8 @@ std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path>
     if (!shift) {
       if (scale || !own) return std::nullopt;
       refuse(files[i].string(),
-             "its scale or offset does not agree with that of " + files[0].string(), Remedy::kScale,
-             first[0]);
+             "its scale or offset does not agree with that of " + files[0].string(),
+             Remedy::kOneScale, first[0]);
     }
     common.shifts.push_back(*shift);
   }
@@ -102,7 +102,7 @@ void refuse_mixture(std::span<const std::filesystem::path> files,
                (integers ? "floating-point numbers" : "integers times a scale") + ", expected " +
                (integers ? "integers" : "floating-point numbers") + " as in " + files[0].string() +
                ". Does it belong to the environment (a model does not)? If so, all need one scale",
-           Remedy::kScale);
+           Remedy::kOneScale);
   }
 }
 

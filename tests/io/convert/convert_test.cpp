@@ -200,7 +200,7 @@ TEST_CASE("too little memory for the index of many cells is refused before they 
   scan.options.cell_points = 64;
   scan.options.memory_bytes = kLeastConversionMemory;
   CHECK_THAT(conversion_refusal<ResourceError>(scan.options),
-             Contains("120000 cells need at least 227M") && Contains("--cell-points"));
+             Contains("120000 cells need at least 227 MiB"));
   CHECK(scan.files() == std::vector<std::string>{"a.las"});
 }
 
@@ -208,7 +208,7 @@ TEST_CASE("an existing output stays as it is unless it may be overwritten") {
   Scan scan(cube_cloud(100, -50, 50, 1));
   put_bytes(scan.options.output, "mine");
   scan.options.overwrite = false;
-  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("--force"));
+  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("exists already"));
   CHECK(bytes_of(scan.options.output) == "mine");
   scan.options.overwrite = true;
   scan.convert();

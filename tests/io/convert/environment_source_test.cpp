@@ -46,14 +46,30 @@ Environment read_environment(const std::vector<std::filesystem::path>& inputs,
   return out;
 }
 
-std::string refusal(const std::vector<std::filesystem::path>& inputs,
-                    const EnvironmentOptions& options = {}) {
+std::optional<InputError> refused(const std::vector<std::filesystem::path>& inputs,
+                                  const EnvironmentOptions& options = {}) {
   try {
     read_environment(inputs, options);
   } catch (const InputError& error) {
-    return error.what();
+    return error;
   }
-  return {};
+  return std::nullopt;
+}
+
+std::string refusal(const std::vector<std::filesystem::path>& inputs,
+                    const EnvironmentOptions& options = {}) {
+  const auto error = refused(inputs, options);
+  return error ? error->what() : "";
+}
+
+/// The scale in metres that a refusal advises; 0: a coarser one, or one of the caller's choice;
+/// negative: none.
+double advised_scale(const std::vector<std::filesystem::path>& inputs,
+                     const EnvironmentOptions& options = {}) {
+  const auto error = refused(inputs, options);
+  return error && (error->remedy() == Remedy::kScale || error->remedy() == Remedy::kOneScale)
+             ? error->amount()
+             : -1;
 }
 
 EnvironmentOptions with_scale(double scale) { return {.scale = scale}; }
@@ -148,8 +164,8 @@ TEST_CASE("files whose offsets or scales do not agree are refused with advice") 
   write_las(folder / "half.las", points, millimetres_from(0, 0.0005, 0));
   write_las(folder / "coarse.las", points, {{0.01, 0.01, 0.01}, {0, 0, 0}});
   for (const char* other : {"half.las", "coarse.las"}) {
-    CHECK_THAT(refusal({folder / "a.las", folder / other}),
-               Contains(other) && Contains("--scale 0.001"));
+    CHECK_THAT(refusal({folder / "a.las", folder / other}), Contains(other));
+    CHECK(advised_scale({folder / "a.las", folder / other}) == 0.001);
     const Environment environment =
         read_environment({folder / "a.las", folder / other}, with_scale(0.0005));
     REQUIRE(environment.points.size() == 2);
@@ -162,7 +178,8 @@ TEST_CASE("a file too far from the first is refused, and fits a coarser scale") 
   const ScratchFolder folder;
   write_las(folder / "a.las", std::vector<Quantum>{{0, 0, 0}}, millimetres_from(0, 0, 0));
   write_las(folder / "b.las", std::vector<Quantum>{{0, 0, 0}}, millimetres_from(3e6, 0, 0));
-  CHECK_THAT(refusal({folder / "a.las", folder / "b.las"}), Contains("a coarser --scale fits"));
+  CHECK_THAT(refusal({folder / "a.las", folder / "b.las"}), Contains("too far from"));
+  CHECK(advised_scale({folder / "a.las", folder / "b.las"}) == 0);
   const Environment environment =
       read_environment({folder / "a.las", folder / "b.las"}, with_scale(0.01));
   CHECK(positions(environment)[1].x == 3e6);
@@ -216,9 +233,10 @@ TEST_CASE("positions are rounded to nearest, ties to even, the largest change is
 TEST_CASE("a scale too fine for the extent is refused with one that fits") {
   const ScratchFolder folder;
   write_ply(folder / "a.ply", std::vector<Vec3>{{0, 0, 0}, {30000, 0, 0}});
-  CHECK_THAT(refusal({folder / "a.ply"}, with_scale(1e-6)), Contains("--scale 0.0001 fits"));
+  CHECK(advised_scale({folder / "a.ply"}, with_scale(1e-6)) == 0.0001);
   put_bytes(folder / "b.xyz", "1e300 0 0\n0 0 0\n");
-  CHECK_THAT(refusal({folder / "b.xyz"}, {}), Contains("a coarser --scale is needed"));
+  CHECK_THAT(refusal({folder / "b.xyz"}, {}), Contains("do not fit 32-bit integers"));
+  CHECK(advised_scale({folder / "b.xyz"}) == 0);
   write_ply(folder / "a.ply", std::vector<Vec3>{{0, 0, 0}, {1e300, 0, 0}});
   CHECK_THAT(refusal({folder / "a.ply"}), Contains("do not fit"));
 }
@@ -227,8 +245,8 @@ TEST_CASE("integers and positions go together only with --scale") {
   const ScratchFolder folder;
   write_las(folder / "a.las", std::vector<Quantum>{{1, 2, 3}}, millimetres_from(0, 0, 0));
   write_ply(folder / "a.ply", std::vector<Vec3>{{0.001, 0.002, 0.003}});
-  CHECK_THAT(refusal({folder / "a.las", folder / "a.ply"}), Contains("--scale"));
-  CHECK_THAT(refusal({folder / "a.ply", folder / "a.las"}), Contains("--scale"));
+  CHECK_THAT(refusal({folder / "a.las", folder / "a.ply"}), Contains("one scale"));
+  CHECK_THAT(refusal({folder / "a.ply", folder / "a.las"}), Contains("one scale"));
   const Environment environment =
       read_environment({folder / "a.ply", folder / "a.las"}, with_scale(0.001));
   REQUIRE(environment.points.size() == 2);
@@ -284,7 +302,8 @@ TEST_CASE("no point, and none that is finite, make an empty environment") {
 TEST_CASE("degrees are refused, unless they are to be taken as they are") {
   const ScratchFolder folder;
   put_bytes(folder / "a.las", las_with_wkt(kDegreeWkt));
-  CHECK_THAT(refusal({folder / "a.las"}), Contains("degrees") && Contains("--ignore-crs"));
+  CHECK_THAT(refusal({folder / "a.las"}), Contains("degrees"));
+  CHECK(refused({folder / "a.las"})->remedy() == Remedy::kIgnoreCrs);
   CHECK(read_environment({folder / "a.las"}, {.ignore_crs = true}).points.size() == 3);
 }
 

@@ -109,7 +109,7 @@ TEST_CASE("a quaternion is normalised, and refused far from norm 1") {
 TEST_CASE("a matrix that is not rigid is refused with its line and singular values") {
   const std::string stretched = "1.001 0 0 0 0 1 0 0 0 0 1 0";
   const std::string message = refusal_of_text(kIdentity + "\n" + stretched + "\n");
-  CHECK_THAT(message, Contains("line 2") && Contains("1.001") && Contains("--allow-non-rigid"));
+  CHECK_THAT(message, Contains("line 2") && Contains("1.001"));
   CHECK(poses_of(stretched, TrajectoryFormat::kMatrix, true).size() == 1);
   const std::string mirrored = "-1 0 0 0 0 1 0 0 0 0 1 0";
   CHECK_THAT(refusal_of_text(mirrored), Contains("determinant -1"));
@@ -154,6 +154,6 @@ TEST_CASE("malformed trajectories are refused with their line") {
   CHECK_THAT(refusal_of_text("0 0 0 0 0 0 0 1", TrajectoryFormat::kMatrix), Contains("8 numbers"));
   CHECK_THAT(refusal_of_text("1,2,3\n", TrajectoryFormat::kEuroc), Contains("3 columns"));
   CHECK_THAT(refusal_of_text("1403715524907143168,0,0,0,1,0,0,0\n"),
-             Contains("--trajectory-format"));
+             Contains("the format can be tum"));
   CHECK_THAT(refusal_of_text(std::string(70'000, '1')), Contains("65536"));
 }

@@ -1,0 +1,163 @@
+// Budgets of engines that work on pages, with memory on a device that is made up.
+#include "search/page_search.hpp"
+
+#include <catch2/catch.hpp>
+#include <functional>
+#include <optional>
+
+#include "clearway/error.hpp"
+#include "search/sweep_kind.hpp"
+#include "support/result_fixture.hpp"
+#include "support/store_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+/// The sweep on the CPU, with other needs and memory where a test sets them.
+class MadeUpKind final : public CpuSweepKind {
+ public:
+  using CpuSweepKind::CpuSweepKind;
+
+  std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override {
+    return on_host ? on_host(layout) : CpuSweepKind::host_bytes(layout, most_poses);
+  }
+  std::uint64_t device_bytes(const SlotLayout& layout) const override {
+    return on_device ? on_device(layout) : 0;
+  }
+  PageEngines make(const SlotLayout& layout) override {
+    if (is_never_made) throw ResourceError("not made");
+    return CpuSweepKind::make(layout);
+  }
+  PageEngineNeeds& changed_needs() { return needs_; }
+
+  std::function<std::uint64_t(const SlotLayout&)> on_host, on_device;
+  bool is_never_made = false;
+};
+
+/// A line of points, and a model of one point that goes along it.
+class Line {
+ public:
+  Line() {
+    std::vector<Quantum> points;
+    for (std::int32_t i = 0; i < 2000; ++i) points.push_back({10 * i, 0, 0});
+    write_las(folder_ / "line.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
+    convert_quietly(conversion_of({folder_ / "line.las"}, folder_ / "line.h5"));
+    store.emplace(folder_ / "line.h5");
+    for (int i = 0; i < 100; ++i) {
+      query.poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.1 * i, 0, 0}});
+    }
+    options.threads = 2;
+    kind.emplace(*store, query, options);
+  }
+
+  /// Returns the number of hits.
+  std::uint64_t run() {
+    const auto open = [&]() -> SearchJournal& {
+      ++journals_opened;
+      const std::string name = "journal " + std::to_string(journals_opened);
+      return journal_.emplace(folder_ / name, JournalIdentity{}, nullptr, *store, query, 1e9);
+    };
+    NoProgress progress;
+    report = {};
+    MessageLog log(options, report.warnings);
+    return search_pages(*store, query, options.memory_bytes, *kind, open, progress, report, log)
+        .result.hits.count();
+  }
+
+  /// None where it runs.
+  std::optional<ResourceError> refusal() {
+    try {
+      run();
+    } catch (const ResourceError& error) {
+      return error;
+    }
+    return std::nullopt;
+  }
+
+  /// What a run with so many threads and devices of one slot needs; it ends before it begins.
+  std::uint64_t needed(int threads, std::uint32_t devices) {
+    kind->changed_needs().most_slots = 1;
+    kind->changed_needs().threads = threads;
+    kind->changed_needs().devices = devices;
+    kind->is_never_made = true;
+    CHECK(std::string(refusal().value().what()) == "not made");
+    return report.needed_host_bytes;
+  }
+
+  /// Host and device want opposite layouts: 100 MiB a slot, and 100 MiB a slot less than four.
+  void set_at_odds(std::uint64_t most_device_bytes) {
+    kind->changed_needs().most_slots = 4;
+    kind->changed_needs().on_gpu = true;
+    kind->changed_needs().most_device_bytes = most_device_bytes;
+    kind->on_host = [](const SlotLayout& layout) { return layout.slots * 100 * kMiB; };
+    kind->on_device = [](const SlotLayout& layout) { return (5 - layout.slots) * 100 * kMiB; };
+  }
+
+ private:
+  ScratchFolder folder_;
+  std::optional<SearchJournal> journal_;
+
+ public:
+  std::optional<StoreReader> store;
+  Query query{{{0, 0, 0}}, {}, {.radius = 0.1, .first_pose = true}};
+  SearchOptions options;
+  std::optional<MadeUpKind> kind;
+  SearchReport report;
+  int journals_opened = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a run asks for its journal once, after its engine was made") {
+  Line line;
+  CHECK(line.run() > 0);
+  CHECK(line.journals_opened == 1);
+  line.needed(1, 1);
+  CHECK(line.journals_opened == 1);
+}
+
+TEST_CASE("layouts that fit either memory but not both are refused with a budget that works") {
+  Line line;
+  const std::uint64_t hits = line.run();
+  line.set_at_odds(150 * kMiB);
+  line.options.memory_bytes = 200 * kMiB;
+  const ResourceError refusal = line.refusal().value();
+  REQUIRE_THAT(refusal.what(), Contains("200.0 MiB of memory is too little"));
+  REQUIRE(refusal.remedy() == Remedy::kMoreMemory);
+  CHECK(line.journals_opened == 1);
+  line.options.memory_bytes = static_cast<std::uint64_t>(refusal.amount());
+  CHECK(line.options.memory_bytes > 400 * kMiB);
+  CHECK(line.run() == hits);
+  --line.options.memory_bytes;
+  CHECK_THAT(line.refusal().value().what(), Contains("too little"));
+}
+
+TEST_CASE("device memory that fits no layout is refused with the least, or with the GPU") {
+  Line line;
+  line.set_at_odds(50 * kMiB);
+  const ResourceError refusal = line.refusal().value();
+  CHECK(refusal.remedy() == Remedy::kMoreDeviceMemory);
+  CHECK(refusal.amount() == 100 * kMiB);
+  line.kind->changed_needs().short_device = "GPU 1 (Some GPU, 53 MiB free)";
+  const ResourceError short_of_room = line.refusal().value();
+  CHECK_THAT(short_of_room.what(), Contains("GPU 1 (Some GPU, 53 MiB free)"));
+  CHECK(short_of_room.remedy() == Remedy::kOtherGpu);
+  line.kind->changed_needs().most_device_bytes = 100 * kMiB;
+  CHECK(line.run() > 0);
+}
+
+TEST_CASE("records of the journal are counted for pages under way, stacks for every thread") {
+  constexpr std::uint64_t kStack = std::uint64_t{256} << 10;
+  Line line;
+  const auto record = SearchJournal::most_bytes(*line.store, line.query, 2) -
+                      SearchJournal::most_bytes(*line.store, line.query, 1);
+  const std::uint64_t one = line.needed(1, 1);
+  CHECK(line.needed(1, 4) == one);
+  CHECK(line.needed(4, 1) == one + 3 * kStack);
+  CHECK(line.needed(260, 4) == one + 259 * kStack + 3 * record);
+}
