@@ -4,12 +4,6 @@
 #include "cpu/grid_cpu_engine.hpp"
 
 namespace clearway {
-namespace {
-
-/// Beside those that are searched: pages that are read meanwhile.
-constexpr std::uint32_t kSlotsAhead = 2;
-
-}  // namespace
 
 const PoseReach& GridKind::build_index(const QueryTrees& trees, std::uint64_t) {
   scene_.emplace(query_, trees.motion, store_, scene_options_);

@@ -9,9 +9,6 @@
 namespace clearway {
 namespace {
 
-/// Beside those that are searched: pages that are read meanwhile.
-constexpr std::uint32_t kSlotsAhead = 2;
-
 /// The coarse lattice is a quarter more.
 constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
   const std::uint64_t bytes = mebibytes << 20;
