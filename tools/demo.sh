@@ -29,7 +29,7 @@ count=$($clearway info "$out/collisions.h5" --json |
   /usr/bin/python3 -c 'import json, sys; print(json.load(sys.stdin)["colliding_points"])')
 cat <<END
 
-The model comes closer than 0.1 m to $count of $points points. Look at:
+$count of $points points lie within 0.1 m of the moving model. Look at:
   $out/collisions.png   the hall, the path and the colliding points
   $out/colliding.las    the colliding points, for any point cloud viewer
   $out/colliding.csv    the same with the first pose that touches each
