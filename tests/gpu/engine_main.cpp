@@ -1,5 +1,5 @@
 // The engines' suite with the CUDA engines in place of the CPU's. Skips where there is no device.
-#include <algorithm>
+#include <catch2/catch.hpp>
 
 #include "catch_session.hpp"
 #include "gpu/devices.hpp"
