@@ -9,7 +9,7 @@ points=${2:-2000000}
 source tools/setup.sh
 install_missing_packages
 
-cmake --preset release >/dev/null
+configure_release
 cmake --build build/release --target clearway
 clearway=build/release/tools/clearway
 out=demo/$kind

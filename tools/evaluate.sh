@@ -28,7 +28,7 @@ cd "$(dirname "$0")/.."
 source tools/setup.sh
 install_missing_packages
 
-cmake --preset release >/dev/null
+configure_release
 cmake --build build/release --target clearway-bench
 
 if [ $force = yes ]; then (cd "$folder" && rm -rf work "${experiments[@]/%/.json}"); fi

@@ -27,3 +27,8 @@ install_missing_packages() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -y -qq --no-install-recommends "${missing[@]}"
 }
+
+# One folder for the demo and the tests, with the same options: what one has built, the other keeps.
+configure_release() {
+  cmake --preset release -DCLEARWAY_WERROR=ON >/dev/null
+}

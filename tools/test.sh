@@ -22,7 +22,7 @@ case "${1:-}" in
 esac
 install_missing_packages
 
-cmake --preset release -DCLEARWAY_WERROR=ON
+configure_release
 cmake --build build/release
 log=build/release/ctest.log
 status=0

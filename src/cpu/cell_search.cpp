@@ -34,7 +34,8 @@ std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Query& quer
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
   // A clearance search notes a bound a node, in a list that may have grown to twice its need.
   const std::uint64_t of_clearance = query.clearance > 0 ? 48 * most_poses + (1U << 15) : 0;
-  return sizeof(CellSearch) + depths * (sizeof(lists_[0]) + most_poses * sizeof(std::uint32_t)) +
+  return sizeof(CellSearch) +
+         depths * (sizeof(decltype(lists_)::value_type) + most_poses * sizeof(std::uint32_t)) +
          of_clearance;
 }
 

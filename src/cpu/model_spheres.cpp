@@ -117,7 +117,7 @@ ModelSphere ModelSpheres::make_sphere(std::span<const Keyed> points) const {
       });
   Vec3 centre = nearest->point;
   double greatest = farthest(centre);
-  if (points.size() <= 2 * kLeafPoints) {
+  if (points.size() <= std::size_t{2} * kLeafPoints) {
     for (const Keyed& p : points) {
       const double candidate = farthest(p.point);
       if (candidate < greatest) {

@@ -9,7 +9,7 @@ namespace clearway {
 
 PoseTree::PoseTree(std::span<const Pose> poses, std::uint32_t first, std::uint32_t count,
                    const Box& model, bool between_poses) {
-  nodes_.reserve(2 * count);
+  nodes_.reserve(std::size_t{2} * count);
   add(poses, first, count, model, between_poses);
 }
 

@@ -93,7 +93,7 @@ CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted
   std::exception_ptr last;
   for (int gpu = 0; gpu < count; ++gpu) {
     try {
-      const CudaDevice device = open(gpu);  // most of a second: no more of them than needed
+      CudaDevice device = open(gpu);  // most of a second: no more of them than needed
       if (allowance(device, wanted_bytes) == wanted_bytes) return device;
       if (!best || device.free_bytes > best->free_bytes) best = device;
     } catch (const ResourceError& error) {

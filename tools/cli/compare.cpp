@@ -10,13 +10,13 @@
 namespace clearway::tool {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::filesystem::path a, b;
   std::size_t show = 10;
   bool json = false;
 };
 
-bool run_compare(const Options& options) {
+bool run_compare(const CompareOptions& options) {
   const ResultReader a(options.a), b(options.b);
   const Comparison comparison = compare_results(a, b, options.show);
   print(options.json ? comparison_json(comparison, a.name(), b.name())
@@ -27,7 +27,7 @@ bool run_compare(const Options& options) {
 }  // namespace
 
 void add_compare(CLI::App& program, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
       program.add_subcommand("compare", "Say how the colliding points of two results differ");
   command->add_option("A", options->a, "Result of clearway run")->type_name("FILE")->required();

@@ -16,7 +16,7 @@
 namespace clearway::tool {
 namespace {
 
-struct Options {
+struct ConvertCommand {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   ConvertOptions conversion;
@@ -35,7 +35,7 @@ std::optional<double> regular_size_of(const std::string& layout) {
   return size;
 }
 
-void log_report(const Options& options, const ConvertReport& report) {
+void log_report(const ConvertCommand& options, const ConvertReport& report) {
   if (report.was_finished) {
     spdlog::info("{}: is the store of these inputs already; nothing to do",
                  options.output.string());
@@ -56,7 +56,7 @@ void log_report(const Options& options, const ConvertReport& report) {
       report.confirm_seconds, format_size(report.temporary_bytes));
 }
 
-void run_convert(Options& options) {
+void run_convert(ConvertCommand& options) {
   ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
@@ -68,7 +68,7 @@ void run_convert(Options& options) {
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertCommand>();
   ConvertOptions& conversion = options->conversion;
   CLI::App* command =
       program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");

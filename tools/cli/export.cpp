@@ -14,13 +14,13 @@
 namespace clearway::tool {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::filesystem::path result, output;
   std::string what = "collisions";
   bool force = false;
 };
 
-void export_rows(const Options& options) {
+void export_rows(const ExportOptions& options) {
   const ResultReader result(options.result);
   ConsoleProgress progress;
   if (options.what == "clearance") {
@@ -36,7 +36,7 @@ void export_rows(const Options& options) {
 }  // namespace
 
 void add_export(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   CLI::App* command = program.add_subcommand(
       "export", "Write the colliding points of a result as LAS, PLY, XYZ or CSV");
   command->add_option("RESULT", options->result, "Result of clearway run")

@@ -119,12 +119,12 @@ std::string text_of(const ordered_json& description) {
   return text;
 }
 
-struct Options {
+struct InfoOptions {
   std::filesystem::path file;
   bool json = false;
 };
 
-void run_info(const Options& options) {
+void run_info(const InfoOptions& options) {
   const ordered_json description = describe_file(options.file);
   // Names of files need not be UTF-8.
   constexpr auto kReplace = ordered_json::error_handler_t::replace;
@@ -134,7 +134,7 @@ void run_info(const Options& options) {
 }  // namespace
 
 void add_info(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
       program.add_subcommand("info", "Print what is in a store, a result or a journal");
   command->add_option("FILE", options->file, "Store, result or journal")

@@ -28,7 +28,7 @@
 namespace clearway::tool {
 namespace {
 
-struct Options {
+struct ChangeOptions {
   std::filesystem::path input, output, model;
   double max_motion = 0;
   TrajectoryOptions trajectory;
@@ -51,8 +51,8 @@ std::vector<Pose> thin(const std::vector<Pose>& poses, const Box& model, double 
   return kept;
 }
 
-std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model, const Options& options,
-                          const Change& change, Progress& progress) {
+std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
+                          const ChangeOptions& options, const Change& change, Progress& progress) {
   try {
     return change(poses, model, options.max_motion, progress);
   } catch (const InputError& error) {
@@ -60,7 +60,7 @@ std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model, cons
   }
 }
 
-void write_changed(const Options& options, const Change& change) {
+void write_changed(const ChangeOptions& options, const Change& change) {
   refuse_overwriting(options.output, {options.input, options.model});
   PendingFile output(options.output, options.force);
   const std::vector<Pose> before = read_trajectory(options.input, options.trajectory);
@@ -92,7 +92,7 @@ void write_changed(const Options& options, const Change& change) {
 }
 
 void add_change(CLI::App& command, const char* max_motion_help, const Change& change) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ChangeOptions>();
   command
       .add_option("IN", options->input,
                   "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")

@@ -111,7 +111,7 @@ inline Value PackedChunk<Value>::operator[](std::uint32_t index) const {
     return value;
   }
   const std::uint64_t bit = std::uint64_t{index} * minbits_;
-  const unsigned shift = static_cast<unsigned>(bit % 8);
+  const auto shift = static_cast<unsigned>(bit % 8);
   std::uint64_t delta = window(bit / 8) << shift;
   if constexpr (sizeof(Value) == 8) {
     if (shift + minbits_ > 64) {  // the ninth byte

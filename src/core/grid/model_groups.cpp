@@ -35,7 +35,7 @@ GridSphere sphere_of(std::span<const Vec3> points) {
 
 ModelGroups::ModelGroups(std::span<const Vec3> model) : points_(model.begin(), model.end()) {
   if (model.empty()) return;
-  constexpr std::size_t kPartPoints = kGroupPoints * kPartGroups;
+  constexpr std::size_t kPartPoints = std::size_t{kGroupPoints} * kPartGroups;
   const std::span<Vec3> points(points_);
   box_ = box_of(points);
   sort_by_splits(points, kPartPoints);

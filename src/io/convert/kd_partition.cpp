@@ -85,7 +85,7 @@ std::uint64_t select(const BucketPoint* points, std::size_t n, std::size_t rank,
   if (n < kHistogramFrom) {
     for (std::size_t i = 0; i < n; ++i) keys.push_back(key(points[i], i));
   } else {
-    const unsigned bits = static_cast<unsigned>(std::bit_width(side));
+    const auto bits = static_cast<unsigned>(std::bit_width(side));
     const unsigned shift = bits > kHistogramBits ? bits - kHistogramBits : 0;
     std::array<std::uint32_t, std::size_t{1} << kHistogramBits> histogram{};
     for (std::size_t i = 0; i < n; ++i) ++histogram[key.distance(points[i]) >> shift];

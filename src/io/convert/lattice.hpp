@@ -35,7 +35,7 @@ class Lattice {
   LatticePoint operator()(const std::array<std::int32_t, 3>& q, std::uint64_t source) const {
     LatticePoint out{0, 0, 0, source};
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint64_t lifted =
+      const auto lifted =
           static_cast<std::uint64_t>(std::int64_t{q[k]} + static_cast<std::int64_t>(kZero));
       if (!regular()) {
         out[k] = lifted;

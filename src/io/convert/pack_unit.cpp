@@ -127,7 +127,7 @@ OrderedUnit::OrderedUnit(const Distribution& distribution, std::size_t unit, con
     order_bucket(bucket, loaded.scratch().subspan(first, bucket.size()), cell_points,
                  quantisation.scale);
     for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
-      state_->cells.push_back(
+      state_->cells.emplace_back(
           bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
     }
   }

@@ -199,5 +199,6 @@ CLEARWAY_INSTANTIATE(std::int32_t)
 CLEARWAY_INSTANTIATE(std::uint32_t)
 CLEARWAY_INSTANTIATE(std::uint64_t)
 CLEARWAY_INSTANTIATE(double)
+#undef CLEARWAY_INSTANTIATE
 
 }  // namespace clearway::hdf5

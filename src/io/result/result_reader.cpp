@@ -4,6 +4,7 @@
 
 #include "clearway/error.hpp"
 #include "io/hdf5/hdf5.hpp"
+#include "io/result/as_numbers.hpp"
 #include "io/result/result.hpp"
 #include "io/result/result_names.hpp"
 #include "io/system/input_error.hpp"
@@ -12,12 +13,6 @@ namespace clearway {
 namespace {
 
 namespace names = result_names;
-
-static_assert(sizeof(Vec3) == 3 * sizeof(double));
-
-std::span<double> as_numbers(std::span<Vec3> points) {
-  return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
-}
 
 /// What HDF5 cannot do with a file that could be opened is taken for damaged content, unless a
 /// system call failed.

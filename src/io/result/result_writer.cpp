@@ -6,6 +6,7 @@
 
 #include "clearway/error.hpp"
 #include "io/hdf5/hdf5.hpp"
+#include "io/result/as_numbers.hpp"
 #include "io/result/column_hashes.hpp"
 #include "io/result/result.hpp"
 #include "io/result/result_names.hpp"
@@ -18,12 +19,6 @@ namespace names = result_names;
 /// A multiple of every dataset's chunk rows. The order of the writes, and with it every address in
 /// the file, follows from it and the number of rows, not from how they were appended.
 constexpr std::size_t kBufferRows = 1 << 16;
-
-static_assert(sizeof(Vec3) == 3 * sizeof(double));
-
-std::span<const double> as_numbers(std::span<const Vec3> points) {
-  return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
-}
 
 void write_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_attribute(file, "format", std::string(names::kFormat));
@@ -97,7 +92,7 @@ struct Column {
   void flush(std::uint64_t first_row) {
     hash.update(std::as_bytes(std::span<const Value>(buffer)));
     if constexpr (std::is_same_v<Value, Vec3>) {
-      dataset.write(first_row, as_numbers(buffer));
+      dataset.write(first_row, as_numbers(std::span<const Vec3>(buffer)));
     } else {
       dataset.write(first_row, buffer);
     }

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, const char* what) {
+[[noreturn]] void fail_with_errno(const fs::path& path, const char* what) {
   throw ResourceError(path.string() + ": cannot " + what + ": " + std::strerror(errno));
 }
 
@@ -55,7 +55,7 @@ File create_locked(const fs::path& path) {
     check_partial(path);
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0 && (errno == EINTR || errno == ELOOP)) continue;
-    if (descriptor < 0) fail(path, "create");
+    if (descriptor < 0) fail_with_errno(path, "create");
     File file = File::adopt(descriptor, path.string());
     if (!lock_whole(file)) {
       throw ResourceError(path.string() +
@@ -94,10 +94,10 @@ void PendingFile::publish() {
   if (failed != 0 && errno == EINVAL) {  // a file system without RENAME_NOREPLACE
     failed = ::rename(partial_.c_str(), final_.c_str());
   }
-  if (failed != 0) fail(final_, "rename the finished file to it");
+  if (failed != 0) fail_with_errno(final_, "rename the finished file to it");
   published_ = true;
   const int folder = ::open(folder_of(final_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) fail(folder_of(final_), "open");
+  if (folder < 0) fail_with_errno(folder_of(final_), "open");
   File::adopt(folder, folder_of(final_).string()).sync();
 }
 

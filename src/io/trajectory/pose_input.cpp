@@ -31,7 +31,7 @@ Objection objection_to(const Stretch& stretch, bool allow_non_rigid) {
 Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, Pose& pose) {
   if (!all_finite(numbers)) return {"expected finite numbers"};
   for (std::size_t row = 0; row < 3; ++row) {
-    std::copy_n(numbers.begin() + 4 * row, 3, pose.rotation + 3 * row);
+    std::copy_n(numbers.data() + 4 * row, 3, pose.rotation + 3 * row);
     pose.translation[row] = numbers[4 * row + 3];
   }
   if (numbers.size() == 16) {

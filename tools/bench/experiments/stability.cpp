@@ -157,7 +157,7 @@ class Stability {
       bench_.measure(key + "/" + engine.name, of_run, files, engine.options, {}, 1,
                      Refusal::kMemory);
     }
-    bench_.keep(key, parameters, [&] { return converted; });
+    bench_.keep(key, parameters, [&] { return Json(converted); });
   }
 
   /// Where the tree has no answer the others are not asked.

@@ -31,10 +31,10 @@ inline double value_noise(std::uint64_t key, double x, double y, double z) {
                          (static_cast<std::uint64_t>(pair) * 0xcb1ab31fULL << 32));
     };
     const std::uint64_t bits = edge(iz >> 1);
-    const double low = static_cast<double>(static_cast<std::uint32_t>(bits));
-    const double high = static_cast<double>(bits >> 32);
+    const auto low = static_cast<double>(static_cast<std::uint32_t>(bits));
+    const auto high = static_cast<double>(bits >> 32);
     if ((iz & 1) == 0) return low + (z - fz) * (high - low);
-    const double next = static_cast<double>(static_cast<std::uint32_t>(edge((iz >> 1) + 1)));
+    const auto next = static_cast<double>(static_cast<std::uint32_t>(edge((iz >> 1) + 1)));
     return high + (z - fz) * (next - high);
   };
   const double x0 = node(0, 0) + (x - fx) * (node(1, 0) - node(0, 0));

@@ -20,7 +20,7 @@ void add_bucket(Mesh& mesh) {
   }
 }
 
-void add_body(Mesh& mesh) {
+void add_frame_and_cab(Mesh& mesh) {
   mesh.add_box({-4.65, -1.15, 0.75}, {-1.0, 1.15, 1.65});  // engine
   mesh.add_box({-4.4, -0.85, 1.65}, {-1.4, 0.85, 1.85});   // its hood
   mesh.add_box({-4.65, -0.6, 0.4}, {-0.9, 0.6, 0.75});     // rear frame
@@ -42,7 +42,7 @@ Mesh front_loader() {
     for (const double y : {-0.92, 0.92}) mesh.add_wheel({x, y, 0.82}, 0.82, 0.62);
     mesh.add_box({x - 0.2, -0.6, 0.55}, {x + 0.2, 0.6, 1.0});
   }
-  add_body(mesh);
+  add_frame_and_cab(mesh);
   add_bucket(mesh);
   return mesh;
 }

@@ -10,12 +10,12 @@ namespace {
 constexpr double kHalfLength = 12.5, kHalfWidth = 1.4, kFloor = 0.95, kRoof = 3.9;
 
 std::vector<Vec3> section(double x) {
-  constexpr int kAround = 64;
+  constexpr int kSteps = 64;
   const double beyond = std::max(0.0, std::abs(x) - 11.8) / 0.7;
   const double half = kHalfWidth * (1 - 0.12 * beyond * beyond);
   std::vector<Vec3> out;
-  for (int i = 0; i <= kAround; ++i) {
-    const SineCosine angle = sine_cosine(kPi * i / kAround);
+  for (int i = 0; i <= kSteps; ++i) {
+    const SineCosine angle = sine_cosine(kPi * i / kSteps);
     const double y = half * std::sqrt(std::abs(angle.cosine)) * (angle.cosine < 0 ? -1 : 1);
     out.push_back({x, y, kFloor + (kRoof - kFloor) * std::sqrt(std::max(0.0, angle.sine))});
   }
@@ -30,9 +30,9 @@ bool is_window(const Vec3& p) {
 
 void add_body(Mesh& mesh) {
   std::vector<std::vector<Vec3>> sections;
-  constexpr int kSections = 150;
-  for (int i = 0; i <= kSections; ++i) {
-    sections.push_back(section(kHalfLength * (2.0 * i / kSections - 1)));
+  constexpr int kSteps = 150;
+  for (int i = 0; i <= kSteps; ++i) {
+    sections.push_back(section(kHalfLength * (2.0 * i / kSteps - 1)));
   }
   mesh.add_skin(sections, is_window);
   for (const double x : {-kHalfLength, kHalfLength}) {

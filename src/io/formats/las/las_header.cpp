@@ -88,7 +88,7 @@ Quantisation read_quantisation(const InputBuffer& input, const std::byte* header
 void read_version_14(const InputBuffer& input, std::span<const std::byte> rest,
                      LasPublicHeader& header) {
   const std::byte* bytes = rest.data() - kHeaderBytes10;
-  const std::uint64_t points = load<std::uint64_t>(bytes + 247);
+  const auto points = load<std::uint64_t>(bytes + 247);
   if (header.points != 0 && header.points != points) {
     refuse_byte(input.name(), 247,
                 std::to_string(points) + " points declared, but " + std::to_string(header.points) +
@@ -242,7 +242,7 @@ void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& cr
     if (head.empty()) refuse_cut(input, which);
     const std::string user(padded_text(head.subspan(2, 16)));
     const unsigned id = load<std::uint16_t>(head.data() + 18);
-    const std::uint64_t length = load<std::uint64_t>(head.data() + 20);
+    const auto length = load<std::uint64_t>(head.data() + 20);
     std::span<const std::byte> payload;
     if (is_about_crs(user, id)) {
       if (length > InputBuffer::kCapacity) {

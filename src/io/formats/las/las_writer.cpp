@@ -9,7 +9,7 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint16_t kHeaderBytes12 = 227, kHeaderBytes14 = 375;
+constexpr std::uint16_t kHeaderSize12 = 227, kHeaderSize14 = 375;
 constexpr std::uint16_t kRecordBytes0 = 20, kRecordBytes6 = 30;
 constexpr std::uint32_t kVlrHeaderBytes = 54;
 constexpr std::uint16_t kExtraBytesVlrBytes = 192;
@@ -42,7 +42,7 @@ Layout layout_of(const LasHeader& header) {
   out.record_bytes =
       static_cast<std::uint16_t>((out.version_14 ? kRecordBytes6 : kRecordBytes0) + extra);
   out.vlrs = (out.wkt_vlr ? 1 : 0) + (header.first_pose ? 1 : 0);
-  out.points_offset = out.version_14 ? kHeaderBytes14 : kHeaderBytes12;
+  out.points_offset = out.version_14 ? kHeaderSize14 : kHeaderSize12;
   out.points_offset += out.vlrs * kVlrHeaderBytes;
   if (out.wkt_vlr) out.points_offset += static_cast<std::uint32_t>(out.wkt_bytes);
   if (header.first_pose) out.points_offset += kExtraBytesVlrBytes;
@@ -60,7 +60,7 @@ void put_start(ByteWriter& out, const Layout& layout) {
   out.put_text("Clearway", kIdBytes);
   out.put(std::uint16_t{0});  // day and year of creation: equal contents give equal bytes
   out.put(std::uint16_t{0});
-  out.put(layout.version_14 ? kHeaderBytes14 : kHeaderBytes12);
+  out.put(layout.version_14 ? kHeaderSize14 : kHeaderSize12);
   out.put(layout.points_offset);
   out.put(layout.vlrs);
   out.put(static_cast<std::uint8_t>(layout.version_14 ? 6 : 0));

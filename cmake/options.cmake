@@ -1,0 +1,65 @@
+# How every target of this tree is compiled. Directory options: nothing of it reaches a consumer.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # assertions stay on
+# For the sanitizers and the fuzzers. gcc takes twice as long with -O2 -g; clang's -g1 leaves out the
+# namespaces that tests/tsan.supp goes by.
+if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g")
+else()
+  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
+endif()
+
+# The predicate's rounding is part of the result: no translation unit may fuse it.
+add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
+  $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
+set(warnings -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND warnings -Wno-restrict)  # gcc 12 warns of its own std::string (gcc bug 105651)
+  if(CLEARWAY_UNITY)
+    # gcc takes an anonymous namespace in an included .cpp for one in a header.
+    list(APPEND warnings -Wno-subobject-linkage)
+  endif()
+endif()
+if(CLEARWAY_WERROR)
+  list(APPEND warnings -Werror)
+endif()
+add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${warnings}>")
+if(CLEARWAY_SANITIZE)
+  add_compile_options(-fsanitize=${CLEARWAY_SANITIZE} -fno-omit-frame-pointer)
+  # gcc 12 then takes std::regex for using what is not set (gcc bug 105562).
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  add_link_options(-fsanitize=${CLEARWAY_SANITIZE})
+endif()
+if(CLEARWAY_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+  # A finding is to end the program, so that the fuzzer keeps the input.
+  add_compile_options(-fno-sanitize-recover=all)
+endif()
+
+# clearway_unity(TARGET): compiles the sources of each folder of the target as one (CLEARWAY_UNITY).
+# A source with SKIP_UNITY_BUILD_INCLUSION stays alone.
+function(clearway_unity target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    get_filename_component(folder ${source} DIRECTORY)
+    string(MAKE_C_IDENTIFIER "in_${folder}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CLEARWAY_UNITY} UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# clearway_add_library(NAME source...): a static library of src/ or tools/.
+function(clearway_add_library name)
+  add_library(${name} STATIC ${ARGN})
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+    $<INSTALL_INTERFACE:include>)
+  clearway_unity(${name})
+endfunction()

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Checks the sources with clang-format and clang-tidy, where they are installed.
+# Usage: tools/lint.sh [format|tidy]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+check_format() {
+  if ! command -v clang-format >/dev/null; then
+    echo "clang-format is not installed: the format is not checked."
+    return
+  fi
+  git ls-files -z '*.cpp' '*.hpp' '*.cu' | xargs -0 clang-format --dry-run -Werror
+  echo "clang-format: clean"
+}
+
+# The sources of a folder are read as one, which takes a fraction of the time.
+check_tidy() {
+  if ! command -v clang-tidy >/dev/null; then
+    echo "clang-tidy is not installed: the sources are not checked with it."
+    return
+  fi
+  cmake --preset release -B build/lint -DCLEARWAY_CUDA=OFF -DCLEARWAY_TESTS=OFF >/dev/null
+  cmake --build build/lint --target clearway_commit >/dev/null
+  local sources
+  mapfile -t sources < <(/usr/bin/python3 -c '
+import json
+for entry in json.load(open("build/lint/compile_commands.json")):
+    print(entry["file"])')
+  printf '%s\0' "${sources[@]}" |
+    nice -n 5 xargs -0 -P "$(nproc)" -n 1 clang-tidy -p build/lint --quiet \
+      --checks=-bugprone-suspicious-include --warnings-as-errors='*'
+  echo "clang-tidy: clean"
+}
+
+case "${1:-all}" in
+  all) check_format; check_tidy ;;
+  format) check_format ;;
+  tidy) check_tidy ;;
+  *) echo "usage: tools/lint.sh [format|tidy]" >&2; exit 2 ;;
+esac
