@@ -9,9 +9,6 @@
 namespace clearway {
 namespace {
 
-/// Beside those that are searched: pages that are read meanwhile.
-constexpr std::uint32_t kSlotsAhead = 2;
-
 /// The coarse lattice is a quarter more.
 constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
   const std::uint64_t bytes = mebibytes << 20;
@@ -58,7 +55,7 @@ void SweepKind::report_statistics(const SweepStatistics& s, SearchReport& report
 
 CpuSweepKind::CpuSweepKind(const StoreReader& store, const Query& query,
                            const SearchOptions& options)
-    : SweepKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
+    : SweepKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kCpuSlotsAhead,
                  .threads = options.threads},
                 store, query, options, 1) {}
 
