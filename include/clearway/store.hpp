@@ -27,7 +27,7 @@ class Store {
   const std::string& crs_wkt() const;  ///< as the scans had it, or empty
   /// "metre", "foot", "us-survey-foot", "degree" or "unknown".
   std::string length_unit() const;
-  const std::filesystem::path& path() const;
+  const std::filesystem::path& path() const { return path_; }
 
   /// For the library itself.
   const StoreReader& reader() const { return *reader_; }

@@ -20,6 +20,5 @@ Box Store::box() const {
 
 const std::string& Store::crs_wkt() const { return reader_->metadata().crs_wkt; }
 std::string Store::length_unit() const { return to_string(reader_->metadata().unit); }
-const std::filesystem::path& Store::path() const { return path_; }
 
 }  // namespace clearway

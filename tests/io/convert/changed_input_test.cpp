@@ -48,7 +48,7 @@ struct Scans {
   std::string refusal_of_change(const std::string& stage, const std::function<void()>& change) {
     At progress(stage, change);
     try {
-      convert(options, progress);
+      convert_scans(options, progress);
     } catch (const InputError& error) {
       return error.what();
     }
