@@ -44,6 +44,14 @@ fi
 rm -rf "$scratch" && mkdir -p "$scratch/scene"
 cmake --install "$build" --prefix "$prefix" >/dev/null
 check_headers
+( # completion, where it was made
+  words=$prefix/share/bash-completion/completions/clearway
+  [ -f "$words" ] || exit 0
+  source "$words"
+  COMP_WORDS=(clearway run --env site.h5 --first) COMP_CWORD=4
+  _clearway_complete
+  [ "${COMPREPLY[*]}" = --first-pose ] || fail "completion gives '${COMPREPLY[*]}'"
+)
 cmake -S "$source/examples" -B "$scratch/example" -DCMAKE_PREFIX_PATH="$prefix" \
   -DCMAKE_CXX_FLAGS="${warnings[*]}" >/dev/null
 cmake --build "$scratch/example" >/dev/null
