@@ -29,6 +29,18 @@ check_headers() {
     fail "a flag reaches the consumer"
 }
 
+# Every C++ block of a document is a whole file.
+check_document() {
+  local folder=$scratch/documents/${1##*/} block
+  mkdir -p "$folder"
+  awk -v folder="$folder" '/^```/ { out = /^```cpp/ ? folder "/" ++n ".cpp" : ""; next }
+    out { print > out }' "$source/$1"
+  for block in "$folder"/*.cpp; do
+    g++ -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" "$block" ||
+      fail "a block of $1 does not compile"
+  done
+}
+
 if [ "${3:-}" = --street ]; then
   if [ -z "${CLEARWAY_TEST_DATA:-}" ]; then
     echo "skipped: needs real scans; set CLEARWAY_TEST_DATA to their folder"
@@ -44,6 +56,8 @@ fi
 rm -rf "$scratch" && mkdir -p "$scratch/scene"
 cmake --install "$build" --prefix "$prefix" >/dev/null
 check_headers
+check_document README.md
+check_document docs/guide/library.md
 ( # completion, where it was made
   words=$prefix/share/bash-completion/completions/clearway
   [ -f "$words" ] || exit 0
