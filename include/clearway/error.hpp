@@ -16,6 +16,8 @@ enum class Remedy {
   kLessMemory,        ///< or the CPU
   kFewerThreads,
   kSweepEngine,  ///< the engine cannot do what was asked; engine sweep can
+  kGridEngine,
+  kCudaDevice,
   kMoreCellPoints,
   kFewerCellPoints,
   kScale,     ///< amount: a step in metres that fits, 0: a coarser one

@@ -91,7 +91,8 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
                     const SearchOptions& options = {});
 
 /// Throws what search() would throw before it looks at store, model and trajectory: for callers
-/// that read large inputs first.
+/// that read large inputs first. As search() does, it replaces a file OUTPUT.partial: see before
+/// that no input has that name.
 void check_search(const QueryParameters& query, const std::filesystem::path& output,
                   const SearchOptions& options = {});
 

@@ -74,10 +74,10 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
     refuse_engine(name_of(engine), "searches at poses, not between them");
   }
   if (engine != Engine::kGrid && (options.grid_cell > 0 || options.float_precision)) {
-    throw UsageError("a grid cell and float precision are of engine grid");
+    throw UsageError("a grid cell and float precision are of engine grid", Remedy::kGridEngine);
   }
   if (engine != Engine::kSweep && options.field_voxel > 0) {
-    throw UsageError("a field voxel is of engine sweep");
+    throw UsageError("a field voxel is of engine sweep", Remedy::kSweepEngine);
   }
   if (engine == Engine::kKdtree && options.device_memory_bytes > 0) {
     throw UsageError(
@@ -91,7 +91,7 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   }
   if (options.device == Device::kCpu &&
       (!options.gpus.empty() || options.device_memory_bytes > 0)) {
-    throw UsageError("GPUs and device memory are of device cuda");
+    throw UsageError("GPUs and device memory are of device cuda", Remedy::kCudaDevice);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "cpu/grid_cpu_engine.hpp"
 
 namespace clearway {
+
 const PoseReach& GridKind::build_index(const QueryTrees& trees, std::uint64_t) {
   scene_.emplace(query_, trees.motion, store_, scene_options_);
   return reach_.emplace(query_, trees.motion, trees.model, store_);
@@ -17,7 +18,7 @@ void GridKind::report_statistics(const GridStatistics& s, const MessageLog& log)
 }
 
 CpuGridKind::CpuGridKind(const StoreReader& store, const Query& query, const SearchOptions& options)
-    : GridKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kCpuSlotsAhead,
+    : GridKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                 .threads = options.threads},
                store, query, options) {}
 

@@ -18,8 +18,8 @@ namespace clearway {
 /// One for each device.
 using PageEngines = std::vector<std::unique_ptr<PageEngine>>;
 
-/// Slots of a CPU engine beside those that are searched: pages that are read meanwhile.
-inline constexpr std::uint32_t kCpuSlotsAhead = 2;
+/// Slots of an engine on the CPU beside those that are searched: for pages that are read meanwhile.
+inline constexpr std::uint32_t kSlotsAhead = 2;
 
 /// What an engine that works on pages wants, at the most and at the least.
 struct PageEngineNeeds {

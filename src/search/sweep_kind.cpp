@@ -55,7 +55,7 @@ void SweepKind::report_statistics(const SweepStatistics& s, SearchReport& report
 
 CpuSweepKind::CpuSweepKind(const StoreReader& store, const Query& query,
                            const SearchOptions& options)
-    : SweepKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kCpuSlotsAhead,
+    : SweepKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                  .threads = options.threads},
                 store, query, options, 1) {}
 

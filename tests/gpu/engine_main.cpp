@@ -1,9 +1,7 @@
 // The engines' suite with the CUDA engines in place of the CPU's. Skips where there is no device.
-#define CATCH_CONFIG_RUNNER
 #include <algorithm>
-#include <catch2/catch.hpp>
-#include <iostream>
 
+#include "catch_session.hpp"
 #include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
 #include "gpu/sweep_engine.hpp"
@@ -35,21 +33,13 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
       });
 }
 
-bool only_lists_tests(int count, char** arguments) {
-  return std::any_of(arguments, arguments + count,
-                     [](const char* a) { return std::string(a).starts_with("--list"); });
-}
-
 }  // namespace
 }  // namespace clearway
 
 int main(int count, char** arguments) {
-  constexpr int kSkipped = 77;
-  if (!clearway::only_lists_tests(count, arguments) && clearway::cuda_device_count() == 0) {
-    std::cout << "skipped: no CUDA device here\n";
-    return kSkipped;
-  }
   clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true},
                        {"grid on CUDA", clearway::grid_on_cuda, false, false, false}});
-  return Catch::Session().run(count, arguments);
+  return run_catch(count, arguments, [] {
+    return clearway::cuda_device_count() == 0 ? "no CUDA device here" : nullptr;
+  });
 }

@@ -34,6 +34,10 @@ std::string advice_on(const Error& error) {
       return "; give fewer --threads, or raise the limit";
     case Remedy::kSweepEngine:
       return "; take --engine sweep";
+    case Remedy::kGridEngine:
+      return "; take --engine grid";
+    case Remedy::kCudaDevice:
+      return "; take --device cuda";
     case Remedy::kMoreCellPoints:
       return "; with more --cell-points there are fewer cells";
     case Remedy::kFewerCellPoints:
@@ -51,7 +55,7 @@ std::string advice_on(const Error& error) {
     case Remedy::kResumeOrOverwrite:
       return "; --resume continues it, --force starts again";
     case Remedy::kOverwriteNotResume:
-      return "; --force in the place of --resume starts again";
+      return "; --force in the place of --resume overwrites it";
     case Remedy::kRestoreOptions:
       return "; give the options and files that it was started with, or --force to start again";
     case Remedy::kNameFormat:

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -16,7 +17,7 @@
 namespace clearway::tool {
 namespace {
 
-struct ConvertCommand {
+struct ConvertArguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   ConvertOptions conversion;
@@ -29,13 +30,14 @@ std::optional<double> regular_size_of(const std::string& layout) {
   double size = 0;
   if (layout == "adaptive") return std::nullopt;
   if (!layout.starts_with(regular) ||
-      !CLI::detail::lexical_cast(layout.substr(regular.size()), size)) {
+      !CLI::detail::lexical_cast(layout.substr(regular.size()), size) || !std::isfinite(size) ||
+      size <= 0) {
     throw UsageError("--layout " + layout + ": expected adaptive or regular:SIZE (metres)");
   }
   return size;
 }
 
-void log_report(const ConvertCommand& options, const ConvertReport& report) {
+void log_report(const ConvertArguments& options, const ConvertReport& report) {
   if (report.was_finished) {
     spdlog::info("{}: is the store of these inputs already; nothing to do",
                  options.output.string());
@@ -56,7 +58,7 @@ void log_report(const ConvertCommand& options, const ConvertReport& report) {
       report.confirm_seconds, format_size(report.temporary_bytes));
 }
 
-void run_convert(ConvertCommand& options) {
+void run_convert(ConvertArguments& options) {
   ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
@@ -68,7 +70,7 @@ void run_convert(ConvertCommand& options) {
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  auto options = std::make_shared<ConvertCommand>();
+  auto options = std::make_shared<ConvertArguments>();
   ConvertOptions& conversion = options->conversion;
   CLI::App* command =
       program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");

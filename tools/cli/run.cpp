@@ -119,8 +119,8 @@ void run(RunOptions& options) {
   MemoryWatch memory;
   ConsoleProgress progress;
   watch_call(options.search, progress);
-  check_search(options.query, options.output, options.search);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
+  check_search(options.query, options.output, options.search);
   const Store store(options.environment);
   const Query query = read_query(options);
   ProgramReport program{.inputs_seconds = total.seconds()};

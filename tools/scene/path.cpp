@@ -64,7 +64,7 @@ Path Path::from_pieces(std::span<const PathPiece> pieces, double slope) {
   std::vector<PathFrame> table{{{0, 0, 0}, 1, 0}};
   int fine = 0;
   for (const PathPiece& piece : pieces) {
-    const auto steps = static_cast<int>(piece.length / kFine + 0.5);
+    const auto steps = static_cast<int>(std::lround(piece.length / kFine));
     const double change = (piece.end_curvature - curvature) / steps;
     for (int i = 0; i < steps; ++i) {
       const double middle = heading + (curvature + change / 4) * kFine / 2;

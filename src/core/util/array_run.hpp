@@ -22,13 +22,17 @@ struct ArrayPlace {
   }
 };
 
-/// Arrays one after the other in one run of bytes, each on its values' alignment. It describes the
+/// Arrays one after the other in one run of bytes, each on kAlignment. It describes the
 /// run before there is memory: what the arrays take and where they lie follow from it.
 class ArrayRun {
  public:
+  /// That of an allocation of CUDA's own: warps read from it in whole lines.
+  static constexpr std::uint64_t kAlignment = 256;
+
   template <typename Value>
   ArrayPlace<Value> add(std::uint64_t count) {
-    const std::uint64_t at = (bytes_ + alignof(Value) - 1) / alignof(Value) * alignof(Value);
+    static_assert(alignof(Value) <= kAlignment);
+    const std::uint64_t at = (bytes_ + kAlignment - 1) / kAlignment * kAlignment;
     bytes_ = at + count * sizeof(Value);
     return {at, count};
   }

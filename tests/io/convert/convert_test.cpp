@@ -169,10 +169,11 @@ TEST_CASE("sizes of cubes that cannot be are refused") {
   for (const double size : {0.0, -1.0, 0.015, 1e300, std::nan("")}) {
     scan.options.regular_size = size;
     CAPTURE(size);
-    CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("regular:SIZE"));
+    CHECK_THAT(conversion_refusal<UsageError>(scan.options),
+               Contains("a regular layout: expected cubes"));
   }
   scan.options.regular_size = 1.0;
-  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("expected a larger SIZE"));
+  CHECK_THAT(conversion_refusal<UsageError>(scan.options), Contains("expected larger cubes"));
   CHECK(scan.files() == std::vector<std::string>{"a.las"});
 }
 
@@ -187,7 +188,7 @@ TEST_CASE("sizes of cells out of range are refused") {
 TEST_CASE("too little memory is refused with the least that will do") {
   Scan scan(cube_cloud(100, -50, 50, 1));
   scan.options.memory_bytes = kLeastConversionMemory - 1;
-  CHECK_THAT(conversion_refusal<ResourceError>(scan.options), Contains("224M"));
+  CHECK_THAT(conversion_refusal<ResourceError>(scan.options), Contains("at least 224.0 MiB"));
   scan.options.memory_bytes = kLeastConversionMemory;
   CHECK(conversion_refusal(scan.options).empty());
 }

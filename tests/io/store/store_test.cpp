@@ -174,12 +174,12 @@ TEST_CASE("a store that another tool copied is refused with advice") {
                             const_cast<hdf5::Id*>(&to)),
                 "attributes");
   }
-  CHECK_THAT(refusal(copy), Contains("another tool") && Contains("convert the scans again"));
+  CHECK_THAT(refusal(copy), Contains("Another tool") && Contains("convert the scans again"));
   const std::string repack =
       "h5repack '" + store.path.string() + "' '" + (store.folder / "packed.h5").string() + "'";
   if (std::system("command -v h5repack >/dev/null") == 0) {
     REQUIRE(std::system(repack.c_str()) == 0);
-    CHECK_THAT(refusal(store.folder / "packed.h5"), Contains("another tool"));
+    CHECK_THAT(refusal(store.folder / "packed.h5"), Contains("Another tool"));
   }
 }
 

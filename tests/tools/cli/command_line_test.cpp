@@ -73,7 +73,7 @@ TEST_CASE("wrong usage exits with 2") {
   check_refused(work.run("convert a.las"), 2, "--output");
   const std::string convert =
       "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");
-  check_refused(work.run(convert + " --cell-points 63"), 2, "--cell-points");
+  check_refused(work.run(convert + " --cell-points 63"), 2, "63 points a cell: expected 64");
   check_refused(work.run(convert + " --memory much"), 2, "--memory");
   check_refused(work.run(convert + " --memory -1"), 2, "--memory");
   check_refused(work.run(convert + " --scale -1"), 2, "--scale");
@@ -137,7 +137,7 @@ TEST_CASE("too little memory exits with 4 and says what would do") {
   const Work work;
   const std::string convert =
       "convert " + work.hall / "environment.las" + " -o " + work.path("a.h5");
-  check_refused(work.run(convert + " --memory 223M"), 4, "at least 224M");
+  check_refused(work.run(convert + " --memory 223M"), 4, "--memory 234881024 is enough");
   CHECK(work.run(convert + " --memory 224M").exit_code == 0);
   check_refused(work.run_hall(work.hall / "site.h5", "out.h5", "--memory 1K"), 4, "needs");
 }

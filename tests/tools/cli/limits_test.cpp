@@ -213,5 +213,5 @@ TEST_CASE("a model of 10^7 points is searched, or refused where memory does not 
   CHECK((rows.source == expected));
   const Outcome refused = place.run(search + place.path("small.h5") + " --memory 200M");
   CHECK(refused.exit_code == 4);
-  CHECK_THAT(refused.err, Contains("this run needs") && Contains("--memory"));
+  CHECK_THAT(refused.err, Contains("this search needs") && Contains("--memory"));
 }

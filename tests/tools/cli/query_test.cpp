@@ -102,7 +102,7 @@ TEST_CASE("clearances are those of brute force, beside the same collisions") {
   CHECK(expected.size() > collisions.size() + 100);
   CHECK(same_rows(read_rows(ResultReader(work.folder / "out.h5")), collisions));
   CHECK(nlohmann::json::parse(run.out)["clearance_points"] == expected.size());
-  CHECK_THAT(run.err, Contains("points are closer than 0.4 m"));
+  CHECK_THAT(run.err, Contains("points are within the clearance of 0.4 m"));
   CHECK(work.run("verify " + work.path("out.h5")).exit_code == 0);
 
   // The set is kdtree's; compare says that only one side has clearances.
@@ -196,7 +196,7 @@ TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
   for (const char* engine : {"", " --engine sweep", " --engine kdtree"}) {
     check_refused(
         work.run_hall(site, "out.h5", std::string("--clearance 0.4 --between-poses") + engine), 2,
-        "--between-poses");
+        "clearances and motion between poses cannot be combined");
   }
   check_refused(work.run_hall(site, "out.h5", "--clearance 0.4 --engine kdtree"), 2,
                 "--engine sweep");

@@ -43,7 +43,7 @@ void check_refused(const Outcome& outcome, int exit_code, const std::string& mes
 
 /// The smallest budget that a refusal names.
 std::uint64_t smallest_budget(const std::string& refusal) {
-  const std::string before = "(--memory ";
+  const std::string before = "; --memory ";
   const auto at = refusal.find(before);
   REQUIRE(at != std::string::npos);
   return std::stoull(refusal.substr(at + before.size()));
@@ -111,7 +111,7 @@ TEST_CASE("options of devices and engines that do not fit are refused") {
   const SmallHall hall;
   check_refused(hall.search("--gpus 0,x"), 2, "--gpus");
   check_refused(hall.search("--gpus -1"), 2, "--gpus");
-  check_refused(hall.search("--gpus 1,0,1"), 2, "--gpus");
+  check_refused(hall.search("--gpus 1,0,1"), 2, "a GPU is named twice");
   check_refused(hall.search("--device gpu"), 2, "--device");
   check_refused(hall.search("--device-memory 2X"), 2, "--device-memory");
   check_refused(hall.search("--device cpu --gpus 0"), 2, "--device cuda");

@@ -143,11 +143,14 @@ TEST_CASE("a journal of another tolerance is refused") {
 TEST_CASE("a tolerance that no engine or not this engine takes is wrong usage") {
   const Work work;
   const std::string site = work.hall / "site.h5";
-  for (const char* other : {"--first-pose", "--clearance 0.3", "--between-poses"}) {
-    CAPTURE(other);
-    const std::string option = std::string(other).substr(0, std::string(other).find(' '));
-    check_refused(work.run_hall(site, "out.h5", std::string("--tolerance 0.01 ") + other), 2,
-                  "--tolerance and " + option + " cannot be combined");
+  const std::pair<std::string, std::string> others[] = {
+      {"--first-pose", "first poses"},
+      {"--clearance 0.3", "clearances"},
+      {"--between-poses", "motion between poses"}};
+  for (const auto& [option, what] : others) {
+    CAPTURE(option);
+    check_refused(work.run_hall(site, "out.h5", "--tolerance 0.01 " + option), 2,
+                  "a tolerance and " + what + " cannot be combined");
   }
   for (const char* engine : {"kdtree", "grid"}) {
     check_refused(work.run_hall(site, "out.h5", std::string("--tolerance 0.01 --engine ") + engine),
@@ -156,7 +159,7 @@ TEST_CASE("a tolerance that no engine or not this engine takes is wrong usage") 
   for (const char* value : {"0", "-0.01", "x", "nan", "inf", "1e999", "0.1", "0.2"}) {
     CAPTURE(value);
     check_refused(work.run_hall(site, "out.h5", std::string("--tolerance ") + value), 2,
-                  "--tolerance");
+                  "tolerance");
   }
   CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5"));
   CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5.partial"));

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint64_t kTurns = 10'000;
 constexpr int kPasses = 20;
 constexpr double kPassNoise = 0.005;  // metres
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kPassSeed = 1;
 
 class Hard {
  public:
@@ -24,7 +24,7 @@ class Hard {
     files.trajectory = bench_.work() / "hard.txt";
     write_turning_poses(hall_.trajectory, files.trajectory, kTurns);
     compare("rotation on the spot", files);
-    write_to_and_fro(hall_.trajectory, files.trajectory, kPasses, kPassNoise, kSeed);
+    write_to_and_fro(hall_.trajectory, files.trajectory, kPasses, kPassNoise, kPassSeed);
     compare("twenty passes, to and fro", files);
   }
 

@@ -8,7 +8,7 @@ namespace {
 constexpr int kSamples = 111;
 constexpr int kSlowEvery = 10;  ///< forward engines: every tenth sample
 constexpr int kStride = 40;     ///< order of the samples: a part of them covers the range
-constexpr std::uint64_t kSeed = 4;
+constexpr std::uint64_t kSampleSeed = 4;
 
 }  // namespace
 
@@ -30,7 +30,8 @@ void bench_points(Bench& bench) {
       if (bench.find(key)) continue;
       if (!made) {
         std::filesystem::remove(files.store);
-        sample_environment(hall.environment, sample, points, kSeed + static_cast<std::uint64_t>(i));
+        sample_environment(hall.environment, sample, points,
+                           kSampleSeed + static_cast<std::uint64_t>(i));
         bench.store("sample", sample);
         made = true;
       }

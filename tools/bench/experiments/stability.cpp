@@ -18,7 +18,7 @@ constexpr double kRegularCells = 50;
 /// Points of a chunk of the regular layouts, to which every cell is padded: few, since a cell of 2
 /// m holds some 40 points at size small. There 4096 make the store 13 times as large and its
 /// conversion take twice as long; 64 make it half as large, and no faster.
-constexpr int kRegularChunk = 256;
+constexpr int kSmallChunk = 256;
 
 class Stability {
  public:
@@ -142,9 +142,9 @@ class Stability {
     Json parameters{{"vary", "sparseness"}, {"value", factor}, {"layout", name}};
     std::vector<std::string> options;
     if (side) {
-      parameters["chunk_points"] = kRegularChunk;
+      parameters["chunk_points"] = kSmallChunk;
       options = {"--layout", "regular:" + std::to_string(*side), "--cell-points",
-                 std::to_string(kRegularChunk)};
+                 std::to_string(kSmallChunk)};
     }
     const std::string key = "sparseness/" + name + "/" + value.dump();
     files.store = bench_.work() / "sparse.h5";

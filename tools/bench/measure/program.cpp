@@ -93,6 +93,7 @@ ProgramRun Program::run(std::vector<std::string> arguments, double limit_seconds
   const std::string line = joined(arguments);
   arguments.insert(arguments.begin(), "clearway");
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   const File output = memory_file("standard output"), log = memory_file("standard error");

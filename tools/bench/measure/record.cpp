@@ -26,11 +26,11 @@ Json read(const std::filesystem::path& path) {
 /// Of a parameter that may differ; that of each case it has stopped is kept with it.
 constexpr const char* kLimit = "limit";
 
-std::string text_of(const Json& value) {
+std::string plain_text(const Json& value) {
   if (value.is_null()) return "nothing";
   if (!value.is_array()) return value.is_string() ? value.get<std::string>() : value.dump();
   std::string text;
-  for (const Json& one : value) text += (text.empty() ? "" : ",") + text_of(one);
+  for (const Json& one : value) text += (text.empty() ? "" : ",") + plain_text(one);
   return text;
 }
 
@@ -45,8 +45,8 @@ void check_same(const std::filesystem::path& path, const std::string& name, cons
                 const Json& now) {
   if (earlier == now) return;
   if (!now.is_object() || !earlier.is_object()) {
-    throw UsageError(path.string() + ": differs in " + name + ": " + text_of(earlier) +
-                     " in the file, " + text_of(now) + " now; --force replaces it");
+    throw UsageError(path.string() + ": differs in " + name + ": " + plain_text(earlier) +
+                     " in the file, " + plain_text(now) + " now; --force replaces it");
   }
   Json both = now;
   both.update(earlier);

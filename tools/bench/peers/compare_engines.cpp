@@ -77,6 +77,7 @@ nlohmann::json compare(const PackedCloud& cloud, const Query& query,
   KdTreeStatistics statistics;
   HitSet hits(0, false);
   std::vector<double> ours;
+  ours.reserve(static_cast<std::size_t>(options.repetitions));
   for (int i = 0; i < options.repetitions; ++i) {
     ours.push_back(
         seconds_of([&] { hits = run_kdtree(cloud, query, {threads}, progress, &statistics); }));
@@ -101,6 +102,7 @@ nlohmann::json compare(const PackedCloud& cloud, const Query& query,
       seconds_of([&] { peer = std::make_unique<NanoflannSearch>(points, kPeerLeafPoints); });
   NanoflannSearch::SearchResult answer;
   std::vector<double> theirs;
+  theirs.reserve(static_cast<std::size_t>(options.repetitions));
   for (int i = 0; i < options.repetitions; ++i) {
     theirs.push_back(seconds_of([&] { answer = peer->run(query, threads); }));
   }
