@@ -9,17 +9,23 @@
 
 namespace clearway {
 
-struct ConvertOptions : CallOptions {
-  std::optional<double> scale;  ///< metres, of the stored integers; none: as the input has it, else
-                                ///< the finest power of ten from 1e-6 that fits
-  std::uint32_t cell_points = 65536;   ///< 64 to 2^20
-  std::optional<double> regular_size;  ///< metres: cells are cubes of it; none: adaptive
+/// Every member has a value, so that {.memory_bytes = ...} compiles without a warning.
+struct ConvertOptions {
+  /// Metres, of the stored integers; none: as the input has it, else the finest power of ten from
+  /// 1e-6 that fits.
+  std::optional<double> scale = std::nullopt;
+  std::uint32_t cell_points = 65536;  ///< 64 to 2^20
+  std::optional<double> regular_size =
+      std::nullopt;  ///< metres: cells are cubes of it; none: adaptive
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;          ///< 0: all cores
   bool ignore_crs = false;  ///< coordinates in degrees, or in different units, as they are
   bool strict = false;      ///< refuses points that are not finite
   bool overwrite = false;   ///< an existing store
   bool resume = false;      ///< leaves a store of the same inputs as it is
+  ProgressCallback progress = nullptr;
+  MessageCallback message = nullptr;  ///< notes, and the warnings that the report holds
+  StopFlag stop = nullptr;
 };
 
 struct ConvertReport {

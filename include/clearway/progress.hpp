@@ -25,13 +25,12 @@ struct Message {
   std::string text;
 };
 
-/// How a call is watched and stopped. The callbacks are never called from two threads at once, but
-/// from other threads than the caller's too; they must not throw.
-struct CallOptions {
-  std::function<void(const ProgressUpdate&)> progress;
-  std::function<void(const Message&)> message;  ///< notes, and the warnings that the report holds
-  /// Set by the caller: the call finishes what is in flight and throws Interrupted.
-  const std::atomic<bool>* stop = nullptr;
-};
+/// How a call is watched. A callback is never called from two threads at once, but from other
+/// threads than the caller's too; it must not throw.
+using ProgressCallback = std::function<void(const ProgressUpdate&)>;
+using MessageCallback = std::function<void(const Message&)>;
+
+/// Set by the caller: the call finishes what is in flight and throws Interrupted.
+using StopFlag = const std::atomic<bool>*;
 
 }  // namespace clearway

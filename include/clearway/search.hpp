@@ -20,11 +20,11 @@ const char* name_of(Device device);  ///< "auto", "cpu" or "cuda"
 
 /// How a query is searched. Without a tolerance and with exact precision the result's bytes depend
 /// on none of it.
-struct SearchOptions : CallOptions {
+struct SearchOptions {
   Engine engine = Engine::kAuto;
   Device device = Device::kAuto;
-  std::vector<int> gpus;  ///< CUDA's numbers; empty: the first with room
-  int threads = 0;        ///< 0: all cores
+  std::vector<int> gpus = {};  ///< CUDA's numbers; empty: the first with room
+  int threads = 0;             ///< 0: all cores
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   std::uint64_t device_memory_bytes = 0;  ///< of each device; 0: 2 GiB, or what is free
   double field_voxel = 0;                 ///< metres, engine sweep; 0: chosen
@@ -33,6 +33,9 @@ struct SearchOptions : CallOptions {
   bool overwrite = false;                 ///< an existing result, and the journal of an earlier run
   bool resume = false;                    ///< goes on from the journal of an earlier run
   double journal_interval_seconds = 5;    ///< between two syncs of the journal to the disk
+  ProgressCallback progress = nullptr;
+  MessageCallback message = nullptr;  ///< notes, and the warnings that the report holds
+  StopFlag stop = nullptr;
 };
 
 /// What a tolerance spared.

@@ -9,7 +9,7 @@ namespace clearway {
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options) {
   const ConversionOptions conversion{options, inputs, output};
-  CallbackProgress progress(options);
+  CallbackProgress progress(options.progress, options.stop);
   ConvertReport report;
   if (options.resume && is_converted(conversion, progress)) {
     report.was_finished = true;

@@ -31,8 +31,8 @@ class Search {
       : store_(store.reader()),
         query_(query),
         options_(options),
-        progress_(options_),
-        log_(options_, report_.warnings),
+        progress_(options_.progress, options_.stop),
+        log_(options_.message, report_.warnings),
         pending_(output, true),
         journal_(pending_, output, options_, log_),
         header_(header()) {
@@ -222,7 +222,7 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
                   const SearchOptions& options) {
   check_query(query, options);
   PendingFile pending(output, true);
-  const CallOptions silent;
+  const MessageCallback silent;
   std::vector<Message> none;
   MessageLog log(silent, none);
   const RunJournal journal(pending, output, options, log);

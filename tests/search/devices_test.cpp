@@ -31,7 +31,7 @@ struct Machine {
 };
 
 MessageLog silent() {
-  static const CallOptions nobody;
+  static const MessageCallback nobody;
   static std::vector<Message> warnings;
   return {nobody, warnings};
 }

@@ -64,7 +64,7 @@ class Line {
     };
     NoProgress progress;
     report = {};
-    MessageLog log(options, report.warnings);
+    MessageLog log(options.message, report.warnings);
     return search_pages(*store, query, options.memory_bytes, *kind, open, progress, report, log)
         .result.hits.count();
   }

@@ -99,10 +99,4 @@ void log_message(const Message& message) {
   spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", message.text);
 }
 
-void watch_call(CallOptions& call, ConsoleProgress& progress) {
-  call.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
-  call.message = log_message;
-  call.stop = &stop_flag();
-}
-
 }  // namespace clearway::tool

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clearway/progress.hpp"
+#include "cli/signals.hpp"
 #include "core/util/progress.hpp"
 
 namespace clearway::tool {
@@ -40,6 +41,11 @@ class ConsoleProgress final : public Progress {
 void log_message(const Message& message);
 
 /// Progress and messages of a library call go to the terminal; it stops when a signal asks to.
-void watch_call(CallOptions& call, ConsoleProgress& progress);
+template <typename Options>
+void watch_call(Options& call, ConsoleProgress& progress) {
+  call.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
+  call.message = log_message;
+  call.stop = &stop_flag();
+}
 
 }  // namespace clearway::tool

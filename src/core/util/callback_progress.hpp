@@ -11,8 +11,8 @@ namespace clearway {
 /// Tells the caller of a long operation how far it is, and whether the caller wants it to stop.
 class CallbackProgress final : public Progress {
  public:
-  /// options outlive it.
-  explicit CallbackProgress(const CallOptions& options) : options_(options) {}
+  /// Both outlive it.
+  CallbackProgress(const ProgressCallback& tell, StopFlag stop) : callback_(tell), stop_(stop) {}
 
   void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override {
     const std::lock_guard lock(mutex_);
@@ -32,15 +32,16 @@ class CallbackProgress final : public Progress {
     tell(true);
   }
   bool stop_requested() const override {
-    return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
+    return stop_ != nullptr && stop_->load(std::memory_order_relaxed);
   }
 
  private:
   void tell(bool finished) const {
-    if (options_.progress) options_.progress({stage_, done_, total_, unit_, finished});
+    if (callback_) callback_({stage_, done_, total_, unit_, finished});
   }
 
-  const CallOptions& options_;
+  const ProgressCallback& callback_;
+  const StopFlag stop_;
   std::mutex mutex_;
   std::string stage_, unit_;
   std::uint64_t total_ = 0, done_ = 0;

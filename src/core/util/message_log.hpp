@@ -13,19 +13,19 @@ namespace clearway {
 class MessageLog {
  public:
   /// Both outlive it.
-  MessageLog(const CallOptions& options, std::vector<Message>& warnings)
-      : options_(options), warnings_(warnings) {}
+  MessageLog(const MessageCallback& tell, std::vector<Message>& warnings)
+      : callback_(tell), warnings_(warnings) {}
 
   void note(std::string text) const {
-    if (options_.message) options_.message({Message::Severity::kNote, {}, std::move(text)});
+    if (callback_) callback_({Message::Severity::kNote, {}, std::move(text)});
   }
   void warn(std::string code, std::string text) {
     warnings_.push_back({Message::Severity::kWarning, std::move(code), std::move(text)});
-    if (options_.message) options_.message(warnings_.back());
+    if (callback_) callback_(warnings_.back());
   }
 
  private:
-  const CallOptions& options_;
+  const MessageCallback& callback_;
   std::vector<Message>& warnings_;
 };
 

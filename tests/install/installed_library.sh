@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# Installs the build folder, builds examples/ against it and compares with the program.
+#   installed_library.sh BUILD SOURCE           a small scene; every header alone
+#   installed_library.sh BUILD SOURCE --street  the street of CLEARWAY_TEST_DATA, with the same example
+set -euo pipefail
+build=$1 source=$2
+scratch=$build/installed
+prefix=$scratch/prefix
+warnings=(-Wall -Wextra -Wpedantic -Werror)
+
+fail() { echo "installed_library: $*" >&2; exit 1; }
+
+# Prints the number of colliding points that the example finds.
+example() { "$scratch/example/find_collisions" "$@" 2>messages.txt | awk '/points collide/ { print $1 }'; }
+
+check_headers() {
+  local header compiler foreign
+  for header in "$prefix"/include/clearway/*.hpp; do
+    for compiler in g++ clang++; do
+      command -v "$compiler" >/dev/null || continue
+      "$compiler" -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" \
+        -include "$header" -x c++ /dev/null || fail "$compiler refuses $header"
+    done
+  done
+  foreign=$(g++ -std=c++20 -M -I "$prefix/include" -x c++ "$prefix/include/clearway/clearway.hpp" |
+    tr ' ' '\n' | grep -vF "$prefix/" | grep -iE 'hdf5|H5|tbb|CLI/|cuda|eigen|spdlog|fmt/|nlohmann|xxhash|omp\.h') || true
+  [ -z "$foreign" ] || fail "a public header includes $foreign"
+  ! grep -E -- '-W|-f|-O' "$prefix"/lib*/cmake/Clearway/ClearwayTargets*.cmake ||
+    fail "a flag reaches the consumer"
+}
+
+# Every C++ block of a document is a whole file.
+check_document() {
+  local folder=$scratch/documents/${1##*/} block
+  mkdir -p "$folder"
+  awk -v folder="$folder" '/^```/ { out = /^```cpp/ ? folder "/" ++n ".cpp" : ""; next }
+    out { print > out }' "$source/$1"
+  for block in "$folder"/*.cpp; do
+    g++ -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" "$block" ||
+      fail "a block of $1 does not compile"
+  done
+}
+
+if [ "${3:-}" = --street ]; then
+  if [ -z "${CLEARWAY_TEST_DATA:-}" ]; then
+    echo "skipped: needs real scans; set CLEARWAY_TEST_DATA to their folder"
+    exit 77
+  fi
+  street=$CLEARWAY_TEST_DATA/street
+  mkdir -p "$scratch/street" && cd "$scratch/street" && rm -f ./*
+  found=$(example "$street/street.las" "$street/beetle.ply" "$street/trajectory.txt" 0.1)
+  [ "$found" = 78439 ] || fail "the street has $found colliding points, expected 78439"
+  exit
+fi
+
+rm -rf "$scratch" && mkdir -p "$scratch/scene"
+cmake --install "$build" --prefix "$prefix" >/dev/null
+check_headers
+check_document README.md
+check_document docs/guide/library.md
+( # completion, where it was made
+  words=$prefix/share/bash-completion/completions/clearway
+  [ -f "$words" ] || exit 0
+  source "$words"
+  COMP_WORDS=(clearway run --env site.h5 --first) COMP_CWORD=4
+  _clearway_complete
+  [ "${COMPREPLY[*]}" = --first-pose ] || fail "completion gives '${COMPREPLY[*]}'"
+)
+cmake -S "$source/examples" -B "$scratch/example" -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_CXX_FLAGS="${warnings[*]}" >/dev/null
+cmake --build "$scratch/example" >/dev/null
+cd "$scratch/scene"
+clearway=$prefix/bin/clearway
+"$clearway" scene hall -o . --points 50000 --poses 50 2>/dev/null
+"$clearway" convert environment.las -o store.h5 2>/dev/null
+expected=$("$clearway" run --env store.h5 --model model.ply --trajectory trajectory.txt \
+  --radius 0.1 -o result.h5 --json 2>/dev/null | awk -F'[:,]' '/"colliding_points"/ { print $2 + 0 }')
+found=$(example environment.las model.ply trajectory.txt 0.1)
+[ "$expected" -gt 0 ] && [ "$found" = "$expected" ] || fail "found $found, expected $expected"
+cmp store.h5 site.h5
+cmp result.h5 out.h5
