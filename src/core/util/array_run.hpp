@@ -32,6 +32,7 @@ class ArrayRun {
   template <typename Value>
   ArrayPlace<Value> add(std::uint64_t count) {
     static_assert(alignof(Value) <= kAlignment);
+    if (count == 0) return {bytes_, 0};
     const std::uint64_t at = (bytes_ + kAlignment - 1) / kAlignment * kAlignment;
     bytes_ = at + count * sizeof(Value);
     return {at, count};
