@@ -7,7 +7,7 @@
 
 #include "core/page/page_engine.hpp"
 #include "io/store/store_reader.hpp"
-#include "search/page_engine_kind.hpp"
+#include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
 

@@ -6,7 +6,7 @@
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
-#include "search/page_engine_kind.hpp"
+#include "search/kinds/page_engine_kind.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway {

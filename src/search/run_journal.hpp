@@ -11,6 +11,7 @@
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
+#include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway {

@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "stream/journalled_work.hpp"
+
 namespace clearway {
 namespace {
 
-enum Kind : std::uint8_t { kCell = 1, kMarks = 2, kFinishedPoses = 3 };
+using enum JournalRecordKind;
 
 constexpr std::uint64_t kMostCountBytes = 10;
 
@@ -83,7 +85,7 @@ void SearchJournal::note_finished() {
   if (read_ == nullptr) return;
   replay_all(nullptr, nullptr);  // checks them all
   read_->for_each([this](JournalPayload payload) {
-    const auto kind = payload.take<std::uint8_t>();
+    const auto kind = payload.take<JournalRecordKind>();
     if (kind == kCell) finished_cells_[take_cell(payload)] = true;
     if (kind == kFinishedPoses) {
       const PoseRange poses(payload, finished_poses_.size());
@@ -98,7 +100,7 @@ void SearchJournal::note_finished() {
 void SearchJournal::replay_all(HitSet* hits, ClearanceSet* clearances) const {
   if (read_ == nullptr) return;
   read_->for_each([&](JournalPayload payload) {
-    switch (payload.take<std::uint8_t>()) {
+    switch (payload.take<JournalRecordKind>()) {
       case kCell:
         replay_cell(payload, hits, clearances);
         break;
@@ -280,37 +282,6 @@ std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& q
   const std::uint64_t record = 3 * (kRecordBytes + cloud.blocks_per_cell() * block);
   return static_cast<std::uint64_t>(threads) * record +
          (cloud.cells().size() + query.poses.size()) / 8;
-}
-
-JournalledWork journalled_work(const JournalReader& journal) {
-  JournalledWork work;
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> poses;  // first and count
-  journal.for_each([&](JournalPayload payload) {
-    switch (payload.take<std::uint8_t>()) {
-      case kCell:
-        ++work.cells;
-        break;
-      case kFinishedPoses: {
-        const std::uint64_t first = payload.take_count();
-        poses.emplace_back(first, payload.take_count());
-        break;
-      }
-      case kMarks:
-        break;
-      default:
-        payload.refuse("of an unknown kind");
-    }
-  });
-  // With other numbers of threads the poses were divided otherwise: some were finished twice.
-  std::sort(poses.begin(), poses.end());
-  std::uint64_t end = 0;
-  for (const auto& [first, count] : poses) {
-    const std::uint64_t past = first + std::min(count, ~first);
-    if (past <= end) continue;
-    work.poses += past - std::max(first, end);
-    end = past;
-  }
-  return work;
 }
 
 }  // namespace clearway

@@ -67,11 +67,4 @@ class SearchJournal final : public PoseJournal {
   std::optional<JournalWriter> writer_;
 };
 
-/// How far the run of a journal came. Throws InputError for a record that is none of a run.
-struct JournalledWork {
-  std::uint64_t cells = 0;  ///< finished, or
-  std::uint64_t poses = 0;
-};
-JournalledWork journalled_work(const JournalReader& journal);
-
 }  // namespace clearway

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "memory_file.hpp"
+#include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
 #include "support/clouds.hpp"
 #include "support/memory_cloud.hpp"

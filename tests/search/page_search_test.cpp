@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "clearway/error.hpp"
-#include "search/sweep_kind.hpp"
+#include "search/kinds/sweep_kind.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 

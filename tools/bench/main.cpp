@@ -1,5 +1,5 @@
 #include "bench/commands.hpp"
-#include "cli/program.hpp"
+#include "cli/support/program.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/comparison_text.hpp"
-#include "cli/standard_output.hpp"
+#include "cli/support/standard_output.hpp"
 #include "io/result/compare_results.hpp"
 
 namespace clearway::tool {

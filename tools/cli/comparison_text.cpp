@@ -4,7 +4,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "cli/options.hpp"
+#include "cli/support/options.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway::tool {

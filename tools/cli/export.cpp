@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "cli/commands.hpp"
-#include "cli/console.hpp"
-#include "cli/options.hpp"
-#include "cli/signals.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/signals.hpp"
 #include "core/util/format.hpp"
 #include "io/export/export_result.hpp"
 

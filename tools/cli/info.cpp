@@ -7,13 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
-#include "cli/options.hpp"
-#include "cli/standard_output.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/standard_output.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/journal/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/xxh64.hpp"
+#include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway::tool {

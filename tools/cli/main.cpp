@@ -2,7 +2,7 @@
 
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
-#include "cli/program.hpp"
+#include "cli/support/program.hpp"
 
 namespace {
 

@@ -11,9 +11,9 @@
 
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
-#include "cli/console.hpp"
-#include "cli/options.hpp"
-#include "cli/signals.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/signals.hpp"
 #include "core/util/format.hpp"
 #include "io/system/pending_file.hpp"
 #include "scene/write.hpp"

@@ -6,13 +6,14 @@
 
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
-#include "cli/console.hpp"
-#include "cli/options.hpp"
-#include "cli/standard_output.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/standard_output.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/journal/journal.hpp"
 #include "io/result/verify_result.hpp"
 #include "io/store/verify_store.hpp"
+#include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway::tool {

@@ -4,11 +4,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <future>
 #include <memory>
-#include <stop_token>
 
 #include "clearway/error.hpp"
 #include "core/cloud/kd_order.hpp"
@@ -19,15 +16,12 @@
 #include "io/convert/distribute.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/pack_unit.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/convert/source_description.hpp"
 #include "io/store/store_layout.hpp"
-#include "io/store/store_reader.hpp"
 #include "io/store/store_writer.hpp"
-#include "io/store/verify_store.hpp"
 #include "io/system/file.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/system/thread_limit.hpp"
-#include "io/system/xxh64.hpp"
 
 namespace clearway {
 namespace {
@@ -79,42 +73,6 @@ Lattice lattice_for(const ConversionOptions& options, const Quantisation& quanti
   return Lattice(cube);
 }
 
-SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
-                    const Progress& progress) {
-  if (path == "-") return {"-", 0, 0};
-  const File file = File::open_for_reading(path);
-  std::vector<std::byte> buffer(kMiB);
-  Xxh64Stream hash;
-  std::uint64_t bytes = 0;
-  while (const std::size_t got = file.read_some(buffer)) {
-    if (stop.stop_requested()) break;
-    throw_if_stopped(progress);
-    hash.update(std::span(buffer).first(got));
-    bytes += got;
-  }
-  return {path.filename().string(), bytes, hash.digest()};
-}
-
-/// Describes the inputs on a thread of its own, while they are counted; gives up when it goes.
-class SourceDescription {
- public:
-  SourceDescription(std::vector<std::filesystem::path> files, const Progress& progress)
-      : sources_(std::async(std::launch::async,
-                            [files = std::move(files), &progress, stop = stop_.get_token()] {
-                              std::vector<SourceFile> sources;
-                              for (const auto& file : files)
-                                sources.push_back(describe(file, stop, progress));
-                              return sources;
-                            })) {}
-  ~SourceDescription() { stop_.request_stop(); }
-
-  std::vector<SourceFile> get() { return sources_.get(); }
-
- private:
-  std::stop_source stop_;
-  std::future<std::vector<SourceFile>> sources_;
-};
-
 /// padded: points with the padding of cells that are not full, which packs to fewer bytes.
 void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::uint64_t padded) {
   const std::uint64_t needed = points * (sizeof(DistributedPoint) + kOutputBytesPerPoint) +
@@ -128,13 +86,6 @@ void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::
             (padded > 2 * points ? "; most of it pads cells that are not full" : ""),
         padded > 2 * points ? Remedy::kFewerCellPoints : Remedy::kNone);
   }
-}
-
-std::string layout_name(const std::optional<double>& regular_size) {
-  if (!regular_size) return "adaptive";
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, *regular_size).ptr;
-  return "regular:" + std::string(text, end);
 }
 
 /// A unit on its way to the file: its first cells packed already, the rest to be packed when they
@@ -299,41 +250,7 @@ class Conversion {
   Stopwatch watch_;
 };
 
-/// None where there is no store with a sound index.
-std::optional<StoreReader> store_at(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) return std::nullopt;
-  try {
-    return std::optional<StoreReader>(std::in_place, path);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
-/// Whether these options would make such a store, as far as it tells with which it was made.
-bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
-  const auto wanted = [&options](double scale) {
-    return !options.scale || scale == *options.scale;
-  };
-  return found.cell_points == options.cell_points &&
-         found.layout == layout_name(options.regular_size) &&
-         std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
-         (!options.strict || found.point_count == found.input_points) &&
-         (options.ignore_crs || found.unit != LengthUnit::kDegree);
-}
-
 }  // namespace
-
-bool is_converted(const ConversionOptions& options, Progress& progress) {
-  if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
-  const std::optional<StoreReader> store = store_at(options.output);
-  if (!store || !would_make(options, store->metadata())) return false;
-  SourceDescription sources(list_point_files(options.inputs), progress);
-  if (sources.get() != store->metadata().sources) return false;
-  const std::vector<std::string> faults = verify_store(*store, progress, 1);
-  if (faults.empty()) return true;
-  throw UsageError(faults[0] + "; the store of these inputs is damaged",
-                   Remedy::kOverwriteNotResume);
-}
 
 ConversionReport convert_scans(const ConversionOptions& options, Progress& progress) {
   check_options(options);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "bench/measure/work_folder.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway::test;
 using Catch::Contains;

@@ -8,8 +8,8 @@
 #include "cpu/brute_force.hpp"
 #include "support/clouds.hpp"
 #include "support/las_bytes.hpp"
-#include "tools/cli/hall.hpp"
-#include "tools/cli/spawned.hpp"
+#include "tools/cli/support/hall.hpp"
+#include "tools/cli/support/spawned.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "tools/cli/hall.hpp"
+#include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "io/journal/journal.hpp"
-#include "tools/cli/hall.hpp"
-#include "tools/cli/small_disk.hpp"
+#include "tools/cli/support/hall.hpp"
+#include "tools/cli/support/small_disk.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "tools/cli/hall.hpp"
+#include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -5,7 +5,7 @@
 #include "core/cloud/packed_chunk.hpp"
 #include "io/store/store_writer.hpp"
 #include "support/store_fixture.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -6,7 +6,7 @@
 #include "clearway/error.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -9,7 +9,7 @@
 #include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
 #include "support/store_fixture.hpp"
-#include "tools/cli/hall.hpp"
+#include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

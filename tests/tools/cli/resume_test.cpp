@@ -9,8 +9,8 @@
 
 #include "io/journal/journal.hpp"
 #include "io/system/pending_file.hpp"
-#include "tools/cli/process.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/process.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

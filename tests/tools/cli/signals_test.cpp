@@ -8,8 +8,8 @@
 #include <chrono>
 #include <thread>
 
-#include "tools/cli/process.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/process.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

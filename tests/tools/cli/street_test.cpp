@@ -10,7 +10,7 @@
 #include "cpu/brute_force.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

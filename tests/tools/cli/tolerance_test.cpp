@@ -8,7 +8,7 @@
 #include "cpu/brute_force.hpp"
 #include "io/journal/journal.hpp"
 #include "support/store_fixture.hpp"
-#include "tools/cli/hall.hpp"
+#include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

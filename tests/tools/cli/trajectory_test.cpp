@@ -7,7 +7,7 @@
 #include "core/trajectory/trajectory_motion.hpp"
 #include "io/trajectory/trajectory_writer.hpp"
 #include "support/scenes.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <regex>
 
-#include "cli/exit_code.hpp"
+#include "cli/support/exit_code.hpp"
 
 namespace clearway::bench {
 

@@ -14,8 +14,8 @@
 #include <span>
 
 #include "clearway/error.hpp"
-#include "cli/exit_code.hpp"
-#include "cli/signals.hpp"
+#include "cli/support/exit_code.hpp"
+#include "cli/support/signals.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/file.hpp"
 

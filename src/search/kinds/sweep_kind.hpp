@@ -5,7 +5,7 @@
 #include "core/sweep/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
 #include "io/store/store_reader.hpp"
-#include "search/page_engine_kind.hpp"
+#include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
 

@@ -1,4 +1,4 @@
-#include "search/grid_kind.hpp"
+#include "search/kinds/grid_kind.hpp"
 
 #include "core/util/format.hpp"
 #include "cpu/grid_cpu_engine.hpp"

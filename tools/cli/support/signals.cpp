@@ -1,4 +1,4 @@
-#include "cli/signals.hpp"
+#include "cli/support/signals.hpp"
 
 #include <signal.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <atomic>
 
 #include "clearway/error.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/support/exit_code.hpp"
 
 namespace clearway::tool {
 namespace {

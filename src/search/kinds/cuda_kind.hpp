@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "search/devices.hpp"
-#include "search/page_engine_kind.hpp"
+#include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
 

@@ -5,7 +5,7 @@
 #include "core/grid/grid_reach.hpp"
 #include "core/grid/grid_scene.hpp"
 #include "io/store/store_reader.hpp"
-#include "search/page_engine_kind.hpp"
+#include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
 

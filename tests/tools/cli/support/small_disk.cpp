@@ -1,4 +1,4 @@
-#include "tools/cli/small_disk.hpp"
+#include "tools/cli/support/small_disk.hpp"
 
 #include <sched.h>
 #include <sys/mount.h>

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 namespace clearway::test {
 

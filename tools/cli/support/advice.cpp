@@ -1,4 +1,4 @@
-#include "cli/advice.hpp"
+#include "cli/support/advice.hpp"
 
 #include "core/util/format.hpp"
 

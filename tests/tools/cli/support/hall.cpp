@@ -1,4 +1,4 @@
-#include "tools/cli/hall.hpp"
+#include "tools/cli/support/hall.hpp"
 
 #include <catch2/catch.hpp>
 #include <stdexcept>

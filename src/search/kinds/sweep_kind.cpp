@@ -1,4 +1,4 @@
-#include "search/sweep_kind.hpp"
+#include "search/kinds/sweep_kind.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "cli/options.hpp"
+#include "cli/support/options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cctype>

@@ -1,12 +1,12 @@
-#include "search/cuda_kind.hpp"
+#include "search/kinds/cuda_kind.hpp"
 
 #include <algorithm>
 
 #include "gpu/grid_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "search/check_query.hpp"
-#include "search/grid_kind.hpp"
-#include "search/sweep_kind.hpp"
+#include "search/kinds/grid_kind.hpp"
+#include "search/kinds/sweep_kind.hpp"
 
 namespace clearway {
 namespace {

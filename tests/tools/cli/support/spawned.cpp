@@ -1,4 +1,4 @@
-#include "tools/cli/spawned.hpp"
+#include "tools/cli/support/spawned.hpp"
 
 #include <spawn.h>
 #include <sys/resource.h>

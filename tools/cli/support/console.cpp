@@ -1,4 +1,4 @@
-#include "cli/console.hpp"
+#include "cli/support/console.hpp"
 
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "cli/signals.hpp"
+#include "cli/support/signals.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/cli/process.hpp"
+#include "tools/cli/support/process.hpp"
 
 #include <signal.h>
 #include <spawn.h>

@@ -1,4 +1,4 @@
-#include "tools/cli/program.hpp"
+#include "tools/cli/support/program.hpp"
 
 #include <sys/wait.h>
 

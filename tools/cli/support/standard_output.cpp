@@ -1,4 +1,4 @@
-#include "cli/standard_output.hpp"
+#include "cli/support/standard_output.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

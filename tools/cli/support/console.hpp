@@ -5,7 +5,7 @@
 #include <string>
 
 #include "clearway/progress.hpp"
-#include "cli/signals.hpp"
+#include "cli/support/signals.hpp"
 #include "core/util/progress.hpp"
 
 namespace clearway::tool {

@@ -1,4 +1,4 @@
-#include "cli/program.hpp"
+#include "cli/support/program.hpp"
 
 #include <malloc.h>
 #include <signal.h>
@@ -12,10 +12,10 @@
 #include <string>
 
 #include "clearway/error.hpp"
-#include "cli/advice.hpp"
-#include "cli/console.hpp"
-#include "cli/exit_code.hpp"
-#include "cli/standard_output.hpp"
+#include "cli/support/advice.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/exit_code.hpp"
+#include "cli/support/standard_output.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/system/mapped_file.hpp"
 

@@ -1,0 +1,50 @@
+#include <algorithm>
+#include <optional>
+
+#include "clearway/error.hpp"
+#include "io/convert/convert.hpp"
+#include "io/convert/source_description.hpp"
+#include "io/formats/point_reader.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/store/verify_store.hpp"
+
+namespace clearway {
+namespace {
+
+/// None where there is no store with a sound index.
+std::optional<StoreReader> store_at(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) return std::nullopt;
+  try {
+    return std::optional<StoreReader>(std::in_place, path);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Whether these options would make such a store, as far as it tells with which it was made.
+bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
+  const auto wanted = [&options](double scale) {
+    return !options.scale || scale == *options.scale;
+  };
+  return found.cell_points == options.cell_points &&
+         found.layout == layout_name(options.regular_size) &&
+         std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
+         (!options.strict || found.point_count == found.input_points) &&
+         (options.ignore_crs || found.unit != LengthUnit::kDegree);
+}
+
+}  // namespace
+
+bool is_converted(const ConversionOptions& options, Progress& progress) {
+  if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
+  const std::optional<StoreReader> store = store_at(options.output);
+  if (!store || !would_make(options, store->metadata())) return false;
+  SourceDescription sources(list_point_files(options.inputs), progress);
+  if (sources.get() != store->metadata().sources) return false;
+  const std::vector<std::string> faults = verify_store(*store, progress, 1);
+  if (faults.empty()) return true;
+  throw UsageError(faults[0] + "; the store of these inputs is damaged",
+                   Remedy::kOverwriteNotResume);
+}
+
+}  // namespace clearway
