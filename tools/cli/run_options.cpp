@@ -58,6 +58,7 @@ template <typename Value>
 void add_choice(CLI::App& command, const std::string& option, Value& chosen,
                 const std::vector<Value>& values, const std::string& description) {
   std::vector<std::string> names;
+  names.reserve(values.size());
   for (const Value value : values) names.emplace_back(name_of(value));
   command
       .add_option_function<std::string>(

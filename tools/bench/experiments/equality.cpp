@@ -87,8 +87,7 @@ class Equality {
  private:
   Json compare(const std::string& key, const SceneFiles& files, const EngineChoice& engine,
                const Bench::Judge& judge) {
-    const Json done =
-        bench_.measure(key, {{"engine", engine.name}}, files, engine.options, judge, 1);
+    Json done = bench_.measure(key, {{"engine", engine.name}}, files, engine.options, judge, 1);
     if (done.contains("failed")) throw ResourceError(key + ": " + reason_of(done["failed"]));
     ++runs_;
     differing_ += !done["findings"]["equal"].get<bool>();

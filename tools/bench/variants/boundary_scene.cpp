@@ -48,6 +48,7 @@ void write_boundary_scene(const std::filesystem::path& las, const std::filesyste
                           .points = steps.size(),
                           .bounds = {{*least, 0, 0}, {*greatest, 0, 0}}});
   std::vector<std::array<std::int32_t, 3>> quanta;
+  quanta.reserve(steps.size());
   for (const std::int32_t step : steps) quanta.push_back({step, 0, 0});
   writer.write(quanta);
   writer.finish();

@@ -80,6 +80,7 @@ void add_fittings(World& world, double length, std::uint64_t seed) {
 std::vector<double> place_stations(double length, std::uint64_t seed) {
   Dice dice(seed, kShapeStream + 1);
   std::vector<double> out;
+  out.reserve(kStations);
   for (int i = 0; i < kStations; ++i) {
     out.push_back((i + 0.5 + dice.between(-0.2, 0.2)) * length / kStations);
   }
