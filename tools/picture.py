@@ -8,9 +8,7 @@ Example: tools/picture.py --environment environment.las --result out.h5 --model 
 
 import argparse
 import io
-import struct
 import sys
-from pathlib import Path
 
 import h5py
 import matplotlib
@@ -20,75 +18,14 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from PIL import Image  # noqa: E402
+from picturing.canvas import Camera, Canvas, shade  # noqa: E402
+from picturing.files import read_las, read_ply, read_trajectory  # noqa: E402
 
 # Okabe and Ito's palette: told apart with every kind of colour vision.
 COLLIDING = "#d55e00"
 MODEL = "#0072b2"
 MODEL_ELSEWHERE = "#56b4e9"
 PATH = "#000000"
-BACKGROUND = (1.0, 1.0, 1.0)
-
-PLY_TYPES = {
-    "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2",
-    "ushort": "u2", "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4",
-    "float": "f4", "float32": "f4", "double": "f8", "float64": "f8",
-}
-
-
-def read_las(path, most):
-    """Every k-th point, at most `most`, metres; n x 3."""
-    with open(path, "rb") as file:
-        head = file.read(375)
-    if head[:4] != b"LASF":
-        sys.exit(f"{path}: byte 0: expected LASF")
-    if head[104] & 0x80:
-        sys.exit(f"{path}: byte 104: compressed points (LAZ); expected LAS")
-    offset = struct.unpack_from("<I", head, 96)[0]
-    record_bytes = struct.unpack_from("<H", head, 105)[0]
-    count = struct.unpack_from("<I", head, 107)[0]
-    if head[25] >= 4:
-        count = max(count, struct.unpack_from("<Q", head, 247)[0])
-    if count == 0:
-        return np.empty((0, 3))
-    record = np.dtype({"names": ["q"], "formats": ["3<i4"], "offsets": [0],
-                       "itemsize": record_bytes})
-    points = np.memmap(path, record, "r", offset, (count,))
-    quanta = points[:: -(-count // most)]["q"]
-    return quanta * np.frombuffer(head, "<f8", 3, 131) + np.frombuffer(head, "<f8", 3, 155)
-
-
-def read_ply(path):
-    """The vertices of a PLY file, n x 3."""
-    data = Path(path).read_bytes()
-    end = data.find(b"end_header\n")
-    if not data.startswith(b"ply") or end < 0:
-        sys.exit(f"{path}: expected a PLY header")
-    lines = [line.split() for line in data[:end].decode("latin-1").splitlines()]
-    form = next(line[1] for line in lines if line[:1] == ["format"])
-    start = next(i for i, line in enumerate(lines) if line[:2] == ["element", "vertex"])
-    names = []
-    for line in lines[start + 1:]:
-        if line[0] == "element":
-            break
-        if line[0] == "property":
-            names.append((line[2], line[1]))
-    count = int(lines[start][2])
-    body = data[end + len(b"end_header\n"):]
-    if form == "ascii":
-        table = np.loadtxt(body.decode("latin-1").splitlines()[:count], ndmin=2)
-        return table[:, [[name for name, _ in names].index(axis) for axis in "xyz"]]
-    order = ">" if form == "binary_big_endian" else "<"
-    record = np.dtype([(name, order + PLY_TYPES[kind]) for name, kind in names])
-    table = np.frombuffer(body, record, count)
-    return np.stack([table[axis].astype(float) for axis in "xyz"], axis=1)
-
-
-def read_trajectory(path):
-    """Poses as n x 3 x 4 from 12 or 16 numbers a line."""
-    table = np.loadtxt(path, ndmin=2)
-    if table.shape[1] not in (12, 16):
-        sys.exit(f"{path}: line 1: expected 12 or 16 numbers")
-    return table[:, :12].reshape(-1, 3, 4)
 
 
 def thinned(points, most):
@@ -130,73 +67,6 @@ def other_poses(poses, model, index, most=3):
     wanted = way[index] + 2.5 * np.ptp(model, axis=0).max() * np.arange(-most, most + 1)
     wanted = wanted[(wanted >= 0) & (wanted <= way[-1]) & (wanted != way[index])]
     return np.clip(np.searchsorted(way, wanted), 0, len(poses) - 1)
-
-
-class Camera:
-    """Perspective from `eye` to `target`, z up."""
-
-    def __init__(self, eye, target, size, field_degrees=55):
-        self.eye = eye
-        self.size = size
-        forward = (target - eye) / np.linalg.norm(target - eye)
-        right = np.cross(forward, [0, 0, 1.0])
-        right /= np.linalg.norm(right)
-        self.axes = np.stack([right, np.cross(right, forward), forward])
-        self.focal = 0.5 * size[0] / np.tan(np.radians(field_degrees) / 2)
-
-    def project(self, points):
-        """Pixel columns, rows and depths of the points in front."""
-        x, y, depth = self.axes @ (points - self.eye).T
-        keep = depth > 0.3
-        with np.errstate(divide="ignore", invalid="ignore"):
-            column = self.size[0] / 2 + self.focal * x / depth
-            row = self.size[1] / 2 - self.focal * y / depth
-        keep &= (column > -20) & (column < self.size[0] + 20)
-        keep &= (row > -20) & (row < self.size[1] + 20)
-        return column[keep], row[keep], depth[keep], keep
-
-
-class Canvas:
-    """An image to which the nearest point of each pixel belongs."""
-
-    def __init__(self, camera):
-        self.camera = camera
-        self.image = np.full((camera.size[1], camera.size[0], 3), BACKGROUND)
-        self.depth = np.full((camera.size[1], camera.size[0]), np.inf)
-
-    def draw(self, points, colours, metres, before=0.0, most=6):
-        """Squares of about `metres` a side; colours: n x 3 or one colour. They win against what is
-        up to `before` metres nearer, so that points in a surface show."""
-        column, row, depth, keep = self.camera.project(points)
-        colours = np.broadcast_to(colours, (len(points), 3))[keep]
-        sides = np.clip(np.rint(self.camera.focal * metres / depth), 1, most).astype(int)
-        depth = np.maximum(depth - before, 0.01)
-        order = np.argsort(-depth)
-        column, row, depth = column[order].astype(int), row[order].astype(int), depth[order]
-        colours, sides = colours[order], sides[order]
-        for dy in range(most):
-            for dx in range(most):
-                self.put(column + dx - sides // 2, row + dy - sides // 2, depth, colours,
-                         (dx < sides) & (dy < sides))
-
-    def put(self, column, row, depth, colours, keep):
-        keep = keep & (column >= 0) & (column < self.camera.size[0])
-        keep &= (row >= 0) & (row < self.camera.size[1])
-        at = (row[keep], column[keep])
-        nearer = depth[keep] < self.depth[at]
-        at = (at[0][nearer], at[1][nearer])
-        self.depth[at] = depth[keep][nearer]  # far to near: the last written is the nearest
-        self.image[at] = colours[keep][nearer]
-
-
-def shade(canvas):
-    """Darkens pixels behind nearer neighbours (eye-dome lighting), which shows edges."""
-    depth = np.where(np.isfinite(canvas.depth), np.log2(canvas.depth), np.nan)
-    sum_ = np.zeros_like(depth)
-    for dy, dx in ((0, 2), (2, 0), (0, -2), (-2, 0), (1, 1), (-1, 1), (1, -1), (-1, -1)):
-        neighbour = np.roll(depth, (dy, dx), (0, 1))
-        sum_ += np.nan_to_num(np.clip(depth - neighbour, 0, 0.15))
-    canvas.image *= np.exp(-1.3 * sum_)[:, :, None]
 
 
 def greys(heights, lo, hi):

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstring>
 #include <list>
 #include <optional>
@@ -187,28 +186,6 @@ Query with_clearance(Query query, double clearance, bool first_pose) {
   return query;
 }
 
-/// By index in the points given.
-std::vector<bool> by_source(const MemoryCloud& cloud, const HitSet& hits) {
-  std::vector<bool> out(cloud.point_count());
-  for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
-    if (cloud.is_used(slot)) out[cloud.source(slot)] = hits.contains(slot);
-  }
-  return out;
-}
-
-/// |d - radius| of the wrong answers at the most, 0 without any; in more digits than the engines'.
-double farthest_difference(const std::vector<bool>& answer, const std::vector<bool>& expected,
-                           const Oracle& least, double radius) {
-  long double farthest = 0;
-  for (std::size_t i = 0; i < answer.size(); ++i) {
-    if (answer[i] == expected[i]) continue;
-    const long double d = std::sqrt(static_cast<long double>(least[i].squared));
-    farthest = std::max(farthest, std::abs(d - radius));
-  }
-  const auto rounded = static_cast<double>(farthest);
-  return rounded < farthest ? std::nextafter(rounded, HUGE_VAL) : rounded;
-}
-
 std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Query query) {
   query.between_poses = true;
   const std::uint64_t swept = check_results(cloud, expected.between_poses, query);
@@ -286,34 +263,6 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
     of_radius *= 2.5;
   }
   return colliding;
-}
-
-ToleratedResults check_tolerance(std::span<const Quantum> points, const Quantisation& quantisation,
-                                 const Query& query) {
-  const Oracle least = brute_force_clearances(positions_of(points, quantisation), query);
-  ToleratedResults out;
-  std::vector<bool> expected;
-  for (const Clearance& c : least) {
-    expected.push_back(c.squared < query.radius * query.radius);
-    out.colliding += expected.back();
-  }
-  for (const Engine& engine : engines()) {
-    if (!engine.tolerance) continue;
-    std::vector<bool> first;
-    int threads = 1;
-    for (const MemoryCloudOptions& packing :
-         {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{128, 300}}) {
-      const MemoryCloud cloud(points, quantisation, packing);
-      const std::vector<bool> answer = by_source(cloud, engine.run(cloud, query, threads++).hits);
-      const double farthest = farthest_difference(answer, expected, least, query.radius);
-      CAPTURE(engine.name, packing.cell_points, query.radius, query.tolerance);
-      CHECK(farthest <= query.tolerance);
-      if (first.empty()) first = answer;
-      CHECK((answer == first));
-    }
-    for (std::size_t i = 0; i < first.size(); ++i) out.differing += first[i] != expected[i];
-  }
-  return out;
 }
 
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,

@@ -52,17 +52,6 @@ std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query, const MemoryCloudOptions& packing);
 
-struct ToleratedResults {
-  std::uint64_t colliding = 0;  ///< points, exactly
-  std::uint64_t differing = 0;  ///< answers of all engines that are not exact
-};
-
-/// Runs every engine that takes a tolerance on the points, packed in several ways, and checks that
-/// an answer is wrong only where the least distance, by brute force, is within the tolerance of the
-/// radius, and that an engine says the same however the points are packed.
-ToleratedResults check_tolerance(std::span<const Quantum> points, const Quantisation& quantisation,
-                                 const Query& query);
-
 /// The clearances that the query asks for. Returns how many there are.
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
                                const Query& query);

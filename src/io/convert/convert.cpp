@@ -12,7 +12,7 @@
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
-#include "io/convert/count.hpp"
+#include "io/convert/count/count.hpp"
 #include "io/convert/distribute.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/pack_unit.hpp"

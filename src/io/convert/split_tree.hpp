@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/cloud/cell_tree.hpp"
-#include "io/convert/bin_counter.hpp"
+#include "io/convert/count/bin_counter.hpp"
 #include "io/convert/lattice.hpp"
 
 namespace clearway {

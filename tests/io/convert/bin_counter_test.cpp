@@ -1,4 +1,4 @@
-#include "io/convert/bin_counter.hpp"
+#include "io/convert/count/bin_counter.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

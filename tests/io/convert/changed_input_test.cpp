@@ -2,7 +2,7 @@
 #include <chrono>
 #include <functional>
 
-#include "io/convert/count.hpp"
+#include "io/convert/count/count.hpp"
 #include "io/convert/distribute.hpp"
 #include "io/system/xxh64.hpp"
 #include "support/clouds.hpp"

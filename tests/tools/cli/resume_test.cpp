@@ -1,108 +1,17 @@
-// Journals, --resume and --force of the program, after signals too.
+// --resume and --force of the program, after signals too.
 #include <signal.h>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <thread>
 
-#include "io/journal/journal.hpp"
-#include "io/system/pending_file.hpp"
-#include "tools/cli/support/process.hpp"
-#include "tools/cli/support/program.hpp"
+#include "tools/cli/slow_hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 using Catch::Contains;
 using nlohmann::json;
 using std::chrono::steady_clock;
-
-namespace {
-
-/// A hall that engine grid searches for a second, made once.
-class SlowHall {
- public:
-  static const SlowHall& get() {
-    static const SlowHall hall;
-    return hall;
-  }
-  std::string path(const std::string& name) const { return quoted(folder_ / name); }
-
- private:
-  SlowHall() {
-    const std::string folder = quoted(folder_ / "");
-    if (run_program(folder_,
-                    "scene hall --points 500000 --model-points 10000 --poses 3000 -o " + folder)
-                .exit_code != 0 ||
-        run_program(folder_, "convert " + path("environment.las") + " --cell-points 500 -o " +
-                                 path("site.h5"))
-                .exit_code != 0) {
-      throw std::runtime_error("no hall");
-    }
-  }
-
-  ScratchFolder folder_;
-};
-
-struct Work {
-  std::string command(const std::string& options, const std::string& radius = "0.1",
-                      const std::string& engine = "grid") const {
-    return "run --env " + hall.path("site.h5") + " --model " + hall.path("model.ply") +
-           " --trajectory " + hall.path("trajectory.txt") + " --engine " + engine +
-           " --device cpu --first-pose --radius " + radius + " -o " + quoted(output) + " " +
-           options;
-  }
-  Outcome run(const std::string& options, const std::string& radius = "0.1",
-              const std::string& engine = "grid") const {
-    return run_program(folder, command(options, radius, engine));
-  }
-  /// A run with a file of these bytes instead of one of the hall's.
-  Outcome run_with(const std::string& name, const std::string& bytes) const {
-    put_bytes(folder / "other.txt", bytes);
-    std::string changed = command("--resume");
-    const std::string before = hall.path(name);
-    changed.replace(changed.find(before), before.size(), quoted(folder / "other.txt"));
-    return run_program(folder, changed);
-  }
-  /// Starts a run and lets it finish a few cells.
-  void start_and(int signal, const std::string& options = "") const {
-    Process process(command(options), folder / "log.txt");
-    wait_for_records(process, 20);
-    process.send(signal);
-    REQUIRE(process.wait() == (signal == SIGKILL ? -SIGKILL : 5));
-  }
-  void wait_for_records(Process& process, std::uint64_t records) const {
-    while (!std::filesystem::exists(journal) || JournalReader(journal).records() < records) {
-      REQUIRE(process.running());
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-  }
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(output.parent_path())) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  const SlowHall& hall = SlowHall::get();
-  ScratchFolder folder;
-  std::filesystem::path output =
-      (std::filesystem::create_directory(folder / "out"), folder / "out" / "out.h5");
-  std::filesystem::path journal = journal_of(output);
-};
-
-using Names = std::vector<std::string>;
-
-void check_refused(const Outcome& outcome, int exit_code, const std::string& message) {
-  CHECK(outcome.exit_code == exit_code);
-  CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Contains(message));
-}
-
-}  // namespace
 
 TEST_CASE("a run that is asked to stop says how to resume, and resumes") {
   const Work work;
@@ -296,109 +205,4 @@ TEST_CASE("poses that were divided otherwise are counted once") {
     if (resumed.exit_code != 0 || !json::parse(resumed.out).contains("resumed_poses")) continue;
     CHECK(json::parse(resumed.out)["resumed_poses"] <= 3000);
   }
-}
-
-TEST_CASE("a run that is refused leaves no journal") {
-  const Work work;
-  check_refused(work.run("--memory 1K"), 4, "too little");
-  CHECK(work.files().empty());
-  check_refused(work.run("--between-poses"), 2, "--engine sweep");
-  CHECK(work.files().empty());
-}
-
-TEST_CASE("what is no journal is left alone") {
-  const Work work;
-  put_bytes(work.journal, "a diary");
-  for (const char* options : {"", "--resume", "--force"}) {
-    check_refused(work.run(options), 2, "move it away");
-  }
-  CHECK(bytes_of(work.journal) == "a diary");
-  std::filesystem::remove(work.journal);
-  std::filesystem::create_symlink(work.folder / "elsewhere", work.journal);
-  for (const char* options : {"", "--resume", "--force"}) {
-    check_refused(work.run(options), 2, "move it away");
-  }
-  CHECK_FALSE(std::filesystem::exists(work.folder / "elsewhere"));
-}
-
-TEST_CASE("a flipped byte of a journal is detected or does no harm") {
-  const Work work;
-  work.start_and(SIGKILL);
-  const std::string whole = bytes_of(work.journal).substr(0, 700);
-  put_bytes(work.journal, whole);
-  REQUIRE(run_program(work.folder, "verify " + quoted(work.journal)).exit_code <= 1);
-  std::filesystem::remove(work.journal);
-  REQUIRE(work.run("").exit_code == 0);
-  const std::string expected = bytes_of(work.output);
-  for (std::size_t at = 0; at < whole.size(); at += 7) {
-    std::string bytes = whole;
-    bytes[at] = static_cast<char>(bytes[at] ^ 8);
-    put_bytes(work.journal, bytes);
-    CAPTURE(at);
-    const Outcome verified = run_program(work.folder, "verify " + quoted(work.journal));
-    CHECK(verified.exit_code <= 1);
-    if (at >= 16) CHECK_THAT(verified.out, Contains("record "));
-    if (at % 13 != 0) continue;
-    std::filesystem::remove(work.output);
-    const Outcome outcome = work.run("--resume");
-    if (outcome.exit_code != 2) CHECK(outcome.exit_code == (verified.exit_code == 0 ? 0 : 3));
-    if (outcome.exit_code == 0) {
-      CHECK((bytes_of(work.output) == expected));
-    } else {
-      CHECK((outcome.exit_code == 2 || outcome.exit_code == 3));
-      CHECK_FALSE(std::filesystem::exists(work.output));
-    }
-  }
-}
-
-TEST_CASE("verify tells a torn tail, which resuming cuts off, from damage") {
-  const Work work;
-  work.start_and(SIGKILL, "--journal-interval 0");
-  const std::string whole =
-      bytes_of(work.journal).substr(0, JournalReader(work.journal).whole_bytes());
-  const auto verify = [&](const std::string& bytes) {
-    put_bytes(work.journal, bytes);
-    return run_program(work.folder, "verify " + quoted(work.journal));
-  };
-  const Outcome sound = verify(whole);
-  CHECK(sound.exit_code == 0);
-  CHECK(sound.out == work.journal.string() + ": sound\n");
-  const Outcome empty = verify(whole.substr(0, 5));
-  CHECK(empty.exit_code == 0);
-  CHECK_THAT(empty.out, Contains("it ends before its first record"));
-  CHECK(verify("").exit_code == 0);
-
-  std::string bytes = whole;
-  bytes[100] = static_cast<char>(bytes[100] ^ 1);
-  const Outcome damaged = verify(bytes);
-  CHECK(damaged.exit_code == 1);
-  CHECK_THAT(damaged.out, Contains("record 0 at byte 16 is damaged") && Contains(": damaged\n"));
-  check_refused(work.run("--resume"), 3, "record 0 at byte 16 is damaged");
-
-  const Outcome torn = verify(whole.substr(0, whole.size() - 3));
-  CHECK(torn.exit_code == 0);
-  CHECK_THAT(torn.out, Contains(" is torn, with ") && Contains("--resume cuts that off") &&
-                           Contains(": sound\n"));
-  const Outcome resumed = work.run("--resume");
-  CHECK(resumed.exit_code == 0);
-  CHECK_THAT(resumed.err, Contains(" is torn, with ") && Contains("resumes with"));
-}
-
-TEST_CASE("two runs of one output: the second is refused and leaves the first's journal alone") {
-  const Work work;
-  Process first(work.command(""), work.folder / "log.txt");
-  work.wait_for_records(first, 5);
-  for (const char* options : {"", "--resume", "--force"}) {
-    check_refused(work.run(options), 4, "another process is writing it");
-  }
-  CHECK(first.wait() == 0);
-  CHECK(work.files() == Names{"out.h5"});
-}
-
-TEST_CASE("options of the journal that make no sense are refused") {
-  const Work work;
-  for (const char* seconds : {"-1", "nan", "x", "4000"}) {
-    check_refused(work.run(std::string("--journal-interval ") + seconds), 2, "--journal-interval");
-  }
-  CHECK(work.run("--journal-interval 0").exit_code == 0);
 }

@@ -1,4 +1,4 @@
-#include "io/convert/count.hpp"
+#include "io/convert/count/count.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_pipeline.h>
