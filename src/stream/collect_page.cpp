@@ -14,12 +14,12 @@ void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
     }
     const std::uint64_t first_entry = std::uint64_t{cells[i].cell} * cloud.cell_entries();
     const auto poses = part_of_cell(answer.first_poses, i, cloud.cell_entries());
-    for (std::size_t slot = 0; slot < poses.size(); ++slot) {
-      if (poses[slot] != HitSet::kNever) all.hits.mark(first_entry + slot, poses[slot]);
+    for (std::size_t entry = 0; entry < poses.size(); ++entry) {
+      if (poses[entry] != HitSet::kNever) all.hits.mark(first_entry + entry, poses[entry]);
     }
     const auto clearances = part_of_cell(answer.clearances, i, cloud.cell_entries());
-    for (std::size_t slot = 0; slot < clearances.size(); ++slot) {
-      if (clearances[slot].found()) all.clearances.set(first_entry + slot, clearances[slot]);
+    for (std::size_t entry = 0; entry < clearances.size(); ++entry) {
+      if (clearances[entry].found()) all.clearances.set(first_entry + entry, clearances[entry]);
     }
   }
 }

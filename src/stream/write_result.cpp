@@ -36,7 +36,7 @@ std::size_t rows_of_pass(std::uint64_t memory_bytes) {
   return std::max<std::uint64_t>(kRows, left / (2 * sizeof(Row)));
 }
 
-/// Calls visit(slot, index in the cell) for every slot of a cell that is in the set.
+/// Calls visit(entry, index in the cell) for every entry of a cell that is in the set.
 template <typename Set, typename Visit>
 void for_each_entry(const StoreReader& store, const Set& set, std::uint32_t cell, Visit visit) {
   const std::uint64_t first_word = std::uint64_t{cell} * store.blocks_per_cell();
@@ -68,16 +68,16 @@ class RangePass {
     rows_.reserve(std::min<std::uint64_t>(2 * most, count));
   }
 
-  /// rows_of(cell) gives what makes a row of (source, slot, index in the cell).
+  /// rows_of(cell) gives what makes a row of (source, entry, index in the cell).
   template <typename Set, typename RowsOf>
   void add_cell(const StoreReader& store, const Set& set, std::uint32_t cell, RowsOf rows_of) {
     const PackedChunk<std::uint64_t> sources = store.sources(cell);
     if (sources.minimum() >= below_) return;
     const auto row_of = rows_of(cell);
-    for_each_entry(store, set, cell, [&](std::uint64_t slot, std::uint32_t i) {
+    for_each_entry(store, set, cell, [&](std::uint64_t entry, std::uint32_t i) {
       const std::uint64_t source = sources[i];
       if (source < from_ || source >= below_) return;
-      rows_.push_back(row_of(source, slot, i));
+      rows_.push_back(row_of(source, entry, i));
       if (rows_.size() >= 2 * most_) keep_smallest();
     });
   }
@@ -148,7 +148,7 @@ void append_rows(ResultWriter& writer, const std::vector<ClearanceRow>& rows) {
   }
 }
 
-/// Writes a set of `count` slots in passes, by append(rows).
+/// Writes a set of `count` entries in passes, by append(rows).
 template <typename Row, typename Set, typename RowsOf, typename Append>
 void write_set(const StoreReader& store, const Set& set, std::uint64_t count,
                std::uint64_t memory_bytes, Progress& progress, RowsOf rows_of, Append append) {
@@ -188,11 +188,11 @@ void write_result(const StoreReader& store, const SearchResult& answer, const Re
   write_set<Collision>(
       store, hits, collisions, memory_bytes, progress,
       [&](std::uint32_t cell) {
-        return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t slot,
+        return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
                                                 std::uint32_t i) {
           return Collision{source,
                            {q[0][i], q[1][i], q[2][i]},
-                           hits.has_first_pose() ? hits.first_pose(slot) : 0};
+                           hits.has_first_pose() ? hits.first_pose(entry) : 0};
         };
       },
       [&](const std::vector<Collision>& rows) {
@@ -202,8 +202,8 @@ void write_result(const StoreReader& store, const SearchResult& answer, const Re
     write_set<ClearanceRow>(
         store, clearances, distances, memory_bytes, progress,
         [&](std::uint32_t) {
-          return [&](std::uint64_t source, std::uint64_t slot, std::uint32_t) {
-            const Clearance clearance = clearances.at(slot);
+          return [&](std::uint64_t source, std::uint64_t entry, std::uint32_t) {
+            const Clearance clearance = clearances.at(entry);
             return ClearanceRow{source, std::sqrt(clearance.squared), clearance.pose};
           };
         },

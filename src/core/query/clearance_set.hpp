@@ -15,22 +15,22 @@ struct Clearance {
   friend bool operator==(const Clearance&, const Clearance&) = default;
 };
 
-/// Clearances of a PackedCloud by slot, 12 bytes each; none where none is below the distance asked
-/// for. Different slots may be set at the same time.
+/// Clearances of a PackedCloud by entry, 12 bytes each; none where none is below the distance asked
+/// for. Different entries may be set at the same time.
 class ClearanceSet {
  public:
   ClearanceSet() = default;
-  explicit ClearanceSet(std::uint64_t slots)
-      : squared_(slots, Clearance{}.squared), poses_(slots, Clearance{}.pose) {}
+  explicit ClearanceSet(std::uint64_t entries)
+      : squared_(entries, Clearance{}.squared), poses_(entries, Clearance{}.pose) {}
 
-  void set(std::uint64_t slot, const Clearance& clearance) {
-    squared_[slot] = clearance.squared;
-    poses_[slot] = clearance.pose;
+  void set(std::uint64_t entry, const Clearance& clearance) {
+    squared_[entry] = clearance.squared;
+    poses_[entry] = clearance.pose;
   }
 
-  Clearance at(std::uint64_t slot) const { return {squared_[slot], poses_[slot]}; }
+  Clearance at(std::uint64_t entry) const { return {squared_[entry], poses_[entry]}; }
 
-  /// Which of the slots 64 * index + i have one, as bits i.
+  /// Which of the entries 64 * index + i have one, as bits i.
   std::uint64_t word(std::uint64_t index) const {
     std::uint64_t bits = 0;
     for (unsigned i = 0; i < 64; ++i) {

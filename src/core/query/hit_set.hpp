@@ -7,20 +7,20 @@
 
 namespace clearway {
 
-/// The colliding points of a PackedCloud by slot: one bit each, and the first pose where asked for.
-/// Marking is thread safe; reading is for after the threads have joined.
+/// The colliding points of a PackedCloud by entry: one bit each, and the first pose where asked
+/// for. Marking is thread safe; reading is for after the threads have joined.
 class HitSet {
  public:
   static constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
-  HitSet(std::uint64_t slots, bool first_pose)
-      : words_((slots + 63) / 64),
-        first_pose_(first_pose ? slots : 0, kNever),
+  HitSet(std::uint64_t entries, bool first_pose)
+      : words_((entries + 63) / 64),
+        first_pose_(first_pose ? entries : 0, kNever),
         has_first_pose_(first_pose) {}
 
-  void mark(std::uint64_t slot) { mark_word(slot / 64, std::uint64_t{1} << (slot % 64)); }
+  void mark(std::uint64_t entry) { mark_word(entry / 64, std::uint64_t{1} << (entry % 64)); }
 
-  /// Marks the slots 64 * word + i of all set bits i.
+  /// Marks the entries 64 * word + i of all set bits i.
   void mark_word(std::uint64_t word, std::uint64_t bits) {
     std::atomic_ref target(words_[word]);
     if ((target.load(std::memory_order_relaxed) & bits) != bits) {
@@ -28,25 +28,25 @@ class HitSet {
     }
   }
 
-  /// Marks the slot and lowers its first pose to `pose`. Only with first poses.
-  void mark(std::uint64_t slot, std::uint32_t pose) {
-    mark(slot);
-    std::atomic_ref target(first_pose_[slot]);
+  /// Marks the entry and lowers its first pose to `pose`. Only with first poses.
+  void mark(std::uint64_t entry, std::uint32_t pose) {
+    mark(entry);
+    std::atomic_ref target(first_pose_[entry]);
     std::uint32_t seen = target.load(std::memory_order_relaxed);
     while (pose < seen && !target.compare_exchange_weak(seen, pose, std::memory_order_relaxed)) {
     }
   }
 
-  bool contains(std::uint64_t slot) const { return (words_[slot / 64] >> (slot % 64) & 1) != 0; }
+  bool contains(std::uint64_t entry) const { return (words_[entry / 64] >> (entry % 64) & 1) != 0; }
   std::uint64_t word(std::uint64_t index) const { return words_[index]; }
   std::uint64_t word_now(std::uint64_t index) {
     return std::atomic_ref(words_[index]).load(std::memory_order_relaxed);
   }
 
   bool has_first_pose() const { return has_first_pose_; }
-  std::uint32_t first_pose(std::uint64_t slot) const { return first_pose_[slot]; }
-  std::uint32_t first_pose_now(std::uint64_t slot) {
-    return std::atomic_ref(first_pose_[slot]).load(std::memory_order_relaxed);
+  std::uint32_t first_pose(std::uint64_t entry) const { return first_pose_[entry]; }
+  std::uint32_t first_pose_now(std::uint64_t entry) {
+    return std::atomic_ref(first_pose_[entry]).load(std::memory_order_relaxed);
   }
 
   std::uint64_t count() const {

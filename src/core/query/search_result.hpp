@@ -5,10 +5,10 @@
 
 namespace clearway {
 
-/// What an engine says of every slot of a cloud.
+/// What an engine says of every entry of a cloud.
 struct SearchResult {
   HitSet hits;
-  ClearanceSet clearances;  ///< without slots unless asked for
+  ClearanceSet clearances;  ///< without entries unless asked for
 };
 
 }  // namespace clearway
