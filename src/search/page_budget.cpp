@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cpu/cell_search.hpp"
 #include "search/memory_budget.hpp"
 #include "stream/paginate.hpp"
 #include "stream/plan.hpp"
@@ -36,11 +37,7 @@ std::uint64_t tree_building_bytes(const Query& query) {
 
 std::uint64_t most_poses_of(const MotionTree& motion, const std::vector<PlannedCell>& cells) {
   std::uint64_t most = 0;
-  for (const PlannedCell& cell : cells) {
-    std::uint64_t poses = 0;
-    for (const std::uint32_t node : cell.nodes) poses += motion.nodes()[node].count;
-    most = std::max(most, poses);
-  }
+  for (const PlannedCell& cell : cells) most = std::max(most, pose_count(motion, cell.nodes));
   return most;
 }
 
