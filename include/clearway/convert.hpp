@@ -33,11 +33,12 @@ struct ConvertReport {
   std::uint64_t points = 0;   ///< stored
   std::uint64_t cells = 0;
   std::uint64_t non_finite_points = 0;  ///< left out
+  std::uint64_t absent_points = 0;      ///< records without a point: beams without a return
   double largest_change = 0;            ///< of any coordinate by rounding to the scale, metres
   std::uint64_t temporary_bytes = 0;
   std::uint64_t output_bytes = 0;
   double count_seconds = 0, distribute_seconds = 0, partition_seconds = 0, confirm_seconds = 0;
-  std::vector<Message> warnings;
+  std::vector<Message> warnings = {};
 };
 
 /// Turns scans (LAS, PLY, XYZ text; files and folders, or "-" alone for LAS on standard input) into

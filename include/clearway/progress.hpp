@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace clearway {
 
@@ -23,6 +25,7 @@ struct Message {
   Severity severity = Severity::kNote;
   std::string code;  ///< of a warning: the same for the same cause, for example "no-poses"
   std::string text;
+  std::vector<std::pair<std::string, double>> numbers = {};  ///< those of the text, by name
 };
 
 /// How a call is watched. A callback is never called from two threads at once, but from other

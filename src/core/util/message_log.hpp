@@ -19,9 +19,13 @@ class MessageLog {
   void note(std::string text) const {
     if (callback_) callback_({Message::Severity::kNote, {}, std::move(text)});
   }
-  void warn(std::string code, std::string text) {
-    warnings_.push_back({Message::Severity::kWarning, std::move(code), std::move(text)});
-    if (callback_) callback_(warnings_.back());
+  void warn(std::string code, std::string text,
+            std::vector<std::pair<std::string, double>> numbers = {}) {
+    add({Message::Severity::kWarning, std::move(code), std::move(text), std::move(numbers)});
+  }
+  void add(Message message) {
+    if (callback_) callback_(message);
+    if (message.severity == Message::Severity::kWarning) warnings_.push_back(std::move(message));
   }
 
  private:

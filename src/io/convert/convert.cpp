@@ -10,6 +10,7 @@
 #include "clearway/error.hpp"
 #include "core/cloud/kd_order.hpp"
 #include "core/util/format.hpp"
+#include "core/util/message_log.hpp"
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/convert/count/count.hpp"
@@ -190,15 +191,12 @@ class Conversion {
                         .crs_wkt = environment.crs_wkt(),
                         .points_hash = counted.points_hash,
                         .sources = std::move(sources)};
-    report_.warnings = environment.warnings();
+    report_.absent_points = environment.absent_points();
+    for (Message& remark : environment.remarks()) log_.add(std::move(remark));
     if (report_.non_finite_points > 0) {
-      warn("non-finite-points", format_count(report_.non_finite_points) +
-                                    " points with NaN or infinite coordinates are left out");
+      log_.warn("non-finite-points", format_count(report_.non_finite_points) +
+                                         " points with NaN or infinite coordinates are left out");
     }
-  }
-
-  void warn(const char* code, const std::string& text) {
-    report_.warnings.push_back({Message::Severity::kWarning, code, text});
   }
 
   /// Of the memory, beside the cells' index: at least a unit.
@@ -221,10 +219,11 @@ class Conversion {
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
     check_disk(folder_, points, padded);
     if (options_.regular_size && padded > 2 * points) {
-      warn("padded-cells",
-           std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
-               " points for " + std::to_string(points) +
-               " points: the padding makes the store large; fewer points a cell fit the cubes");
+      log_.warn(
+          "padded-cells",
+          std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
+              " points for " + std::to_string(points) +
+              " points: the padding makes the store large; fewer points a cell fit the cubes");
     }
   }
 
@@ -247,6 +246,7 @@ class Conversion {
   std::filesystem::path folder_;
   PendingFile output_;
   ConversionReport report_;
+  MessageLog log_{options_.message, report_.warnings};
   Stopwatch watch_;
 };
 

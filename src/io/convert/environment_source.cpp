@@ -100,6 +100,14 @@ void EnvironmentSource::find_crs() {
   }
 }
 
+std::vector<Message> EnvironmentSource::remarks() const {
+  std::vector<Message> all = crs_.warnings;
+  for (const CloudInfo& info : infos_) {
+    all.insert(all.end(), info.remarks.begin(), info.remarks.end());
+  }
+  return all;
+}
+
 void EnvironmentSource::choose_offset_and_scale() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3 lo{kInfinity, kInfinity, kInfinity};
@@ -143,7 +151,7 @@ PointReader& EnvironmentSource::reader(std::size_t file) {
 void EnvironmentSource::rewind() {
   file_ = 0;
   file_points_ = 0;
-  input_points_ = non_finite_points_ = 0;
+  input_points_ = non_finite_points_ = absent_points_ = 0;
   largest_change_ = 0;
   if (stream_) stream_->rewind();
   current_.reset();
@@ -159,7 +167,10 @@ void EnvironmentSource::refuse_changed() const {
 
 bool EnvironmentSource::next_batch(PointBatch& batch) {
   for (; file_ < files_.size(); ++file_, file_points_ = 0) {
-    if (!reader(file_).read(batch)) continue;
+    if (!reader(file_).read(batch)) {
+      infos_[file_].remarks = reader(file_).info().remarks;
+      continue;
+    }
     file_points_ += batch.size();
     return true;
   }
@@ -208,10 +219,16 @@ void EnvironmentSource::append_kept(const PointBatch& batch, QuantaBatch& out) {
 }
 
 void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out) {
+  auto absent = batch.absent.begin();
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const Vec3 p = point_of(batch, infos_[file_], i);
     if (!is_finite(p)) {
-      drop_non_finite(file_points_ - batch.size() + i);
+      if (absent != batch.absent.end() && *absent == i) {
+        ++absent_points_;
+        ++absent;
+      } else {
+        drop_non_finite(file_points_ - batch.size() + i);
+      }
       if (out.offsets.empty()) {
         for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
         out.offsets.reserve(batch.size());

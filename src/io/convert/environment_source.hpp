@@ -38,8 +38,8 @@ class EnvironmentSource {
   const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-": stream
   /// Points that the inputs declare, where all do.
   std::optional<std::uint64_t> declared_points() const { return declared_points_; }
-  /// Remarks for the log (different CRS, feet, a mesh).
-  const std::vector<Message>& warnings() const { return crs_.warnings; }
+  /// Notes and warnings on the inputs; complete once read() has returned false.
+  std::vector<Message> remarks() const;
 
   /// The next batch in input order; false at the end.
   bool read(QuantaBatch& batch);
@@ -51,6 +51,8 @@ class EnvironmentSource {
   // Of what has been read since the last rewind:
   std::uint64_t input_points() const { return input_points_; }
   std::uint64_t non_finite_points() const { return non_finite_points_; }
+  /// Records of the files that hold no point, by their format's rules.
+  std::uint64_t absent_points() const { return absent_points_; }
   /// Largest |stored - read| of any coordinate, metres.
   double largest_change() const { return largest_change_; }
 
@@ -81,6 +83,7 @@ class EnvironmentSource {
   PointBatch raw_;
   std::uint64_t input_points_ = 0;
   std::uint64_t non_finite_points_ = 0;
+  std::uint64_t absent_points_ = 0;
   double largest_change_ = 0;
 };
 

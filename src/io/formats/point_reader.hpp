@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/system/file.hpp"
@@ -24,6 +25,7 @@ struct CloudInfo {
   std::string crs_wkt;                           ///< as found; empty where there is none
   LengthUnit unit = LengthUnit::kUnknown;        ///< of the horizontal coordinates
   std::uint64_t faces = 0;                       ///< of a mesh, which are not read
+  std::vector<Message> remarks;  ///< on the whole file; complete once read() has returned false
 };
 
 /// Consecutive points of a file, in its order: integers where the file has a quantisation,
@@ -31,6 +33,9 @@ struct CloudInfo {
 struct PointBatch {
   std::vector<std::array<std::int32_t, 3>> quanta;
   std::vector<Vec3> positions;
+  /// Indices into positions, ascending, of records without a point (a beam without a return). Their
+  /// positions are NaN. They keep their number in the file, and are no error.
+  std::vector<std::uint32_t> absent;
 
   std::size_t size() const { return quanta.size() + positions.size(); }
 };

@@ -36,7 +36,7 @@ inline Environment read_environment(const std::vector<std::filesystem::path>& in
   out.input_points = source.input_points();
   out.non_finite_points = source.non_finite_points();
   out.largest_change = source.largest_change();
-  out.warnings = source.warnings();
+  out.warnings = source.remarks();
   out.unit = source.unit();
   return out;
 }
