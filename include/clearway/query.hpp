@@ -10,8 +10,10 @@ namespace clearway {
 
 /// What is asked of every environment point, whatever the model and the trajectory.
 struct QueryParameters {
-  double radius = 0;           ///< metres, > 0: a point strictly closer to the model collides
-  bool first_pose = false;     ///< also the smallest pose index that touches each colliding point
+  double radius = 0;  ///< metres, > 0: a point strictly closer to the model collides
+  /// Also for each colliding point the smallest index of a pose that touches it; between poses, of
+  /// a pose i with the way from i to i + 1, both included, on which the model touches it.
+  bool first_pose = false;
   bool between_poses = false;  ///< model points move on straight segments from pose to pose
   double clearance = 0;        ///< metres: distances below it are asked for too; 0: none
   /// Metres: a point whose distance differs from the radius by no more may be answered wrongly; 0:

@@ -37,8 +37,10 @@ class Result {
 
   std::vector<std::uint64_t> source() const;  ///< indices in the order of the scans, ascending
   std::vector<Vec3> xyz() const;
-  std::vector<std::uint32_t> first_pose() const;  ///< empty unless the query asked for it
-  Clearances clearance() const;                   ///< empty unless the query asked for it
+  /// As QueryParameters::first_pose defines it; empty unless the query asked for it. Files of 0.1.0
+  /// with motion between poses may be one higher: their ways did not include their ends.
+  std::vector<std::uint32_t> first_pose() const;
+  Clearances clearance() const;  ///< empty unless the query asked for it
 
  private:
   std::unique_ptr<ResultReader> reader_;

@@ -1,7 +1,5 @@
 #include "cpu/brute_force.hpp"
 
-#include <algorithm>
-
 #include "core/geometry/predicate.hpp"
 #include "core/query/hit_set.hpp"
 
@@ -24,14 +22,16 @@ bool touched(const Vec3& e, const std::vector<Vec3>& moved, double radius) {
   return false;
 }
 
-/// The first pose of `e` as the segments from pose `i` to the next one give it, or kNever.
-std::uint32_t touching_pose(const Vec3& e, std::uint32_t i, const std::vector<Vec3>& from,
-                            const std::vector<Vec3>& to, double radius) {
-  if (touched(e, from, radius)) return i;
+/// The same on the way from a pose to the next, both included.
+bool touched_on_way(const Vec3& e, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                    double radius) {
   for (std::size_t m = 0; m < to.size(); ++m) {
-    if (collides_inside(e, from[m], to[m], radius)) return i;
+    if (collides(e, from[m], radius) || collides_inside(e, from[m], to[m], radius) ||
+        collides(e, to[m], radius)) {
+      return true;
+    }
   }
-  return touched(e, to, radius) ? i + 1 : HitSet::kNever;
+  return false;
 }
 
 }  // namespace
@@ -46,9 +46,11 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
     const std::vector<Vec3> to = moves_on ? moved_model(query, i + 1) : std::vector<Vec3>();
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
-      if (first[e] <= i) continue;
-      const std::uint32_t pose = touching_pose(environment[e], i, from, to, query.radius);
-      first[e] = std::min(first[e], pose);
+      if (first[e] != HitSet::kNever) continue;
+      if (moves_on ? touched_on_way(environment[e], from, to, query.radius)
+                   : touched(environment[e], from, query.radius)) {
+        first[e] = i;
+      }
     }
   }
   return first;

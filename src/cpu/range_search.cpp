@@ -218,8 +218,8 @@ void RangeSearch::test_points(const SearchTask& task, Points points) {
   if (query_.between_poses && pose + 1 < query_.poses.size()) {
     const MutableColumns next{next_x_.data(), next_y_.data(), next_z_.data()};
     transform_points(query_.poses[pose + 1], model_.columns(leaf), leaf.padded, next);
-    collide_any_on_step(columns(points), points.count, moved, next, leaf.padded, query_.radius,
-                        hit_.data());
+    collide_any_on_way(columns(points), points.count, moved, next, leaf.padded, query_.radius,
+                       hit_.data());
   } else {
     collide_any(columns(points), points.count, moved, leaf.padded, query_.radius, hit_.data());
   }

@@ -14,6 +14,11 @@ constexpr const char* kReplaces = "overwrites";
 
 std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
 
+/// A journal of version 0.1.0 has "yes" between poses too: its ways did not include their ends.
+std::string first_pose_text(const ResultHeader& header) {
+  return header.has_poses_of_ways() ? "closed way" : yes_or_no(header.first_pose);
+}
+
 std::string work_text(const JournalledWork& work) {
   if (work.poses > 0) return format_count(work.poses) + " poses finished";
   return format_count(work.cells) + " cells finished";
@@ -33,7 +38,7 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
                            {"model", hash_text(header.model_hash)},
                            {"trajectory", hash_text(header.trajectory_hash)},
                            {"radius", format_number(header.radius)},
-                           {"first_pose", yes_or_no(header.first_pose)},
+                           {"first_pose", first_pose_text(header)},
                            {"clearance", format_number(header.clearance)},
                            {"between_poses", yes_or_no(header.between_poses)},
                            {"tolerance", format_number(header.tolerance)},

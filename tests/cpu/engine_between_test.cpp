@@ -62,7 +62,7 @@ TEST_CASE("a point that only the inside of a segment touches") {
         std::vector<std::uint32_t>{0, 0, kNever, kNever, kNever});
 }
 
-TEST_CASE("the first pose is that of the segment's start, and the end's own at the end") {
+TEST_CASE("the first pose is that of the first way that touches the point, ends included") {
   std::vector<Pose> poses;
   for (int i = 0; i < 4; ++i) poses.push_back(translation({1.0 * i, 0, 0}));
   // At the start, inside of the three segments, at and beside poses 1 and 2, at and past the end.
@@ -70,21 +70,32 @@ TEST_CASE("the first pose is that of the segment's start, and the end's own at t
                                  {1, 0.0625, 0},  {2, 0, 0},   {0.9375, 0, 0}, {3, 0, 0},
                                  {3.0625, 0, 0},  {3.5, 0, 0}};
   CHECK(first_poses(points, kOnePoint, poses, 0.125) ==
-        std::vector<std::uint32_t>{0, 0, 1, 2, 1, 2, 0, 3, 3, kNever});
-  // A corner: what lies past its outside is touched by its pose alone.
+        std::vector<std::uint32_t>{0, 0, 1, 2, 0, 1, 0, 2, 2, kNever});
+  // A corner: the model is near on the way to it, though nowhere nearer than at its pose.
   const std::vector<Pose> corner{translation({0, 0, 0}), translation({1, 0, 0}),
                                  translation({0, 0.03125, 0})};
-  CHECK(first_poses({{1.0625, 0, 0}}, kOnePoint, corner, 0.125) == std::vector<std::uint32_t>{1});
+  CHECK(first_poses({{1.0625, 0, 0}}, kOnePoint, corner, 0.125) == std::vector<std::uint32_t>{0});
 }
 
 TEST_CASE("a segment at exactly the radius and one unit to either side") {
-  const std::vector<Pose> poses{translation({0, 0, 0}), translation({1, 0, 0})};
-  const std::vector<Vec3> points{{0.5, 0.5, 0}, {0.25, 0, -0.5}, {-0.5, 0, 0},
-                                 {1.5, 0, 0},   {0, 0.5, 0},     {1, 0, 0.5}};
+  const std::vector<Pose> poses{translation({0, 0, 0}), translation({1, 0, 0}),
+                                translation({1, 8, 0})};
+  const std::vector<Vec3> points{{0.5, 0.5, 0}, {0.25, 0, -0.5}, {-0.5, 0, 0}, {1.5, 0, 0},
+                                 {0, 0.5, 0},   {1, 0, 0.5},     {1, 8.5, 0},  {1.5, 0.125, 0}};
   CHECK(hits_of(first_poses(points, kOnePoint, poses, 0.5)) == 0);
   CHECK(hits_of(first_poses(points, kOnePoint, poses, std::nextafter(0.5, 0))) == 0);
   CHECK(first_poses(points, kOnePoint, poses, std::nextafter(0.5, 1)) ==
-        std::vector<std::uint32_t>{0, 0, 0, 1, 0, 1});
+        std::vector<std::uint32_t>{0, 0, 0, 0, 0, 0, 1, 1});
+}
+
+TEST_CASE("a stop counts from the way that leads to it") {
+  std::vector<Pose> poses(3, translation({0, 0, 0}));
+  poses.insert(poses.end(), 40, translation({1, 0, 0}));
+  poses.push_back(translation({2, 0, 0}));
+  const std::vector<Vec3> points{{-0.0625, 0, 0}, {0, 0.0625, 0}, {1, 0.0625, 0}, {2.0625, 0, 0}};
+  CHECK(first_poses(points, kOnePoint, poses, 0.125) == std::vector<std::uint32_t>{0, 0, 2, 42});
+  CHECK(first_poses(points, kOnePoint, {translation({1, 0, 0})}, 0.125) ==
+        std::vector<std::uint32_t>{kNever, kNever, 0, kNever});
 }
 
 TEST_CASE("turning on the spot in large steps: chords") {

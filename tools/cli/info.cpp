@@ -78,6 +78,10 @@ ordered_json describe(const ResultReader& result) {
     description["engine"] = h.engine;
   }
   if (h.float_precision) description["precision"] = "float";
+  if (h.has_poses_of_ways()) {
+    description["first_pose_of"] =
+        h.ways_without_ends ? "way without its end (version 0.1.0)" : "closed way";
+  }
   return description;
 }
 

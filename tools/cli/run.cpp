@@ -142,8 +142,10 @@ void add_run(CLI::App& program) {
   add_run_options(*command, *options);
   command->footer(
       "A point collides when its distance to a model point at some pose is strictly below the\n"
-      "radius. With --between-poses the way from each pose to the next counts too, for the pose\n"
-      "that it starts from.\n"
+      "radius. With --between-poses the way from each pose to the next counts too.\n"
+      "The first pose is the first one that touches the point. With --between-poses it is the "
+      "pose\n"
+      "from which the first way starts that touches the point. A way includes both its ends.\n"
       "Engine, device, threads and memory do not change the result. With --tolerance the device\n"
       "and --field-voxel do.\n"
       "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 -o "

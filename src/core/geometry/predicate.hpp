@@ -78,7 +78,7 @@ CLEARWAY_HD inline bool collides(const Vec3& e, const Vec3& m, double radius) {
 
 /// True when e collides with the inside of the segment on which a model point moves from a, where a
 /// pose puts it, to b, where the next one does: 0 < n < D and w.w < r * r with n = ae.ab, D = ab.ab
-/// and w = ae - (n / D) ab. False for a = b. The segment's ends are the points' own predicate.
+/// and w = ae - (n / D) ab. False for a = b. collides() decides about the segment's ends.
 CLEARWAY_HD inline bool collides_inside(const Vec3& e, const Vec3& a, const Vec3& b,
                                         double radius) {
   const Vec3 ab = difference(b, a);
@@ -90,6 +90,13 @@ CLEARWAY_HD inline bool collides_inside(const Vec3& e, const Vec3& a, const Vec3
       ae, {rounded_product(g, ab.x), rounded_product(g, ab.y), rounded_product(g, ab.z)});
   const bool beside = (0 < n) & (n < length);
   return beside & (rounded_dot(w, w) < rounded_product(radius, radius));
+}
+
+/// True when e collides with a model point on its way from a to b, both ends included. Each end is
+/// decided as at its pose, so a hit at a pose is a hit on the way to it and on the way from it.
+CLEARWAY_HD inline bool collides_on_way(const Vec3& e, const Vec3& a, const Vec3& b,
+                                        double radius) {
+  return collides(e, a, radius) | collides_inside(e, a, b, radius) | collides(e, b, radius);
 }
 
 }  // namespace clearway

@@ -141,18 +141,21 @@ std::uint32_t SweepFilter::first_pose(const Vec3& e, std::span<const std::uint32
   return best;
 }
 
-/// Lowers `best` to the smallest touching pose of the node's that is below it.
+/// Lowers `best` to the least pose of the node whose way touches e, where that is less.
 void SweepFilter::first_pose_below(const Vec3& e, std::uint32_t index, std::uint32_t& best,
                                    SweepStatistics& statistics) const {
   const MotionNode& node = motion_.nodes()[index];
   if (node.first >= best) return;
-  double squared_lower = 0;
-  const Verdict verdict = test(e, node, statistics, squared_lower);
+  const Verdict verdict = ref_.look(e, node, statistics);
   if (verdict == Verdict::kDismissed) return;
-  if (verdict == Verdict::kHitAtMid) best = std::min(best, node.mid);
-  if (node.count == 1) return;
-  first_pose_below(e, index + 1, best, statistics);
-  first_pose_below(e, node.later, best, statistics);
+  if (verdict == Verdict::kHitAtMid) best = std::min(best, ref_.first_pose_of_hit(node.mid));
+  if (node.count > 1) {
+    first_pose_below(e, index + 1, best, statistics);
+    first_pose_below(e, node.later, best, statistics);
+  } else if (verdict == Verdict::kOpen) {
+    ++statistics.exact_tests;
+    if (ref_.collides_at(e, node)) best = node.first;
+  }
 }
 
 }  // namespace clearway

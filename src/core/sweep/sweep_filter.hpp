@@ -47,8 +47,8 @@ class SweepFilter final : public PoseReach {
   bool touches(const Vec3& e, std::span<const std::uint32_t> nodes,
                SweepStatistics& statistics) const;
 
-  /// The smallest pose of `nodes` at or after which the model touches e, or HitSet::kNever. `nodes`
-  /// in the order of their poses.
+  /// The first pose of e (clearway/query.hpp), or HitSet::kNever. `nodes` in the order of their
+  /// poses: what narrow() left of all for a box around e.
   std::uint32_t first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
                            SweepStatistics& statistics) const;
 

@@ -97,7 +97,7 @@ class SweepHits {
     const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node, statistics_[lane]);
     if (verdict == SweepRef::Verdict::kDismissed) return false;
     if (verdict == SweepRef::Verdict::kOpen) return true;
-    hit(lane, node.mid);
+    hit(lane, job_.sweep.first_pose_of_hit(node.mid));
     return job_.sweep.first_pose && node.first < best_[lane];
   }
 
@@ -126,7 +126,9 @@ class SweepHits {
       return;
     }
     way.at += verdict == SweepRef::Verdict::kDismissed ? size : 1;
-    if (verdict == SweepRef::Verdict::kHitAtMid) hit(lane, node.mid);
+    if (verdict == SweepRef::Verdict::kHitAtMid) {
+      hit(lane, job_.sweep.first_pose_of_hit(node.mid));
+    }
   }
 
   /// All open subtrees of all lanes, or nothing.

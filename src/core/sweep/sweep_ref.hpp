@@ -53,6 +53,12 @@ struct SweepRef {
     return between_poses && node.count == 1 && node.first + 1 < motion.pose_count;
   }
 
+  /// The first pose is this or less where a model point hits at `pose`: between poses that is
+  /// also the end of the way from the one before.
+  CLEARWAY_HD std::uint32_t first_pose_of_hit(std::uint32_t pose) const {
+    return between_poses && pose > 0 ? pose - 1 : pose;
+  }
+
   enum class BoxClass {
     kDismissed,  ///< no pose of the node matters
     kSplit,      ///< to be looked at in halves
@@ -134,7 +140,7 @@ struct SweepRef {
     return look(e, node, statistics, squared_lower);
   }
 
-  /// Whether e collides at a single pose, or on the way from it, that look() left open.
+  /// Whether e collides at a single pose that look() left open, or on the way from it to the next.
   CLEARWAY_HD bool collides_at(const Vec3& e, const MotionNode& node) const {
     if (moves_on(node)) {
       return SweptStep(motion, model, node.first, radius, rounding).touches(e);

@@ -24,7 +24,7 @@ class SweptStep {
         radius_(radius),
         rounding_(rounding) {}
 
-  /// Whether e collides with a model point at the pose or on the way to the next.
+  /// Whether e collides with a model point on the way from the pose to the next, both included.
   CLEARWAY_HD bool touches(const Vec3& e) const {
     return model_.any(
         [&](const Box& box) {
@@ -32,8 +32,7 @@ class SweptStep {
                                                   : ModelTreeRef::Step::kSkip;
         },
         [&](const Vec3& m) {
-          const Vec3 a = transform(from_, m);
-          return collides(e, a, radius_) || collides_inside(e, a, transform(to_, m), radius_);
+          return collides_on_way(e, transform(from_, m), transform(to_, m), radius_);
         });
   }
 

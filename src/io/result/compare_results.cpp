@@ -33,6 +33,11 @@ std::string tolerance_text(const ResultHeader& header) {
   return shown(header.tolerance) + " m, engine " + header.engine;
 }
 
+std::string first_pose_text(const ResultHeader& header) {
+  if (!header.first_pose) return "not asked for";
+  return header.ways_without_ends ? "asked for, as version 0.1.0 defined them" : "asked for";
+}
+
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b) {
   std::vector<QueryDifference> out;
   const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
@@ -43,8 +48,7 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
   differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
          content_text(b.poses, "poses", b.trajectory_hash));
   differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");
-  differ("first poses", a.first_pose ? "asked for" : "not asked for",
-         b.first_pose ? "asked for" : "not asked for");
+  differ("first poses", first_pose_text(a), first_pose_text(b));
   differ("clearance", clearance_text(a), clearance_text(b));
   differ("motion", a.between_poses ? "between poses" : "at poses only",
          b.between_poses ? "between poses" : "at poses only");

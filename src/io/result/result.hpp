@@ -26,6 +26,10 @@ struct ResultHeader : QueryParameters {
   bool float_precision = false;  ///< floats alone decided: not an exact result
   Quantisation quantisation{};
   std::string crs_wkt;
+  /// First poses between poses are those of version 0.1.0, whose ways did not include their ends.
+  bool ways_without_ends = false;
+
+  bool has_poses_of_ways() const { return first_pose && between_poses; }
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
 };
 

@@ -21,6 +21,8 @@ inline constexpr const char* kTolerance = "tolerance";  // with kEngine, only wh
 inline constexpr const char* kEngine = "engine";
 inline constexpr const char* kPrecision = "precision";  // only where it is kFloat
 inline constexpr const char* kFloat = "float";
+inline constexpr const char* kFirstPoseOf = "first_pose_of";  // only where it is kClosedWay
+inline constexpr const char* kClosedWay = "closed way";
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";

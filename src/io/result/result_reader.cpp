@@ -55,6 +55,16 @@ void check_tolerance(const ResultHeader& header, const std::string& name) {
                    ", expected a length above 0 and below the radius");
 }
 
+/// Whether the file has the attribute, which has only this one value.
+bool has_value(const hdf5::Id& file, const char* attribute, const char* value,
+               const std::string& name) {
+  if (!hdf5::has_attribute(file, attribute, name)) return false;
+  const std::string found = hdf5::read_text_attribute(file, attribute, name);
+  if (found == value) return true;
+  refuse(name,
+         std::string("attribute '") + attribute + "' is " + excerpt(found) + ", expected " + value);
+}
+
 ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
   check_format(file, name);
   ResultHeader header;
@@ -76,13 +86,9 @@ ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
     header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
     check_tolerance(header, name);
   }
-  if (hdf5::has_attribute(file, names::kPrecision, name)) {
-    const std::string precision = hdf5::read_text_attribute(file, names::kPrecision, name);
-    if (precision != names::kFloat) {
-      refuse(name, "attribute 'precision' is " + excerpt(precision) + ", expected float");
-    }
-    header.float_precision = true;
-  }
+  header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
+  header.ways_without_ends =
+      header.has_poses_of_ways() && !has_value(file, names::kFirstPoseOf, names::kClosedWay, name);
   return header;
 }
 

@@ -41,6 +41,9 @@ void write_header(const hdf5::Id& file, const ResultHeader& header) {
     hdf5::write_attribute(file, names::kEngine, header.engine);
   }
   if (header.float_precision) hdf5::write_attribute(file, names::kPrecision, names::kFloat);
+  if (header.has_poses_of_ways() && !header.ways_without_ends) {
+    hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
+  }
 }
 
 /// The piece of a column; a column that the result does not have stays empty.

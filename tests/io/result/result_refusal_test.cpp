@@ -143,6 +143,14 @@ TEST_CASE("datasets of another type or shape, or with impossible values, are ref
     }
     refused("'version' is 3");
   }
+  SECTION("another definition of the first poses") {
+    ResultHeader between = header;
+    between.between_poses = between.ways_without_ends = true;
+    write_result(path, between, rows);
+    CHECK(reads_as(path, between, rows));
+    hdf5::write_attribute(open_to_change(path), "first_pose_of", std::string("open way"));
+    refused("'first_pose_of' is \"open way\", expected closed way");
+  }
 }
 
 TEST_CASE("sources that do not ascend from one batch to the next are refused") {

@@ -111,3 +111,40 @@ TEST_CASE("options of the journal that make no sense are refused") {
   }
   CHECK(work.run("--journal-interval 0").exit_code == 0);
 }
+
+namespace {
+
+/// The same journal, of a run with another value.
+void replace_value(const std::filesystem::path& journal, const std::string& name,
+                   const std::string& value) {
+  std::filesystem::rename(journal, journal.string() + ".before");
+  const JournalReader before(journal.string() + ".before");
+  JournalIdentity identity = before.identity().value();
+  for (auto& [field, found] : identity) {
+    if (field == name) found = value;
+  }
+  JournalWriter writer = JournalWriter::create(journal, identity, 0);
+  before.for_each([&](JournalPayload payload) {
+    JournalRecord record;
+    while (!payload.at_end()) record.put(payload.take<std::byte>());
+    writer.append(record);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("first poses between poses as version 0.1.0 defined them are not resumed") {
+  const Work work;
+  Process process(work.command("--between-poses", "0.1", "kdtree"), work.folder / "log.txt");
+  work.wait_for_records(process, 3);
+  process.send(SIGKILL);
+  process.wait();
+  const std::string found = bytes_of(work.journal);
+  replace_value(work.journal, "first_pose", "yes");
+  check_refused(work.run("--resume --between-poses", "0.1", "kdtree"), 2,
+                "its first_pose is yes, expected closed way");
+  put_bytes(work.journal, found);
+  const Outcome resumed = work.run("--resume --between-poses", "0.1", "kdtree");
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with"));
+}

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+
+#include "clearway/vec3.hpp"
+
+/// Distances on a way in whole numbers, for small whole coordinates. Shares nothing with the
+/// predicate, and never rounds.
+namespace clearway::test {
+
+struct WholePoint {
+  std::int64_t x, y, z;
+
+  Vec3 as_double() const {
+    return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+  }
+};
+
+inline WholePoint operator-(const WholePoint& a, const WholePoint& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+inline std::int64_t dot(const WholePoint& a, const WholePoint& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// The least squared distance of a point to the segment from a to b, both included, as a fraction.
+struct ExactWay {
+  std::int64_t over;
+  std::int64_t under = 1;
+
+  ExactWay(const WholePoint& e, const WholePoint& a, const WholePoint& b) {
+    const WholePoint ae = e - a, ab = b - a;
+    const std::int64_t n = dot(ae, ab), length = dot(ab, ab);
+    if (n <= 0) {
+      over = dot(ae, ae);
+    } else if (n >= length) {
+      over = dot(e - b, e - b);
+    } else {
+      over = dot(ae, ae) * length - n * n;
+      under = length;
+    }
+  }
+
+  /// Whether it is below the square of quarters / 4.
+  bool is_within(std::int64_t quarters) const { return 16 * over < quarters * quarters * under; }
+  /// Whether it is equal to that square, and a quotient that double may have to round says so.
+  bool is_rounded_tie(std::int64_t quarters) const {
+    return 16 * over == quarters * quarters * under && (under & (under - 1)) != 0;
+  }
+};
+
+}  // namespace clearway::test
