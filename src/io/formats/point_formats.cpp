@@ -16,7 +16,7 @@ struct Ending {
 constexpr Ending kEndings[] = {
     {".las", PointFormat::kLas, true},   {".laz", PointFormat::kLas, true},
     {".ply", PointFormat::kPly, true},   {".xyz", PointFormat::kXyz, true},
-    {".pts", PointFormat::kXyz, true},   {".asc", PointFormat::kXyz, true},
+    {".pts", PointFormat::kPts, true},   {".asc", PointFormat::kXyz, true},
     {".txt", PointFormat::kXyz, false},  {".csv", PointFormat::kXyz, false},
     {".e57", PointFormat::kE57, true},   {".pcd", PointFormat::kPcd, true},
     {".ptx", PointFormat::kPtx, true},   {".3d", PointFormat::k3dtk, true},
@@ -70,12 +70,6 @@ void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
     case PointFormat::kE57:
       refuse_format(name, "E57");
-    case PointFormat::kPcd:
-      refuse_format(name, "PCD");
-    case PointFormat::kPtx:
-      refuse_format(name, "PTX");
-    case PointFormat::k3dtk:
-      refuse_format(name, "a 3DTK scan");
     case PointFormat::kMesh:
       refuse(name,
              "a mesh is not read; expected points in LAS, PLY or XYZ text. Sample its surface to "
@@ -83,6 +77,10 @@ void refuse_unless_read(PointFormat format, const std::string& name) {
     case PointFormat::kLas:
     case PointFormat::kPly:
     case PointFormat::kXyz:
+    case PointFormat::kPts:
+    case PointFormat::kPcd:
+    case PointFormat::kPtx:
+    case PointFormat::k3dtk:
       break;
   }
 }
