@@ -1,6 +1,7 @@
 #include "io/formats/point_formats.hpp"
 
 #include <string_view>
+#include <vector>
 
 #include "io/system/input_error.hpp"
 
@@ -64,6 +65,18 @@ std::optional<PointFormat> format_of_name(const std::filesystem::path& path) {
 bool is_surely_point_file(const std::filesystem::path& path) {
   const Ending* ending = ending_of(path);
   return ending && ending->only_points;
+}
+
+std::string sure_endings() {
+  std::vector<std::string_view> endings;
+  for (const Ending& known : kEndings) {
+    if (known.only_points) endings.push_back(known.ending.substr(1));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < endings.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == endings.size() ? " or " : ", ") + std::string(endings[i]);
+  }
+  return text;
 }
 
 void refuse_unless_read(PointFormat format, const std::string& name) {

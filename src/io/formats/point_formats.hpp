@@ -19,6 +19,9 @@ std::optional<PointFormat> format_of_name(const std::filesystem::path& path);
 /// of nothing else (.txt and .csv may hold anything, so such files have to be named themselves).
 bool is_surely_point_file(const std::filesystem::path& path);
 
+/// The endings of such files, for a message: "las, ply, ... or pcd".
+std::string sure_endings();
+
 /// Throws InputError that names the format and says what to do, where it is not read.
 void refuse_unless_read(PointFormat format, const std::string& name);
 

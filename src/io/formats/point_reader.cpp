@@ -23,9 +23,8 @@ PointFormat format_of(const File& file, const std::filesystem::path& path) {
   auto format = format_of_content(first);
   if (!format) format = format_of_name(path);
   if (!format) {
-    refuse(file.name(),
-           "unknown format of points; expected LAS, PLY, or text with the ending xyz, pts, asc, "
-           "txt or csv");
+    refuse(file.name(), "unknown format of points; expected the ending " + sure_endings() +
+                            ", or txt or csv for text");
   }
   return *format;
 }

@@ -22,9 +22,6 @@ class AsciiPcdReader final : public PcdBodyReader {
       words_of_point_ += header_.fields[i].count;
     }
     words_ = words;
-    for (const std::uint64_t word : words) {
-      if (word + 1 == words_of_point_) ends_with_coordinate_ = true;
-    }
     check_room();
   }
 
@@ -52,18 +49,18 @@ class AsciiPcdReader final : public PcdBodyReader {
                                   std::to_string(header_.points) + " as the header declares");
       }
       parse(line, out[i]);
-      cut_ = !input_.line_terminated() && ends_with_coordinate_;
+      open_end_.see(input_, line);
     }
   }
 
-  void start_again() override {}
+  void start_again() override { open_end_ = {}; }
 
   void check_end() override {
     std::string_view line;
     if (next_line(line)) {
       fail("more than the " + std::to_string(header_.points) + " points that the header declares");
     }
-    if (cut_) info_.remarks.push_back(last_number_may_be_cut(input_.name(), input_.line()));
+    open_end_.append_to(info_.remarks, input_.name());
   }
 
   /// That is not blank.
@@ -95,8 +92,7 @@ class AsciiPcdReader final : public PcdBodyReader {
 
   std::uint64_t words_of_point_ = 0;
   std::array<std::uint64_t, 3> words_{};  // of x, y and z, from 0
-  bool ends_with_coordinate_ = false;     // a line of a point
-  bool cut_ = false;
+  OpenEnd open_end_;
 };
 
 }  // namespace

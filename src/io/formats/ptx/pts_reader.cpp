@@ -44,6 +44,7 @@ class PtsReader final : public PointReader {
   void rewind() override {
     input_.return_to(start_);
     scans_ = left_ = declared_ = 0;
+    open_end_ = {};
   }
 
  private:
@@ -70,13 +71,12 @@ class PtsReader final : public PointReader {
   }
 
   void read_point(std::string_view line, Vec3& point) {
-    bool more = false;
-    if (!parse_scan_point(line, point, more)) {
+    if (!parse_scan_point(line, point)) {
       fail(excerpt(line) + " after " + std::to_string(points_ - left_) + " of the " +
            std::to_string(points_) + " points that line " + std::to_string(count_line_) +
            " declares; expected three numbers, the coordinates x y z");
     }
-    cut_ = !more && !input_.line_terminated();
+    open_end_.see(input_, line);
     --left_;
   }
 
@@ -97,7 +97,7 @@ class PtsReader final : public PointReader {
                                    " scans one after the other, each with its number of points",
                                {{"scans", static_cast<double>(scans_)}}});
     }
-    if (cut_) info_.remarks.push_back(last_number_may_be_cut(input_.name(), input_.line()));
+    open_end_.append_to(info_.remarks, input_.name());
   }
 
   InputBuffer input_;
@@ -109,7 +109,7 @@ class PtsReader final : public PointReader {
   std::uint64_t left_ = 0;        ///< of them not read yet
   std::uint64_t declared_ = 0;    ///< of all scans so far
   std::uint64_t count_line_ = 0;  ///< where points_ stands
-  bool cut_ = false;
+  OpenEnd open_end_;
 };
 
 }  // namespace

@@ -120,6 +120,7 @@ class PtxReader final : public PointReader {
   void rewind() override {
     input_.return_to(start_);
     findings_ = {};
+    open_end_ = {};
     left_ = 0;
   }
 
@@ -153,13 +154,12 @@ class PtxReader final : public PointReader {
       refuse(input_.name(), "ends after line " + std::to_string(input_.line()) + " with " +
                                 place() + "; expected all of them");
     }
-    bool more = false;
-    if (!parse_scan_point(line, point, more)) {
+    if (!parse_scan_point(line, point)) {
       refuse_line(
           input_.name(), input_.line(),
           excerpt(line) + " after " + place() + "; expected three numbers, the coordinates x y z");
     }
-    cut_ = !more && !input_.line_terminated();
+    open_end_.see(input_, line);
     --left_;
     if (point.x == 0 && point.y == 0 && point.z == 0) {
       constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -173,7 +173,7 @@ class PtxReader final : public PointReader {
   void finish() {
     info_.remarks = remarks_;
     findings_.append_to(info_.remarks, input_.name());
-    if (cut_) info_.remarks.push_back(last_number_may_be_cut(input_.name(), input_.line()));
+    open_end_.append_to(info_.remarks, input_.name());
   }
 
   InputBuffer input_;
@@ -183,7 +183,7 @@ class PtxReader final : public PointReader {
   PtxHeader scan_;
   std::uint64_t left_ = 0;  ///< points of the scan not read yet
   PtxFindings findings_;
-  bool cut_ = false;
+  OpenEnd open_end_;
 };
 
 }  // namespace

@@ -1,10 +1,25 @@
 #include "io/formats/ptx/scan_lines.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "io/formats/text/text_number.hpp"
+#include "io/system/input_error.hpp"
 
 namespace clearway {
+namespace {
+
+/// Between blanks, commas and semicolons.
+std::size_t count_values(std::string_view line) {
+  constexpr std::string_view kSeparators = " \t,;";
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = line.find_first_not_of(kSeparators, at)) != line.npos; ++count) {
+    at = std::min(line.find_first_of(kSeparators, at), line.size());
+  }
+  return count;
+}
+
+}  // namespace
 
 CountLines find_count_lines(InputBuffer& input) {
   const InputBuffer::Mark start = input.mark();
@@ -40,7 +55,7 @@ std::uint64_t most_scan_points(const InputBuffer& input) {
   return (*input.size() - input.position() + 1) / kShortest;
 }
 
-bool parse_scan_point(std::string_view line, Vec3& point, bool& more) {
+bool parse_scan_point(std::string_view line, Vec3& point) {
   const char* at = line.data();
   const char* const end = at + line.size();
   char first = 0;
@@ -49,19 +64,31 @@ bool parse_scan_point(std::string_view line, Vec3& point, bool& more) {
       !parse_number(at, end, point.z)) {
     return false;
   }
-  more = at != end;
-  if (!more) return true;
+  if (at == end) return true;
   const char behind = skip_separator(at, end);
   return behind == first || behind == ' ';
 }
 
-Message last_number_may_be_cut(const std::string& name, std::uint64_t line) {
-  return {Message::Severity::kWarning,
-          "last-number-may-be-cut",
-          name + ": line " + std::to_string(line) +
-              ", the last, ends without a line break: its z may lack digits. Add a line break if "
-              "the file is complete",
-          {{"line", static_cast<double>(line)}}};
+void OpenEnd::look(const InputBuffer& input, std::string_view line) {
+  const std::size_t values = count_values(line);
+  if (values_ == 0) values_ = values;
+  if (input.line_terminated()) return;
+  const std::string what = "the file ends without a line break";
+  if (values < values_) {
+    refuse_line(input.name(), input.line(),
+                what + " after " + std::to_string(values) + " of " + std::to_string(values_) +
+                    " values, so it is cut; expected all values of the last line");
+  }
+  if (line.ends_with('.')) {
+    refuse_line(input.name(), input.line(), what + " within a number; expected all of it");
+  }
+  open_ = true;
+}
+
+void OpenEnd::append_to(std::vector<Message>& remarks, const std::string& name) const {
+  if (!open_) return;
+  remarks.push_back(
+      {Message::Severity::kNote, "no-line-break", name + ": the file ends without a line break"});
 }
 
 }  // namespace clearway

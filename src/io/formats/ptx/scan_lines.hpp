@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
@@ -34,10 +35,23 @@ std::optional<std::uint64_t> count_in(std::string_view line);
 std::uint64_t most_scan_points(const InputBuffer& input);
 
 /// x y z and anything behind them, in blanks, commas or semicolons; false for anything else.
-/// more: whether anything follows, so that z is surely complete.
-bool parse_scan_point(std::string_view line, Vec3& point, bool& more);
+bool parse_scan_point(std::string_view line, Vec3& point);
 
-/// The warning of a file whose last number is its last byte.
-Message last_number_may_be_cut(const std::string& name, std::uint64_t line);
+/// Notices a last line without a line break: notes it, and refuses where values or digits are
+/// missing, so that the file is cut. Of one reading of a file.
+class OpenEnd {
+ public:
+  /// Every line of a point, after it was read. input: where it comes from.
+  void see(const InputBuffer& input, std::string_view line) {
+    if (values_ == 0 || !input.line_terminated()) look(input, line);
+  }
+  void append_to(std::vector<Message>& remarks, const std::string& name) const;
+
+ private:
+  void look(const InputBuffer& input, std::string_view line);
+
+  std::size_t values_ = 0;  // of the first line
+  bool open_ = false;
+};
 
 }  // namespace clearway

@@ -92,12 +92,11 @@ class ThreedtkReader final : public PointReader {
     std::string_view line;
     while (count < kBatchPoints && next_scan_line(input_, line)) {
       Vec3 point{};
-      bool more = false;
-      if (!parse_scan_point(line, point, more)) {
+      if (!parse_scan_point(line, point)) {
         refuse_line(input_.name(), input_.line(),
                     excerpt(line) + "; expected three numbers, the coordinates x y z");
       }
-      cut_ = !more && !input_.line_terminated();
+      open_end_.see(input_, line);
       batch.positions[count++] = place(from_threedtk(point));
     }
     batch.positions.resize(count);
@@ -105,7 +104,10 @@ class ThreedtkReader final : public PointReader {
     return count > 0;
   }
 
-  void rewind() override { input_.return_to(first_point_); }
+  void rewind() override {
+    input_.return_to(first_point_);
+    open_end_ = {};
+  }
 
  private:
   Vec3 place(const Vec3& p) const {
@@ -123,8 +125,7 @@ class ThreedtkReader final : public PointReader {
     std::string_view line;
     for (int lines = 0; next_scan_line(input_, line); ++lines, start = input_.mark()) {
       Vec3 point{};
-      bool more = false;
-      if (parse_scan_point(line, point, more)) break;
+      if (parse_scan_point(line, point)) break;
       if (lines == kMostHeaderLines) {
         refuse_line(input_.name(), input_.line(),
                     excerpt(line) + "; expected points x y z after ten other lines at most");
@@ -144,7 +145,7 @@ class ThreedtkReader final : public PointReader {
                                    " lines before the first point are passed over",
                                {{"lines", header_lines_}}});
     }
-    if (cut_) info_.remarks.push_back(last_number_may_be_cut(input_.name(), input_.line()));
+    open_end_.append_to(info_.remarks, input_.name());
   }
 
   InputBuffer input_;
@@ -152,7 +153,7 @@ class ThreedtkReader final : public PointReader {
   Pose pose_{};
   InputBuffer::Mark first_point_;
   int header_lines_ = 0;
-  bool cut_ = false;
+  OpenEnd open_end_;
   bool finished_ = false;
 };
 
