@@ -154,11 +154,11 @@ class Conversion {
   ConversionReport run() {
     EnvironmentSource environment(options_.inputs,
                                   {options_.scale, options_.ignore_crs, options_.strict, folder_});
-    refuse_overwriting(options_.output, environment.files());
+    refuse_overwriting(options_.output, environment.read_files());
     if (environment.declared_points()) {
       check_disk(folder_, *environment.declared_points(), *environment.declared_points());
     }
-    SourceDescription sources(environment.files(), progress_);
+    SourceDescription sources(environment.read_files(), progress_);
     const Lattice lattice = lattice_for(options_, environment.quantisation());
     CountedEnvironment counted = count_environment(environment, lattice, threads_, progress_);
     report_.non_finite_points = environment.non_finite_points();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "io/convert/notes.hpp"
 #include "io/convert/spooled_reader.hpp"
 #include "io/system/input_error.hpp"
 
@@ -57,13 +58,14 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
   }
   if (streams) {
-    files_ = {"-"};
+    files_ = read_files_ = {"-"};
     stream_ = spool(open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input")),
                     options.temporary_folder);
   } else {
-    files_ = list_point_files(inputs);
+    files_ = list_point_files(inputs, &folder_remarks_);
     std::for_each(files_.begin(), files_.end(), refuse_pipe);
-    std::transform(files_.begin(), files_.end(), std::back_inserter(states_), state_of);
+    read_files_ = with_pose_files(files_);
+    std::transform(read_files_.begin(), read_files_.end(), std::back_inserter(states_), state_of);
   }
   open_inputs();
   find_crs();
@@ -72,7 +74,6 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     shifts_ = std::move(kept->shifts);
     return;
   }
-  if (!options_.scale) refuse_mixture(files_, infos_);
   choose_offset_and_scale();
 }
 
@@ -102,9 +103,17 @@ void EnvironmentSource::find_crs() {
 
 std::vector<Message> EnvironmentSource::remarks() const {
   std::vector<Message> all = crs_.warnings;
-  for (const CloudInfo& info : infos_) {
-    all.insert(all.end(), info.remarks.begin(), info.remarks.end());
+  all.insert(all.end(), folder_remarks_.begin(), folder_remarks_.end());
+  if (!shifts_.empty()) {
+    const auto mixture = remark_on_mixture(files_, infos_, quantisation_);
+    if (mixture) all.push_back(*mixture);
   }
+  std::vector<Message> own;
+  for (const CloudInfo& info : infos_) {
+    own.insert(own.end(), info.remarks.begin(), info.remarks.end());
+  }
+  shorten_notes(own);
+  all.insert(all.end(), own.begin(), own.end());
   return all;
 }
 
@@ -159,8 +168,8 @@ void EnvironmentSource::rewind() {
 
 void EnvironmentSource::refuse_changed() const {
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    if (state_of(files_[i]) == states_[i]) continue;
-    refuse(files_[i].string(),
+    if (state_of(read_files_[i]) == states_[i]) continue;
+    refuse(read_files_[i].string(),
            "changed during its conversion, expected the same file in every pass over it");
   }
 }
@@ -187,7 +196,7 @@ bool EnvironmentSource::read(QuantaBatch& batch) {
   batch.offsets.clear();
   if (!next_batch(raw_)) return false;
   batch.first_source = input_points_;
-  if (shifts_.empty()) {
+  if (shifts_.empty() || !infos_[file_].quantisation) {
     append_rounded(raw_, batch);
   } else {
     append_kept(raw_, batch);
@@ -241,7 +250,7 @@ void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out
       const double quantum =
           std::nearbyint((p[axis] - quantisation_.offset[k]) / quantisation_.scale[k]);
       if (quantum < kLeastQuantum || quantum > kGreatestQuantum) {
-        throw InputError(files_[file_].string() + ": changed while it was read");
+        refuse_beyond_quanta();
       }
       q[k] = static_cast<std::int32_t>(quantum);
       largest_change_ =
@@ -251,6 +260,13 @@ void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out
     // Identity until the first dropped point, also where that is the batch's very first one.
     if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
   }
+}
+
+void EnvironmentSource::refuse_beyond_quanta() const {
+  if (shifts_.empty()) refuse(files_[file_].string(), "changed while it was read");
+  refuse(files_[file_].string(),
+         "too far from the other files for 32-bit integers of " + brief(quantisation_.scale[0]),
+         Remedy::kScale);
 }
 
 void EnvironmentSource::drop_non_finite(std::uint64_t point) {

@@ -22,8 +22,8 @@ struct EnvironmentOptions {
 
 /// All inputs of a conversion as one sequence of points in one quantisation
 /// (docs/design/conversion.md): integers are kept as read where the inputs have them; files of the
-/// same scale are rebased by whole quanta; everything else is rounded to the nearest quantum of a
-/// chosen scale.
+/// same scale are rebased by whole quanta; everything else is rounded to the nearest quantum, of
+/// those files where there are any, otherwise of a chosen scale.
 class EnvironmentSource {
  public:
   /// inputs: files and folders, or "-" alone for LAS on standard input. Reads headers, and all
@@ -36,6 +36,8 @@ class EnvironmentSource {
   const std::string& crs_wkt() const { return crs_.wkt; }
   LengthUnit unit() const { return crs_.unit; }
   const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-": stream
+  /// The files, and those that hold their poses.
+  const std::vector<std::filesystem::path>& read_files() const { return read_files_; }
   /// Points that the inputs declare, where all do.
   std::optional<std::uint64_t> declared_points() const { return declared_points_; }
   /// Notes and warnings on the inputs; complete once read() has returned false.
@@ -65,11 +67,14 @@ class EnvironmentSource {
   void append_kept(const PointBatch& batch, QuantaBatch& out);
   void append_rounded(const PointBatch& batch, QuantaBatch& out);
   void drop_non_finite(std::uint64_t source);
+  [[noreturn]] void refuse_beyond_quanta() const;
 
   EnvironmentOptions options_;
   std::vector<std::filesystem::path> files_;
-  std::vector<FileState> states_;  // of the files at first; none of a stream
-  std::vector<CloudInfo> infos_;   // of the files
+  std::vector<std::filesystem::path> read_files_;
+  std::vector<FileState> states_;  // of the files read, at first; none of a stream
+  std::vector<Message> folder_remarks_;
+  std::vector<CloudInfo> infos_;  // of the files
   Quantisation quantisation_{};
   std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
   CommonCrs crs_;

@@ -1,5 +1,6 @@
 #include "io/convert/input_agreement.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/store/store_metadata.hpp"
@@ -9,6 +10,8 @@ namespace clearway {
 namespace {
 
 using Axes = std::array<double, 3>;
+
+constexpr double kCoarseStep = 0.001;  // metres: coarser ones are worth a warning
 
 Axes scale_of(const Quantisation& q) { return {q.scale[0], q.scale[1], q.scale[2]}; }
 
@@ -25,6 +28,8 @@ std::optional<std::array<std::int64_t, 3>> whole_shift(const double* offset,
   }
   return shift;
 }
+
+bool has_integers(const CloudInfo& info) { return info.quantisation.has_value(); }
 
 void warn(CommonCrs& common, const char* code, const std::string& text) {
   common.warnings.push_back({Message::Severity::kWarning, code, text});
@@ -72,19 +77,23 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<con
 std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path> files,
                                           std::span<const CloudInfo> infos,
                                           std::optional<double> scale) {
-  if (infos.empty() || !infos[0].quantisation) return std::nullopt;
-  CommonQuanta common{.quantisation = *infos[0].quantisation, .shifts = {}};
+  const auto kept = std::find_if(infos.begin(), infos.end(), has_integers);
+  if (kept == infos.end()) return std::nullopt;
+  const std::filesystem::path& file = files[static_cast<std::size_t>(kept - infos.begin())];
+  CommonQuanta common{.quantisation = *kept->quantisation, .shifts = {}};
   const Axes first = scale_of(common.quantisation);
   if (scale && first != Axes{*scale, *scale, *scale}) return std::nullopt;
   for (std::size_t i = 0; i < infos.size(); ++i) {
     const std::optional<Quantisation>& own = infos[i].quantisation;
-    const auto shift = own && scale_of(*own) == first
-                           ? whole_shift(own->offset, common.quantisation)
-                           : std::nullopt;
+    if (!own) {
+      common.shifts.push_back({});
+      continue;
+    }
+    const auto shift =
+        scale_of(*own) == first ? whole_shift(own->offset, common.quantisation) : std::nullopt;
     if (!shift) {
-      if (scale || !own) return std::nullopt;
-      refuse(files[i].string(),
-             "its scale or offset does not agree with that of " + files[0].string(),
+      if (scale) return std::nullopt;
+      refuse(files[i].string(), "its scale or offset does not agree with that of " + file.string(),
              Remedy::kOneScale, first[0]);
     }
     common.shifts.push_back(*shift);
@@ -92,18 +101,24 @@ std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path>
   return common;
 }
 
-void refuse_mixture(std::span<const std::filesystem::path> files,
-                    std::span<const CloudInfo> infos) {
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    const bool integers = infos[0].quantisation.has_value();
-    if (infos[i].quantisation.has_value() == integers) continue;
-    refuse(files[i].string(),
-           std::string("its coordinates are ") +
-               (integers ? "floating-point numbers" : "integers times a scale") + ", expected " +
-               (integers ? "integers" : "floating-point numbers") + " as in " + files[0].string() +
-               ". Does it belong to the environment (a model does not)? If so, all need one scale",
-           Remedy::kOneScale);
-  }
+std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> files,
+                                         std::span<const CloudInfo> infos,
+                                         const Quantisation& quantisation) {
+  const auto floating = std::find_if_not(infos.begin(), infos.end(), has_integers);
+  const auto count = infos.size() - static_cast<std::size_t>(
+                                        std::count_if(infos.begin(), infos.end(), has_integers));
+  if (count == 0 || count == infos.size()) return std::nullopt;
+  const auto integers = std::find_if(infos.begin(), infos.end(), has_integers);
+  const double step = *std::max_element(quantisation.scale, quantisation.scale + 3);
+  return Message{step > kCoarseStep ? Message::Severity::kWarning : Message::Severity::kNote,
+                 "floating-point-rounded",
+                 std::to_string(count) + " of " + std::to_string(infos.size()) +
+                     " files have floating-point coordinates, the first is " +
+                     files[static_cast<std::size_t>(floating - infos.begin())].string() +
+                     ". They are rounded to the steps of " +
+                     files[static_cast<std::size_t>(integers - infos.begin())].string() + ", " +
+                     brief(step),
+                 {{"files", static_cast<double>(count)}, {"step", step}}};
 }
 
 }  // namespace clearway

@@ -28,17 +28,20 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<con
                      bool ignore);
 
 struct CommonQuanta {
-  Quantisation quantisation{};                      ///< the first input's
-  std::vector<std::array<std::int64_t, 3>> shifts;  ///< per input: whole quanta to add
+  Quantisation quantisation{};                      ///< that of the first input with integers
+  std::vector<std::array<std::int64_t, 3>> shifts;  ///< per input with integers: quanta to add
 };
 
 /// How the inputs' integers can be kept: all of one scale, the one asked for if any, and their
-/// offsets apart by whole quanta. None where they are to be rounded anew.
+/// offsets apart by whole quanta. Inputs of floating-point numbers are then rounded to the same
+/// quanta. None where all are to be rounded anew.
 std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path> files,
                                           std::span<const CloudInfo> infos,
                                           std::optional<double> scale);
 
-/// Throws where some inputs have integers and others floating-point numbers.
-void refuse_mixture(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos);
+/// On the inputs of floating-point numbers beside others of integers; none where all are alike.
+std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> files,
+                                         std::span<const CloudInfo> infos,
+                                         const Quantisation& quantisation);
 
 }  // namespace clearway

@@ -39,7 +39,7 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
   if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
   const std::optional<StoreReader> store = store_at(options.output);
   if (!store || !would_make(options, store->metadata())) return false;
-  SourceDescription sources(list_point_files(options.inputs), progress);
+  SourceDescription sources(with_pose_files(list_point_files(options.inputs)), progress);
   if (sources.get() != store->metadata().sources) return false;
   const std::vector<std::string> faults = verify_store(*store, progress, 1);
   if (faults.empty()) return true;

@@ -31,6 +31,8 @@ class InputBuffer {
   InputBuffer(File file, Access access);
 
   const std::string& name() const { return file_.name(); }
+  /// For readers that need other places of the file at the same time.
+  const File& file() const { return file_; }
   bool can_seek() const { return size_.has_value(); }
   /// Size of the file where it can be known in advance.
   std::optional<std::uint64_t> size() const { return size_; }

@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <map>
 #include <system_error>
+#include <utility>
 
 #include "clearway/error.hpp"
 #include "io/formats/point_formats.hpp"
 #include "io/formats/point_reader.hpp"
+#include "io/formats/threedtk/threedtk_reader.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -11,33 +14,111 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> files_of_folder(const fs::path& folder) {
-  std::vector<fs::path> files;
+constexpr std::size_t kMostNames = 5;  // in a message
+
+/// What lies directly in a folder, in byte order of the names; hidden files apart.
+struct Folder {
+  std::vector<fs::path> scans, others;
+  std::size_t folders = 0;
+};
+
+bool in_byte_order(const fs::path& a, const fs::path& b) {
+  // std::string compares its bytes as unsigned, so this is byte order.
+  return a.filename().native() < b.filename().native();
+}
+
+Folder look_into(const fs::path& path) {
+  Folder found;
   std::error_code error;
   const fs::directory_iterator end;
-  for (fs::directory_iterator at(folder, error); !error && at != end; at.increment(error)) {
+  for (fs::directory_iterator at(path, error); !error && at != end; at.increment(error)) {
     std::error_code unknown;
-    const bool hidden = at->path().filename().native().starts_with('.');
-    if (!hidden && !at->is_directory(unknown) && is_surely_point_file(at->path())) {
-      files.push_back(at->path());
+    if (at->path().filename().native().starts_with('.')) continue;
+    if (at->is_directory(unknown)) {
+      ++found.folders;
+    } else {
+      (is_surely_point_file(at->path()) ? found.scans : found.others).push_back(at->path());
     }
   }
-  if (error) throw ResourceError(folder.string() + ": cannot list the folder: " + error.message());
-  // std::string compares its bytes as unsigned, so this is byte order.
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return a.filename().native() < b.filename().native();
-  });
-  if (files.empty()) {
-    refuse(folder.string(),
-           "holds no point file; expected files with the ending las, ply, xyz, pts or asc (txt and "
-           "csv files have to be named themselves)");
+  if (error) throw ResourceError(path.string() + ": cannot list the folder: " + error.message());
+  std::sort(found.scans.begin(), found.scans.end(), in_byte_order);
+  std::sort(found.others.begin(), found.others.end(), in_byte_order);
+  return found;
+}
+
+/// "a.txt, b.csv and 7 more".
+std::string names_of(const std::vector<fs::path>& files) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(files.size(), kMostNames); ++i) {
+    text += (i > 0 ? ", " : "") + files[i].filename().string();
   }
-  return files;
+  if (files.size() <= kMostNames) return text;
+  return text + " and " + std::to_string(files.size() - kMostNames) + " more";
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+/// Sorts out the poses that lie beside scans: those of 3DTK's scans are read with them, those of
+/// other scans would place them elsewhere. Returns the latter; both leave `others`.
+std::vector<fs::path> take_poses(Folder& folder) {
+  std::map<std::string, bool> placed;  // by name without ending: whether its pose is read
+  for (const fs::path& scan : folder.scans) {
+    placed[scan.stem().native()] |= format_of_name(scan) == PointFormat::k3dtk;
+  }
+  std::vector<fs::path> unused;
+  std::erase_if(folder.others, [&](const fs::path& file) {
+    if (file.extension() != ".pose" && file.extension() != ".frames") return false;
+    const auto scan = placed.find(file.stem().native());
+    if (scan == placed.end()) return false;
+    if (!scan->second) unused.push_back(file);
+    return true;
+  });
+  return unused;
+}
+
+void remark_on(const fs::path& path, Folder folder, std::vector<Message>& remarks) {
+  const std::vector<fs::path> poses = take_poses(folder);
+  if (!poses.empty()) {
+    remarks.push_back({Message::Severity::kWarning,
+                       "poses-not-applied",
+                       path.string() + ": " + counted(poses.size(), "file") +
+                           " with the pose of a scan (" + names_of(poses) +
+                           "). Poses are applied to files with the ending 3d only, these scans "
+                           "stay as they are",
+                       {{"files", static_cast<double>(poses.size())}}});
+  }
+  if (folder.others.empty() && folder.folders == 0) return;
+  std::string what;
+  if (!folder.others.empty()) {
+    what = counted(folder.others.size(), "file") + " (" + names_of(folder.others) + ")";
+  }
+  if (folder.folders > 0) {
+    what += (what.empty() ? "" : " and ") + counted(folder.folders, "folder");
+  }
+  remarks.push_back({Message::Severity::kNote,
+                     "left-out",
+                     path.string() + ": left out " + what,
+                     {{"files", static_cast<double>(folder.others.size())},
+                      {"folders", static_cast<double>(folder.folders)}}});
+}
+
+std::vector<fs::path> files_of_folder(const fs::path& path, std::vector<Message>* remarks) {
+  Folder folder = look_into(path);
+  if (folder.scans.empty()) {
+    refuse(path.string(), "holds no point file; expected files with the ending " + sure_endings() +
+                              " (txt and csv files have to be named themselves)");
+  }
+  std::vector<fs::path> scans = folder.scans;
+  if (remarks) remark_on(path, std::move(folder), *remarks);
+  return scans;
 }
 
 }  // namespace
 
-std::vector<fs::path> list_point_files(const std::vector<fs::path>& inputs) {
+std::vector<fs::path> list_point_files(const std::vector<fs::path>& inputs,
+                                       std::vector<Message>* remarks) {
   std::vector<fs::path> files;
   for (const fs::path& input : inputs) {
     std::error_code error;
@@ -46,12 +127,22 @@ std::vector<fs::path> list_point_files(const std::vector<fs::path>& inputs) {
       throw ResourceError(input.string() + ": no such file or folder");
     }
     if (fs::is_directory(status)) {
-      const auto found = files_of_folder(input);
+      const auto found = files_of_folder(input, remarks);
       files.insert(files.end(), found.begin(), found.end());
     } else {
       files.push_back(input);
     }
   }
+  return files;
+}
+
+std::vector<fs::path> with_pose_files(std::vector<fs::path> files) {
+  std::vector<fs::path> poses;
+  for (const fs::path& file : files) {
+    if (format_of_name(file) != PointFormat::k3dtk) continue;
+    if (auto pose = threedtk_pose_file(file)) poses.push_back(std::move(*pose));
+  }
+  files.insert(files.end(), poses.begin(), poses.end());
   return files;
 }
 

@@ -1,6 +1,7 @@
 #include "io/formats/point_formats.hpp"
 
 #include <string_view>
+#include <vector>
 
 #include "io/system/input_error.hpp"
 
@@ -16,7 +17,7 @@ struct Ending {
 constexpr Ending kEndings[] = {
     {".las", PointFormat::kLas, true},   {".laz", PointFormat::kLas, true},
     {".ply", PointFormat::kPly, true},   {".xyz", PointFormat::kXyz, true},
-    {".pts", PointFormat::kXyz, true},   {".asc", PointFormat::kXyz, true},
+    {".pts", PointFormat::kPts, true},   {".asc", PointFormat::kXyz, true},
     {".txt", PointFormat::kXyz, false},  {".csv", PointFormat::kXyz, false},
     {".e57", PointFormat::kE57, true},   {".pcd", PointFormat::kPcd, true},
     {".ptx", PointFormat::kPtx, true},   {".3d", PointFormat::k3dtk, true},
@@ -66,16 +67,22 @@ bool is_surely_point_file(const std::filesystem::path& path) {
   return ending && ending->only_points;
 }
 
+std::string sure_endings() {
+  std::vector<std::string_view> endings;
+  for (const Ending& known : kEndings) {
+    if (known.only_points) endings.push_back(known.ending.substr(1));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < endings.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == endings.size() ? " or " : ", ") + std::string(endings[i]);
+  }
+  return text;
+}
+
 void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
     case PointFormat::kE57:
       refuse_format(name, "E57");
-    case PointFormat::kPcd:
-      refuse_format(name, "PCD");
-    case PointFormat::kPtx:
-      refuse_format(name, "PTX");
-    case PointFormat::k3dtk:
-      refuse_format(name, "a 3DTK scan");
     case PointFormat::kMesh:
       refuse(name,
              "a mesh is not read; expected points in LAS, PLY or XYZ text. Sample its surface to "
@@ -83,6 +90,10 @@ void refuse_unless_read(PointFormat format, const std::string& name) {
     case PointFormat::kLas:
     case PointFormat::kPly:
     case PointFormat::kXyz:
+    case PointFormat::kPts:
+    case PointFormat::kPcd:
+    case PointFormat::kPtx:
+    case PointFormat::k3dtk:
       break;
   }
 }

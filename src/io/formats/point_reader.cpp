@@ -5,9 +5,11 @@
 
 #include "io/formats/input_buffer.hpp"
 #include "io/formats/las/las_reader.hpp"
+#include "io/formats/pcd/pcd_reader.hpp"
 #include "io/formats/ply/ply_reader.hpp"
 #include "io/formats/point_formats.hpp"
-#include "io/formats/text/xyz_reader.hpp"
+#include "io/formats/ptx/ptx_reader.hpp"
+#include "io/formats/threedtk/threedtk_reader.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -21,9 +23,8 @@ PointFormat format_of(const File& file, const std::filesystem::path& path) {
   auto format = format_of_content(first);
   if (!format) format = format_of_name(path);
   if (!format) {
-    refuse(file.name(),
-           "unknown format of points; expected LAS, PLY, or text with the ending xyz, pts, asc, "
-           "txt or csv");
+    refuse(file.name(), "unknown format of points; expected the ending " + sure_endings() +
+                            ", or txt or csv for text");
   }
   return *format;
 }
@@ -41,8 +42,16 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) 
       return read_las(std::move(input));
     case PointFormat::kPly:
       return read_ply(std::move(input));
+    case PointFormat::kPcd:
+      return read_pcd(std::move(input));
+    case PointFormat::kPts:
+      return read_scan_text(std::move(input), TextEnding::kPts);
+    case PointFormat::kPtx:
+      return read_scan_text(std::move(input), TextEnding::kPtx);
+    case PointFormat::k3dtk:
+      return read_threedtk(std::move(input), path);
     default:
-      return read_xyz(std::move(input));
+      return read_scan_text(std::move(input), TextEnding::kXyz);
   }
 }
 

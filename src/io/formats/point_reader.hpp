@@ -56,8 +56,8 @@ class PointReader {
 };
 
 /// Opens a file by its content, where the content tells, and by the ending of its name otherwise:
-/// LAS 1.0-1.4, PLY, XYZ and PTS text. What is no regular file is read as by open_las_stream. LAZ
-/// and unknown formats throw InputError with advice.
+/// LAS 1.0-1.4, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is read as
+/// by open_las_stream. LAZ and unknown formats throw InputError with advice.
 std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path);
 
 /// Reads LAS from a stream that cannot seek, for example standard input. A CRS that only a record
@@ -66,9 +66,13 @@ std::unique_ptr<PointReader> open_las_stream(File stream);
 
 /// The point files of a list of inputs in the order that counts: the inputs as given, a folder's
 /// files in byte order of their names (not recursive; hidden files, and files whose ending is not
-/// that of a point format alone, such as .md, .txt and .csv, are left out). Throws ResourceError
-/// for a missing input, InputError for a folder without any point file.
+/// that of a point format alone, such as .md, .txt and .csv, are left out). remarks: receives what
+/// was left out of folders, or null. Throws ResourceError for a missing input, InputError for a
+/// folder without any point file.
 std::vector<std::filesystem::path> list_point_files(
-    const std::vector<std::filesystem::path>& inputs);
+    const std::vector<std::filesystem::path>& inputs, std::vector<Message>* remarks = nullptr);
+
+/// The files, and behind them those that hold their poses (3DTK): all that a conversion reads.
+std::vector<std::filesystem::path> with_pose_files(std::vector<std::filesystem::path> files);
 
 }  // namespace clearway

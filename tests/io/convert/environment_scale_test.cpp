@@ -155,16 +155,3 @@ TEST_CASE("a scale too fine for the extent is refused with one that fits") {
   write_ply(folder / "a.ply", std::vector<Vec3>{{0, 0, 0}, {1e300, 0, 0}});
   CHECK_THAT(refusal({folder / "a.ply"}), Contains("do not fit"));
 }
-
-TEST_CASE("integers and positions go together only with --scale") {
-  const ScratchFolder folder;
-  write_las(folder / "a.las", std::vector<Quantum>{{1, 2, 3}}, millimetres_from(0, 0, 0));
-  write_ply(folder / "a.ply", std::vector<Vec3>{{0.001, 0.002, 0.003}});
-  CHECK_THAT(refusal({folder / "a.las", folder / "a.ply"}), Contains("one scale"));
-  CHECK_THAT(refusal({folder / "a.ply", folder / "a.las"}), Contains("one scale"));
-  const Environment environment =
-      read_environment({folder / "a.ply", folder / "a.las"}, with_scale(0.001));
-  REQUIRE(environment.points.size() == 2);
-  CHECK(environment.points[0].q == environment.points[1].q);
-  CHECK(environment.points[1].source == 1);
-}

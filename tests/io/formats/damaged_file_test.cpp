@@ -4,6 +4,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "support/las_bytes.hpp"
+#include "support/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -27,6 +28,11 @@ std::string ply_sample(const std::string& format) {
          "property double y\nproperty short z\nproperty list char uchar l\nend_header\n";
 }
 
+std::string ptx_sample() {
+  return "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 4\n"
+         "0 0 0 0.5\n";
+}
+
 /// Reads in every way that the file's name allows; anything but an Error fails the test.
 void read_anything(const std::filesystem::path& path) {
   const auto attempt = [](auto read) {
@@ -36,6 +42,7 @@ void read_anything(const std::filesystem::path& path) {
     }
   };
   attempt([&] { read_all(path); });
+  if (path.stem() == "scan000") attempt([&] { read_all(path.parent_path() / "scan000.3d"); });
   attempt([&] { read_all(*open_las_stream(File::open_for_reading(path))); });
   for (const auto format : {TrajectoryFormat::kAuto, TrajectoryFormat::kCsv}) {
     attempt([&] { read_trajectory(path, {format, true}); });
@@ -51,6 +58,13 @@ TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
       {"b.ply", ply_sample("binary_big_endian") + std::string(100, '\1')},
       {"c.ply", ply_sample("ascii") + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n"},
       {"a.pts", "2\n1 2 3 4\n5 6 7 8\n"},
+      {"a.ptx", ptx_sample()},
+      {"a.pcd", PcdHeaderText().build("ascii") + "1 2 3\n4 5 6\n"},
+      {"b.pcd", PcdHeaderText().build("binary") + std::string(24, '\1')},
+      {"c.pcd", PcdHeaderText().build("binary_compressed") + compressed(std::string(24, '\1'))},
+      {"scan000.3d", "# c\n1 2 3 4\n5 6 7 8\n"},
+      {"scan000.pose", "1 2 3\n4 5 6\n"},
+      {"scan000.frames", "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n"},
       {"a.csv", "t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n"},
       {"a.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"}};
   ReaderScratch scratch;

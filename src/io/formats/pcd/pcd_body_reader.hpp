@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "io/formats/input_buffer.hpp"
+#include "io/formats/pcd/pcd_header.hpp"
+#include "io/formats/point_reader.hpp"
+
+namespace clearway {
+
+/// What the readers of the three kinds of PCD file share.
+class PcdBodyReader : public PointReader {
+ public:
+  const CloudInfo& info() const override { return info_; }
+  bool read(PointBatch& batch) override;
+  void rewind() override;
+
+ protected:
+  /// input: behind the line DATA.
+  PcdBodyReader(InputBuffer input, PcdHeader header);
+
+  /// The next points, in order; `header_.points` in all.
+  virtual void read_points(std::span<Vec3> out) = 0;
+  virtual void start_again() = 0;
+  /// Requires the end of the file behind the last point; the input stands there.
+  virtual void check_end() = 0;
+
+  /// What PCL leaves behind binary data, up to a page of zeros, or a line break.
+  void check_only_padding();
+
+  InputBuffer input_;
+  PcdHeader header_;
+  CloudInfo info_;
+  InputBuffer::Mark first_point_;
+  std::uint64_t next_ = 0;  ///< point to read next
+
+ private:
+  void mark_absent(PointBatch& batch);
+  void finish();
+
+  std::uint64_t absent_ = 0;
+  bool finished_ = false;
+};
+
+std::unique_ptr<PointReader> read_ascii_pcd(InputBuffer input, PcdHeader header);
+std::unique_ptr<PointReader> read_binary_pcd(InputBuffer input, PcdHeader header);
+std::unique_ptr<PointReader> read_compressed_pcd(InputBuffer input, PcdHeader header);
+
+}  // namespace clearway
