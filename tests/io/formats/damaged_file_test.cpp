@@ -36,7 +36,10 @@ void read_anything(const std::filesystem::path& path) {
     }
   };
   attempt([&] { read_all(path); });
-  attempt([&] { read_all(*open_las_stream(File::open_for_reading(path))); });
+  attempt([&] {
+    read_all(
+        *open_las_stream(File::open_for_reading(path), std::filesystem::temp_directory_path()));
+  });
   for (const auto format : {TrajectoryFormat::kAuto, TrajectoryFormat::kCsv}) {
     attempt([&] { read_trajectory(path, {format, true}); });
   }
