@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const MemoryFile input({data, size});
   may_refuse([&] { read_twice(*read_las(InputBuffer(input.open(), InputBuffer::Access::kSeek))); });
   may_refuse([&] {
-    const auto reader = open_las_stream(input.open());
+    const auto reader = open_las_stream(input.open(), std::filesystem::temp_directory_path());
     for (PointBatch batch; reader->read(batch);) {
     }
   });

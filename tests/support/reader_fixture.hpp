@@ -85,7 +85,8 @@ inline std::string refusal_of(const std::filesystem::path& path) {
 /// The same, read as a stream.
 inline std::string stream_refusal_of(const std::filesystem::path& path) {
   try {
-    read_all(*open_las_stream(File::open_for_reading(path)));
+    read_all(
+        *open_las_stream(File::open_for_reading(path), std::filesystem::temp_directory_path()));
   } catch (const InputError& error) {
     return error.what();
   }

@@ -40,9 +40,10 @@ double fitting_scale(double length) {
 /// A pipe can be read only once.
 void refuse_pipe(const std::filesystem::path& file) {
   if (std::filesystem::is_regular_file(file)) return;
-  throw InputError(file.string() +
-                   ": is a pipe or device, expected a file; LAS can be piped to standard input: "
-                   "clearway convert -");
+  throw InputError(
+      file.string() +
+      ": is a pipe or device, expected a file; LAS and LAZ can be piped to standard input: "
+      "clearway convert -");
 }
 
 }  // namespace
@@ -59,8 +60,9 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
   }
   if (streams) {
     files_ = read_files_ = {"-"};
-    stream_ = spool(open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input")),
-                    options.temporary_folder);
+    stream_ = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
+                              options.temporary_folder);
+    if (!stream_->can_rewind()) stream_ = spool(std::move(stream_), options.temporary_folder);
   } else {
     files_ = list_point_files(inputs, &folder_remarks_);
     std::for_each(files_.begin(), files_.end(), refuse_pipe);

@@ -42,6 +42,16 @@ std::span<const std::byte> InputBuffer::take(std::size_t count) {
   return {bytes, count};
 }
 
+std::span<const std::byte> InputBuffer::take_some() {
+  if (begin_ == end_ && !fill()) return {};
+  return take(end_ - begin_);
+}
+
+std::span<const std::byte> InputBuffer::peek(std::size_t count) {
+  while (end_ - begin_ < count && fill()) continue;
+  return {buffer_.get() + begin_, std::min(count, end_ - begin_)};
+}
+
 bool InputBuffer::skip(std::uint64_t count) {
   const std::size_t buffered = std::min<std::uint64_t>(count, end_ - begin_);
   begin_ += buffered;

@@ -42,6 +42,16 @@ class InputBuffer {
   /// Consumes the next `count` bytes (<= kCapacity); valid until the next call. Empty, and nothing
   /// consumed, when the file ends before them.
   std::span<const std::byte> take(std::size_t count);
+  /// Consumes what is loaded, or loads more first; empty at the file's end.
+  std::span<const std::byte> take_some();
+  /// The next `count` bytes (<= kCapacity) without consuming them; fewer at the file's end. Valid
+  /// until the next call.
+  std::span<const std::byte> peek(std::size_t count);
+  /// Bytes anywhere in an input that can seek, all of them before its end. Consumes nothing, and
+  /// may be called from several threads at once.
+  void read_at(std::uint64_t position, std::span<std::byte> out) const {
+    file_.read_at(position, out);
+  }
   /// False when the file ends before.
   bool skip(std::uint64_t count);
   /// The position of the file's end. To be called after take() or skip() has met it.

@@ -33,7 +33,9 @@ PointFormat format_of(const File& file, const std::filesystem::path& path) {
 
 std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) {
   File file = File::open_for_reading(path);
-  if (!file.is_regular()) return open_las_stream(std::move(file));
+  if (!file.is_regular()) {
+    return open_las_stream(std::move(file), std::filesystem::temp_directory_path());
+  }
   const PointFormat format = format_of(file, path);
   refuse_unless_read(format, file.name());
   InputBuffer input(std::move(file), InputBuffer::Access::kSeek);

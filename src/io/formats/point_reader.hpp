@@ -51,18 +51,23 @@ class PointReader {
   virtual const CloudInfo& info() const = 0;
   /// Fills `batch` with up to kBatchPoints points; false, and an empty batch, at the end.
   virtual bool read(PointBatch& batch) = 0;
+  virtual bool can_rewind() const { return true; }
   /// Back to the first point. Throws ResourceError where the input cannot seek.
   virtual void rewind() = 0;
 };
 
 /// Opens a file by its content, where the content tells, and by the ending of its name otherwise:
-/// LAS 1.0-1.4, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is read as
-/// by open_las_stream. LAZ and unknown formats throw InputError with advice.
+/// LAS 1.0-1.4, LAZ, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is read
+/// as by open_las_stream, with the system's folder for temporary files. Unknown formats throw
+/// InputError with advice.
 std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path);
 
-/// Reads LAS from a stream that cannot seek, for example standard input. A CRS that only a record
-/// behind the points holds (LAS 1.4) is in info() once read() has returned false.
-std::unique_ptr<PointReader> open_las_stream(File stream);
+/// Reads LAS or LAZ from a stream that cannot seek, for example standard input. Of LAS, a CRS that
+/// only a record behind the points holds (1.4) is in info() once read() has returned false; points
+/// beyond the header's count are read too, and a warning is among the remarks. LAZ goes into a file
+/// without a name in `temporary_folder` first, and can be read again.
+std::unique_ptr<PointReader> open_las_stream(File stream,
+                                             const std::filesystem::path& temporary_folder);
 
 /// The point files of a list of inputs in the order that counts: the inputs as given, a folder's
 /// files in byte order of their names (not recursive; hidden files, and files whose ending is not

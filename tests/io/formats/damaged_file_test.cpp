@@ -43,7 +43,10 @@ void read_anything(const std::filesystem::path& path) {
   };
   attempt([&] { read_all(path); });
   if (path.stem() == "scan000") attempt([&] { read_all(path.parent_path() / "scan000.3d"); });
-  attempt([&] { read_all(*open_las_stream(File::open_for_reading(path))); });
+  attempt([&] {
+    read_all(
+        *open_las_stream(File::open_for_reading(path), std::filesystem::temp_directory_path()));
+  });
   for (const auto format : {TrajectoryFormat::kAuto, TrajectoryFormat::kCsv}) {
     attempt([&] { read_trajectory(path, {format, true}); });
   }

@@ -163,8 +163,9 @@ TEST_CASE("the street is read whole, from a file and as a stream") {
   const auto path = data_folder() / "street" / "street.las";
   std::uint64_t sums[2] = {0, 0};
   for (int pass = 0; pass < 2; ++pass) {
-    const auto reader =
-        pass == 0 ? open_point_file(path) : open_las_stream(File::open_for_reading(path));
+    const auto reader = pass == 0 ? open_point_file(path)
+                                  : open_las_stream(File::open_for_reading(path),
+                                                    std::filesystem::temp_directory_path());
     PointBatch batch;
     std::size_t count = 0;
     while (reader->read(batch)) {

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
 
 #include "io/formats/byte_load.hpp"
-#include "io/formats/las/geotiff_keys.hpp"
-#include "io/formats/las/wkt.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -17,14 +16,7 @@ constexpr std::size_t kHeaderBytes13 = 235;
 constexpr std::size_t kHeaderBytes14 = 375;
 constexpr std::uint16_t kSmallestRecord[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 constexpr std::uint16_t kInternalWaveforms = 2;  // of the global encoding
-
-[[noreturn]] void refuse_laz(const InputBuffer& input, std::uint64_t byte) {
-  refuse_byte(
-      input.name(), byte,
-      "the points are compressed (LAZ), which is not read; expected uncompressed LAS. Convert "
-      "it (for example `pdal translate scan.laz scan.las`), or have PDAL write uncompressed "
-      "LAS into a pipe and give `-` as the input");
-}
+constexpr unsigned kFormatBits = 0x3F;           // of byte 104; one of the others is set in LAZ
 
 [[noreturn]] void refuse_cut(const InputBuffer& input, const std::string& expected) {
   refuse(input.name(),
@@ -50,8 +42,12 @@ void check_kind(const InputBuffer& input, const std::byte* header) {
                 "version " + std::to_string(major) + "." + std::to_string(minor) +
                     "; expected LAS 1.0 to 1.4");
   }
-  const unsigned format = load<std::uint8_t>(header + 104);
-  if ((format & 0xC0u) != 0) refuse_laz(input, 104);
+  const unsigned format = load<std::uint8_t>(header + 104) & kFormatBits;
+  if ((load<std::uint8_t>(header + 104) & ~kFormatBits) == 0xC0u) {
+    refuse_byte(input.name(), 104,
+                "the points are compressed as before LASzip 1.0; expected LAZ as LASzip writes it "
+                "since 2010. Compress them again");
+  }
   if (format >= std::size(kSmallestRecord)) {
     refuse_byte(input.name(), 104, "point format " + std::to_string(format) + "; expected 0 to 10");
   }
@@ -106,6 +102,7 @@ void check_layout(const InputBuffer& input, const LasPublicHeader& header) {
                     "; expected them behind the header of " + std::to_string(header.header_bytes) +
                     " bytes");
   }
+  if (header.compressed) return;  // the chunk table says where the points are
   const std::uint64_t room = std::numeric_limits<std::int64_t>::max() - header.points_offset;
   if (header.points > room / header.record_bytes) {
     refuse(input.name(), "declares " + std::to_string(header.points) + " points of " +
@@ -127,38 +124,9 @@ void check_layout(const InputBuffer& input, const LasPublicHeader& header) {
   }
 }
 
-/// A user id or a text of fixed length, padded with zeros.
-std::string_view padded_text(std::span<const std::byte> bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return text.substr(0, text.find('\0'));
-}
-
-/// Keeps what a record says of the CRS. payload: all of the record behind its header.
-void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
-                 LasCrs& crs) {
-  constexpr unsigned kWkt = 2112;
-  constexpr unsigned kGeoKeys = 34735;
-  if (user == "LASF_Projection" && id == kGeoKeys) crs.geotiff_unit = horizontal_unit(payload);
-  if (id != kWkt) return;
-  std::string* wkt = user == "LASF_Projection" ? &crs.wkt
-                     : user == "liblas"        ? &crs.foreign_wkt
-                                               : nullptr;
-  if (wkt && wkt->empty()) *wkt = padded_text(payload);
-}
-
-bool is_about_crs(std::string_view user, unsigned id) {
-  return (user == "LASF_Projection" || user == "liblas") && (id == 2112 || id == 34735);
-}
-
 }  // namespace
 
 std::uint64_t LasPublicHeader::points_end() const { return points_offset + points * record_bytes; }
-
-void LasCrs::describe(CloudInfo& info) const {
-  info.crs_wkt = wkt.empty() ? foreign_wkt : wkt;
-  info.unit = horizontal_unit(std::string_view(info.crs_wkt));
-  if (info.unit == LengthUnit::kUnknown) info.unit = geotiff_unit;
-}
 
 LasPublicHeader read_las_header(InputBuffer& input) {
   LasPublicHeader header{};
@@ -171,6 +139,8 @@ LasPublicHeader read_las_header(InputBuffer& input) {
   header.vlr_count = load<std::uint32_t>(bytes + 100);
   header.record_bytes = load<std::uint16_t>(bytes + 105);
   header.points = load<std::uint32_t>(bytes + 107);
+  header.point_format = load<std::uint8_t>(bytes + 104) & kFormatBits;
+  header.compressed = (load<std::uint8_t>(bytes + 104) & ~kFormatBits) != 0;
   header.quantisation = read_quantisation(input, bytes);
 
   const std::size_t least = minor == 4 ? kHeaderBytes14 : kHeaderBytes10;
@@ -181,8 +151,9 @@ LasPublicHeader read_las_header(InputBuffer& input) {
   }
   if (minor == 4) {
     read_version_14(input, take_header(input, kHeaderBytes14 - kHeaderBytes10), header);
-  } else if (minor == 3 && header.header_bytes >= kHeaderBytes13 && internal_waveforms) {
-    // LAS 1.3 has one extended record at most: the waveforms.
+  } else if (minor == 3 && header.header_bytes >= kHeaderBytes13 && internal_waveforms &&
+             !header.compressed) {
+    // LAS 1.3 has one extended record at most: the waveforms. LAZ may name where LAS had them.
     header.tail_offset = load<std::uint64_t>(take_header(input, 8).data());
     header.tail_count = header.tail_offset == 0 ? 0 : 1;
   }
@@ -191,73 +162,6 @@ LasPublicHeader read_las_header(InputBuffer& input) {
     refuse_cut(input, "a header of " + std::to_string(header.header_bytes) + " bytes");
   }
   return header;
-}
-
-void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs) {
-  constexpr std::size_t kVlrHeaderBytes = 54;
-  for (std::uint32_t i = 0; i < header.vlr_count; ++i) {
-    const std::uint64_t start = input.position();
-    const std::string which = "variable length record " + std::to_string(i + 1) + " of " +
-                              std::to_string(header.vlr_count);
-    const std::uint64_t room = header.points_offset - start;
-    if (room < kVlrHeaderBytes) {
-      refuse_byte(input.name(), start,
-                  which + " does not fit before the points at byte " +
-                      std::to_string(header.points_offset) + "; expected 54 bytes for its header");
-    }
-    const auto head = input.take(kVlrHeaderBytes);
-    if (head.empty()) refuse_cut(input, which);
-    const std::string user(padded_text(head.subspan(2, 16)));
-    const unsigned id = load<std::uint16_t>(head.data() + 18);
-    const std::size_t length = load<std::uint16_t>(head.data() + 20);
-    if (length > room - kVlrHeaderBytes) {
-      refuse_byte(input.name(), start,
-                  which + " has " + std::to_string(length) +
-                      " bytes; expected it to end before the " + "points at byte " +
-                      std::to_string(header.points_offset));
-    }
-    if (user == "laszip encoded") refuse_laz(input, start);
-    const auto payload = input.take(length);
-    if (payload.size() != length) refuse_cut(input, which);
-    note_record(user, id, payload, crs);
-  }
-  if (!input.skip(header.points_offset - input.position())) {
-    refuse_cut(input, "points from byte " + std::to_string(header.points_offset));
-  }
-}
-
-void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs) {
-  constexpr std::size_t kEvlrHeaderBytes = 60;
-  if (header.tail_count == 0) return;
-  if (!input.skip(header.tail_offset - input.position())) {
-    refuse_cut(input,
-               "extended variable length records from byte " + std::to_string(header.tail_offset));
-  }
-  for (std::uint32_t i = 0; i < header.tail_count; ++i) {
-    const std::uint64_t start = input.position();
-    const std::string which = "extended variable length record " + std::to_string(i + 1) + " of " +
-                              std::to_string(header.tail_count) + " from byte " +
-                              std::to_string(start);
-    const auto head = input.take(kEvlrHeaderBytes);
-    if (head.empty()) refuse_cut(input, which);
-    const std::string user(padded_text(head.subspan(2, 16)));
-    const unsigned id = load<std::uint16_t>(head.data() + 18);
-    const auto length = load<std::uint64_t>(head.data() + 20);
-    std::span<const std::byte> payload;
-    if (is_about_crs(user, id)) {
-      if (length > InputBuffer::kCapacity) {
-        refuse_byte(input.name(), start + 20,
-                    "a coordinate reference system of " + std::to_string(length) +
-                        " bytes; expected at most " + std::to_string(InputBuffer::kCapacity));
-      }
-      payload = input.take(length);
-      if (payload.size() != length)
-        refuse_cut(input, which + " with its " + std::to_string(length) + " bytes");
-      note_record(user, id, payload, crs);
-    } else if (!input.skip(length)) {
-      refuse_cut(input, which + " with its " + std::to_string(length) + " bytes");
-    }
-  }
 }
 
 }  // namespace clearway

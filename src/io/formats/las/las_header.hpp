@@ -17,32 +17,17 @@ struct LasPublicHeader {
   std::uint32_t vlr_count;
   std::uint16_t record_bytes;  ///< of a point record; coordinates are its first 12 bytes
   std::uint64_t points;
+  unsigned point_format;  ///< 0 to 10
+  bool compressed;        ///< LAZ
   Quantisation quantisation;
   std::uint64_t tail_offset;  ///< byte of the first extended variable length record
   std::uint32_t tail_count;   ///< number of those records; 0: none
 
-  std::uint64_t points_end() const;  ///< byte behind the last point record
-};
-
-/// What the variable length records say of the coordinate reference system.
-struct LasCrs {
-  std::string wkt;          ///< of user LASF_Projection
-  std::string foreign_wkt;  ///< the same record as liblas repeats it
-  LengthUnit geotiff_unit = LengthUnit::kUnknown;
-
-  /// Sets info's CRS and unit; well-known text counts more than GeoTIFF keys.
-  void describe(CloudInfo& info) const;
+  std::uint64_t points_end() const;  ///< byte behind the last point record, if not compressed
 };
 
 /// Reads the public header block and leaves the input behind it. Throws InputError for anything
-/// malformed, for LAZ, and where the file's size is known and too small for what is declared.
+/// malformed, and where the file's size is known and too small for what is declared.
 LasPublicHeader read_las_header(InputBuffer& input);
-
-/// Reads the variable length records and leaves the input at the first point record.
-void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs);
-
-/// Reads the extended variable length records from the input's position, which must not be behind
-/// the first of them. Throws InputError where they do not end within the file.
-void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs);
 
 }  // namespace clearway

@@ -5,21 +5,29 @@
 #include <utility>
 
 #include "io/formats/las/las_header.hpp"
+#include "io/formats/las/las_records.hpp"
+#include "io/formats/laz/laz_reader.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
 
+constexpr const char* kWhyMore =
+    "Its writer crashed, or wrote into a pipe and could not go back to the header";
+
+/// Uncompressed points.
 class LasReader final : public PointReader {
  public:
-  explicit LasReader(InputBuffer input)
-      : input_(std::move(input)), header_(read_las_header(input_)) {
-    read_las_vlrs(input_, header_, crs_);
+  LasReader(InputBuffer input, const LasPublicHeader& header, LasCrs crs)
+      : input_(std::move(input)), header_(header), crs_(std::move(crs)), points_(header.points) {
     first_point_ = input_.mark();
     if (input_.can_seek()) {
       read_las_tail(input_, header_, crs_);
       input_.return_to(first_point_);
       tail_read_ = true;
+      refuse_surplus();
+    } else if (header_.tail_count > 0) {
+      points_ += surplus(header_.tail_offset);
     }
     info_.quantisation = header_.quantisation;
     info_.declared_points = header_.points;
@@ -27,20 +35,21 @@ class LasReader final : public PointReader {
   }
 
   const CloudInfo& info() const override { return info_; }
+  bool can_rewind() const override { return input_.can_seek(); }
 
   bool read(PointBatch& batch) override {
     batch.positions.clear();
-    const std::size_t count = std::min<std::uint64_t>(kBatchPoints, header_.points - next_);
-    batch.quanta.resize(count);
+    batch.quanta.clear();
     const std::size_t most = InputBuffer::kCapacity / header_.record_bytes;
-    for (std::size_t done = 0; done < count;) {
-      const std::size_t records = std::min(most, count - done);
-      decode(take_records(records), batch.quanta.data() + done);
-      done += records;
-      next_ += records;
+    while (batch.quanta.size() < kBatchPoints) {
+      const std::uint64_t wanted =
+          std::min<std::uint64_t>({most, kBatchPoints - batch.quanta.size(), points_ - next_});
+      const auto bytes = wanted > 0 ? take_records(wanted) : take_more_records();
+      if (bytes.empty()) break;
+      append(bytes, batch.quanta);
     }
-    if (count == 0) finish();
-    return count > 0;
+    if (batch.quanta.empty()) finish();
+    return !batch.quanta.empty();
   }
 
   void rewind() override {
@@ -49,21 +58,51 @@ class LasReader final : public PointReader {
   }
 
  private:
+  /// Whole records between the last declared one and `end`.
+  std::uint64_t surplus(std::uint64_t end) const {
+    return (end - std::min(end, header_.points_end())) / header_.record_bytes;
+  }
+
+  void refuse_surplus() const {
+    const std::uint64_t end = header_.tail_count > 0 ? header_.tail_offset : *input_.size();
+    const std::uint64_t more = surplus(end);
+    if (more == 0) return;
+    refuse(input_.name(), "declares " + std::to_string(header_.points) + " points, but holds " +
+                              std::to_string(header_.points + more) + " records of " +
+                              std::to_string(header_.record_bytes) + " bytes before byte " +
+                              std::to_string(end) + "; expected as many as declared. " + kWhyMore +
+                              ". To read all of them, give it as standard input: clearway convert "
+                              "- < FILE");
+  }
+
   std::span<const std::byte> take_records(std::size_t records) {
     const auto bytes = input_.take(records * header_.record_bytes);
     if (!bytes.empty()) return bytes;
     const std::uint64_t end = input_.end_position();
     refuse(input_.name(), "ends at byte " + std::to_string(end) + ", within point " +
                               std::to_string((end - header_.points_offset) / header_.record_bytes) +
-                              " of " + std::to_string(header_.points) + "; expected " +
+                              " of " + std::to_string(points_) + "; expected " +
                               std::to_string(header_.points_end()) + " bytes");
   }
 
-  void decode(std::span<const std::byte> bytes, std::array<std::int32_t, 3>* out) const {
+  /// Of a stream, records behind the last that its header declares.
+  std::span<const std::byte> take_more_records() {
+    if (input_.can_seek() || header_.tail_count > 0) return {};
+    const std::size_t record = header_.record_bytes;
+    const auto bytes = input_.take(record);
+    if (!bytes.empty()) ++points_;
+    return bytes;
+  }
+
+  void append(std::span<const std::byte> bytes, std::vector<std::array<std::int32_t, 3>>& out) {
     const std::size_t stride = header_.record_bytes;
+    const std::size_t records = bytes.size() / stride;
+    out.resize(out.size() + records);
+    auto* point = &out[out.size() - records];
     const std::byte* record = bytes.data();
     const std::byte* const end = record + bytes.size();
-    for (; record != end; record += stride) std::memcpy(out++, record, sizeof *out);
+    for (; record != end; record += stride) std::memcpy(point++, record, sizeof *point);
+    next_ += records;
   }
 
   void finish() {
@@ -71,6 +110,15 @@ class LasReader final : public PointReader {
     read_las_tail(input_, header_, crs_);
     crs_.describe(info_);
     tail_read_ = true;
+    if (points_ == header_.points) return;
+    info_.remarks.push_back({Message::Severity::kWarning,
+                             "las-count",
+                             input_.name() + ": its header declares " +
+                                 std::to_string(header_.points) + " points, but " +
+                                 std::to_string(points_) + " came before its end. " + kWhyMore +
+                                 ". All of them were read",
+                             {{"declared", static_cast<double>(header_.points)},
+                              {"read", static_cast<double>(points_)}}});
   }
 
   InputBuffer input_;
@@ -78,18 +126,44 @@ class LasReader final : public PointReader {
   LasCrs crs_;
   CloudInfo info_;
   InputBuffer::Mark first_point_;
+  std::uint64_t points_;    ///< of a stream, it may become more than the header says
   std::uint64_t next_ = 0;  ///< point to read next
   bool tail_read_ = false;
 };
 
+std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicHeader& header,
+                                             LasRecords& records) {
+  const std::string name = input.name();
+  if (records.laz.empty()) {
+    refuse_byte(name, 104,
+                "the points are compressed (LAZ); expected a record of user `laszip "
+                "encoded` that says how");
+  }
+  const laz::Scheme scheme =
+      laz::read_scheme(name, records.laz, header.point_format, header.record_bytes);
+  read_las_tail(input, header, records.crs);
+  CloudInfo info;
+  info.quantisation = header.quantisation;
+  info.declared_points = header.points;
+  records.crs.describe(info);
+  const std::uint64_t end = header.tail_count > 0 ? header.tail_offset : *input.size();
+  return read_laz_points(std::move(input), scheme, {header.points_offset, end, header.points},
+                         std::move(info));
+}
+
 }  // namespace
 
 std::unique_ptr<PointReader> read_las(InputBuffer input) {
-  return std::make_unique<LasReader>(std::move(input));
-}
-
-std::unique_ptr<PointReader> open_las_stream(File stream) {
-  return read_las(InputBuffer(std::move(stream), InputBuffer::Access::kStream));
+  const LasPublicHeader header = read_las_header(input);
+  LasRecords records;
+  read_las_vlrs(input, header, records);
+  if (header.compressed) return read_compressed(std::move(input), header, records);
+  if (!records.laz.empty()) {
+    refuse_byte(input.name(), 104,
+                "the points are not compressed, but a record of user `laszip encoded` says how; "
+                "expected bit 7 to be set in a LAZ file, or no such record");
+  }
+  return std::make_unique<LasReader>(std::move(input), header, std::move(records.crs));
 }
 
 }  // namespace clearway

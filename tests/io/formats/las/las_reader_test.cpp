@@ -69,7 +69,8 @@ TEST_CASE("coordinates of every version and point format are read as stored") {
   CHECK(read_all(*from_file).quanta == las.points);
   from_file->rewind();
   CHECK(read_all(*from_file).quanta == las.points);
-  const auto from_stream = open_las_stream(File::open_for_reading(path));
+  const auto from_stream =
+      open_las_stream(File::open_for_reading(path), std::filesystem::temp_directory_path());
   CHECK(read_all(*from_stream).quanta == las.points);
   CHECK_THROWS_AS(from_stream->rewind(), ResourceError);
 }
@@ -93,7 +94,8 @@ TEST_CASE("LAS is read from a pipe") {
   REQUIRE(::pipe(ends) == 0);
   REQUIRE(::write(ends[1], bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
   ::close(ends[1]);
-  const auto reader = open_las_stream(File::adopt(ends[0], "standard input"));
+  const auto reader = open_las_stream(File::adopt(ends[0], "standard input"),
+                                      std::filesystem::temp_directory_path());
   CHECK(reader->info().crs_wkt == kMetreWkt);
   CHECK(reader->info().unit == LengthUnit::kMetre);
   CHECK(read_all(*reader).quanta == las.points);
@@ -121,7 +123,8 @@ TEST_CASE("a CRS in an extended record is known at once from a file, at the end 
   las.evlrs = {{"someone", 1, std::string(1000, 'x')}, {"LASF_Projection", 2112, kMetreWkt + '\0'}};
   const auto path = scratch.write("a.las", las.build());
   CHECK(open_point_file(path)->info().unit == LengthUnit::kMetre);
-  const auto stream = open_las_stream(File::open_for_reading(path));
+  const auto stream =
+      open_las_stream(File::open_for_reading(path), std::filesystem::temp_directory_path());
   CHECK(stream->info().unit == LengthUnit::kUnknown);
   CHECK(read_all(*stream).info.crs_wkt == kMetreWkt);
   CHECK(stream->info().unit == LengthUnit::kMetre);

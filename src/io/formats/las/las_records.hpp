@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "io/formats/input_buffer.hpp"
+#include "io/formats/las/las_header.hpp"
+#include "io/formats/point_reader.hpp"
+
+namespace clearway {
+
+/// What the variable length records say of the coordinate reference system.
+struct LasCrs {
+  std::string wkt;          ///< of user LASF_Projection
+  std::string foreign_wkt;  ///< the same record as liblas repeats it
+  LengthUnit geotiff_unit = LengthUnit::kUnknown;
+
+  /// Sets info's CRS and unit; well-known text counts more than GeoTIFF keys.
+  void describe(CloudInfo& info) const;
+};
+
+/// What is kept of the records before the points.
+struct LasRecords {
+  LasCrs crs;
+  std::vector<std::byte> laz;  ///< how the points are compressed; empty where nothing says so
+};
+
+/// Reads the variable length records and leaves the input at the first point record.
+void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords& records);
+
+/// Reads the extended variable length records from the input's position, which must not be behind
+/// the first of them. Throws InputError where they do not end within the file.
+void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& crs);
+
+}  // namespace clearway

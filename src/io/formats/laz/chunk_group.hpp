@@ -1,0 +1,39 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/formats/laz/chunk_decoder.hpp"
+
+namespace clearway::laz {
+
+/// Decodes consecutive chunks at once, on the threads of the caller's oneTBB arena.
+class ChunkGroups {
+ public:
+  explicit ChunkGroups(const Scheme& scheme);
+
+  /// Whether chunks of so many points are decoded in groups, that is kept in memory as a whole.
+  bool takes(const Chunk& chunk) const;
+  /// Decodes chunks from the first on: as many as memory and threads suggest, at least one, all of
+  /// which takes() accepts. Returns their number; points() are theirs then. `first`: the first
+  /// one's index, for messages. Throws InputError for the first chunk that is damaged.
+  std::size_t decode(const InputBuffer& input, std::span<const Chunk> chunks, std::size_t first,
+                     std::size_t count);
+  std::span<const Quanta> points() const { return points_; }
+
+ private:
+  bool one_at_a_time_;
+  std::vector<Quanta> points_;
+  tbb::enumerable_thread_specific<std::unique_ptr<ChunkDecoder>> decoders_;
+};
+
+/// Throws InputError "name: chunk 12 of 80: what; expected...". index: from 0; count 0: unknown.
+[[noreturn]] void refuse_chunk(const std::string& name, std::uint64_t index, std::uint64_t count,
+                               const DamagedChunk& damage);
+
+}  // namespace clearway::laz

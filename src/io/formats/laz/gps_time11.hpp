@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "io/formats/laz/integer_model.hpp"
+
+namespace clearway::laz {
+
+/// Bytes that a GPS time takes at most, in any version.
+constexpr std::size_t kMostBytesGpsTime = 64;
+
+/// The item GPSTIME11, version 2: four sequences of times, each with the difference that its next
+/// time is expected to be a multiple of. Only what later points depend on is kept.
+class GpsTimeVersion2 {
+ public:
+  void begin();
+  ArithmeticDecoder skip(ArithmeticDecoder decoder);
+
+ private:
+  /// Symbols of `multiple`: 0 to 500, then -1 to -10, then these; others name another sequence.
+  static constexpr std::uint32_t kGreatestMultiple = 500;
+  static constexpr std::uint32_t kLeastMultiple = 510;  ///< the symbol of -10
+  static constexpr std::uint32_t kUnchanged = 511;
+  static constexpr std::uint32_t kJump = 512;
+
+  struct Sequence {
+    std::int32_t difference = 0;
+    unsigned extremes = 0;  ///< differences that were no multiple, since the last that was
+  };
+  struct Models {
+    SymbolModel<516> multiple;
+    SymbolModel<6> after_none;
+    IntegerModel<32, 9> difference;
+    std::array<Sequence, 4> sequences{};
+    unsigned current = 0, newest = 0;
+  };
+
+  bool skip_after_none(ArithmeticDecoder& decoder);
+  bool skip_after_difference(ArithmeticDecoder& decoder);
+  void skip_multiple(ArithmeticDecoder& decoder, unsigned symbol);
+  void skip_jump(ArithmeticDecoder& decoder);
+
+  Models models_;
+};
+
+/// Version 1: one sequence.
+class GpsTimeVersion1 {
+ public:
+  void begin();
+  ArithmeticDecoder skip(ArithmeticDecoder decoder);
+
+ private:
+  static constexpr unsigned kSymbols = 512;
+
+  struct Models {
+    SymbolModel<kSymbols> multiple;
+    SymbolModel<3> after_none;
+    IntegerModel<32, 6> difference;
+    std::int32_t last = 0;
+    unsigned extremes = 0;
+  };
+
+  void skip_multiple(ArithmeticDecoder& decoder, unsigned symbol);
+
+  Models models_;
+};
+
+}  // namespace clearway::laz

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "io/formats/laz/arithmetic_decoder.hpp"
+
+namespace clearway::laz {
+
+constexpr unsigned kBitsWithModel = 8;  ///< of a corrector; lower ones have none
+/// Bytes that one corrector takes at most: its width, its upper bits, its lower bits.
+constexpr std::size_t kMostBytesInteger =
+    2 * ArithmeticDecoder::kMostBytesSymbol + ArithmeticDecoder::kMostBytesBits;
+
+/// How an integer of kBits differs from its prediction: the corrector's width k by a model, and its
+/// place within [-(2^k - 1), 2^k] by another for each k.
+template <unsigned kBits>
+class CorrectorModel {
+ public:
+  using WidthModel = SymbolModel<kBits + 1>;
+
+  CorrectorModel() {
+    for (unsigned k = 1; k <= kPlaces; ++k) {
+      places_[k - 1] = SymbolModel<256>(1u << std::min(k, kBitsWithModel));
+    }
+  }
+
+  /// The corrector; its width is left in `width`.
+  [[gnu::always_inline]] inline std::uint32_t decode(ArithmeticDecoder& decoder, WidthModel& widths,
+                                                     unsigned& width) {
+    const unsigned k = decoder.symbol(widths);
+    width = k;
+    if (k == 0) return decoder.bit(unit_);
+    if (k == 32) return 0x80000000u;
+    std::uint32_t place = decoder.symbol(places_[k - 1]);
+    if (k > kBitsWithModel) {
+      const unsigned lower = k - kBitsWithModel;
+      place = place << lower | decoder.bits(lower);
+    }
+    const bool positive = (place >> (k - 1)) != 0;
+    return place + (positive ? 1 : 1 - (1u << k));
+  }
+
+ private:
+  static constexpr unsigned kPlaces = kBits < 32 ? kBits : 31;
+
+  BitModel unit_;
+  std::array<SymbolModel<256>, kPlaces> places_;
+};
+
+/// Integers of kBits by their difference from a prediction, in one of kContexts contexts.
+template <unsigned kBits, unsigned kContexts>
+class IntegerModel {
+ public:
+  /// The prediction plus its corrector, modulo 2^kBits.
+  [[gnu::always_inline]] inline std::uint32_t decode(ArithmeticDecoder& decoder,
+                                                     std::uint32_t prediction, unsigned context) {
+    const std::uint32_t value =
+        prediction + corrector_.decode(decoder, widths_[context], last_width_);
+    return kBits == 32 ? value : value & ((1u << kBits) - 1);
+  }
+  /// Of the corrector decoded last.
+  unsigned last_width() const { return last_width_; }
+
+ private:
+  unsigned last_width_ = 0;
+  std::array<SymbolModel<kBits + 1>, kContexts> widths_;
+  CorrectorModel<kBits> corrector_;
+};
+
+}  // namespace clearway::laz

@@ -1,0 +1,180 @@
+#include "io/formats/laz/laz_reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "io/formats/laz/chunk_group.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+using laz::Chunk;
+using laz::Quanta;
+using laz::Scheme;
+
+/// Of a file with a chunk table.
+class TabledReader final : public PointReader {
+ public:
+  TabledReader(InputBuffer input, const Scheme& scheme, std::vector<Chunk> chunks, CloudInfo info)
+      : input_(std::move(input)),
+        chunks_(std::move(chunks)),
+        info_(std::move(info)),
+        groups_(scheme),
+        stream_(laz::make_chunk_decoder(scheme)) {}
+
+  const CloudInfo& info() const override { return info_; }
+
+  bool read(PointBatch& batch) override {
+    batch.positions.clear();
+    batch.quanta.clear();
+    while (batch.quanta.size() < kBatchPoints) {
+      if (!ready_.empty()) {
+        const auto part = ready_.first(std::min(ready_.size(), kBatchPoints - batch.quanta.size()));
+        batch.quanta.insert(batch.quanta.end(), part.begin(), part.end());
+        ready_ = ready_.subspan(part.size());
+      } else if (next_ == chunks_.size()) {
+        break;
+      } else if (groups_.takes(chunks_[next_])) {
+        next_ += groups_.decode(input_, std::span(chunks_).subspan(next_), next_, chunks_.size());
+        ready_ = groups_.points();
+      } else {
+        read_large(batch);
+      }
+    }
+    return !batch.quanta.empty();
+  }
+
+  void rewind() override {
+    next_ = 0;
+    left_ = 0;
+    ready_ = {};
+  }
+
+ private:
+  /// Appends points of a chunk too large for a group, as many as there is room for.
+  void read_large(PointBatch& batch) {
+    try {
+      const Chunk& chunk = chunks_[next_];
+      if (left_ == 0) {
+        stream_->begin(input_, chunk);
+        left_ = chunk.points;
+      }
+      const std::size_t before = batch.quanta.size();
+      const auto points = std::min<std::uint64_t>(kBatchPoints - before, left_);
+      batch.quanta.resize(before + points);
+      stream_->decode(std::span(batch.quanta).subspan(before));
+      left_ -= points;
+      if (left_ > 0) return;
+      stream_->finish();
+      ++next_;
+    } catch (const laz::DamagedChunk& damage) {
+      laz::refuse_chunk(input_.name(), next_, chunks_.size(), damage);
+    }
+  }
+
+  InputBuffer input_;
+  std::vector<Chunk> chunks_;
+  CloudInfo info_;
+  laz::ChunkGroups groups_;
+  std::span<const Quanta> ready_;  ///< of the group decoded last
+  std::size_t next_ = 0;           ///< chunk to decode next
+  std::unique_ptr<laz::ChunkDecoder> stream_;
+  std::uint64_t left_ = 0;  ///< points of the chunk that stream_ is in
+};
+
+/// Of a file without a chunk table: where a chunk begins is known once the one before was decoded.
+class UntabledReader final : public PointReader {
+ public:
+  UntabledReader(InputBuffer input, const Scheme& scheme, const laz::PointBytes& bytes,
+                 CloudInfo info)
+      : input_(std::move(input)),
+        scheme_(scheme),
+        bytes_(bytes),
+        info_(std::move(info)),
+        decoder_(laz::make_chunk_decoder(scheme)) {
+    rewind();
+  }
+
+  const CloudInfo& info() const override { return info_; }
+
+  bool read(PointBatch& batch) override {
+    batch.positions.clear();
+    const auto points = std::min<std::uint64_t>(kBatchPoints, bytes_.points - read_);
+    batch.quanta.resize(points);
+    try {
+      for (std::span<Quanta> room(batch.quanta); !room.empty();) {
+        room = room.subspan(read_chunk(room));
+      }
+    } catch (const laz::DamagedChunk& damage) {
+      laz::refuse_chunk(input_.name(), chunk_, 0, damage);
+    }
+    if (read_ == bytes_.points) check_end();
+    return points > 0;
+  }
+
+  void rewind() override {
+    position_ = bytes_.begin + (scheme_.chunks == Scheme::Chunks::kNone ? 0 : kPointerBytes);
+    chunk_ = read_ = left_ = 0;
+  }
+
+ private:
+  static constexpr std::uint64_t kPointerBytes = 8;
+
+  /// Reads some points of the current chunk, or of the next one. Returns their number.
+  std::size_t read_chunk(std::span<Quanta> room) {
+    if (left_ == 0) {
+      left_ = bytes_.points - read_;
+      if (scheme_.chunk_points && scheme_.chunks != Scheme::Chunks::kNone) {
+        left_ = std::min<std::uint64_t>(left_, *scheme_.chunk_points);
+      }
+      decoder_->begin(input_, {position_, bytes_.end, left_, false});
+    }
+    const auto points = std::min<std::uint64_t>(room.size(), left_);
+    decoder_->decode(room.first(points));
+    read_ += points;
+    left_ -= points;
+    if (left_ == 0) {
+      position_ = decoder_->finish();
+      ++chunk_;
+    }
+    return points;
+  }
+
+  /// Refuses what could be another chunk. Less may be left: a table, or padding.
+  void check_end() const {
+    const std::uint64_t left = bytes_.end - std::min(bytes_.end, position_);
+    (void)left;
+  }
+
+  InputBuffer input_;
+  Scheme scheme_;
+  laz::PointBytes bytes_;
+  CloudInfo info_;
+  std::unique_ptr<laz::ChunkDecoder> decoder_;
+  std::uint64_t position_ = 0;  ///< of the chunk to read next
+  std::uint64_t chunk_ = 0;
+  std::uint64_t read_ = 0;  ///< points
+  std::uint64_t left_ = 0;  ///< points of the current chunk
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> read_laz_points(InputBuffer input, const Scheme& scheme,
+                                             const laz::PointBytes& bytes, CloudInfo info) {
+  if (scheme.chunks != Scheme::Chunks::kNone) {
+    auto chunks = laz::read_chunk_table(input, scheme, bytes);
+    if (chunks) {
+      return std::make_unique<TabledReader>(std::move(input), scheme, std::move(*chunks),
+                                            std::move(info));
+    }
+    if (!scheme.chunk_points && bytes.points > 0) {
+      refuse(input.name(),
+             "has no chunk table, and its chunks differ in size; expected a table. Its writer was "
+             "interrupted: write the file again");
+    }
+  }
+  return std::make_unique<UntabledReader>(std::move(input), scheme, bytes, std::move(info));
+}
+
+}  // namespace clearway

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "io/formats/input_buffer.hpp"
+#include "io/formats/laz/chunk_table.hpp"
+#include "io/formats/point_reader.hpp"
+
+namespace clearway {
+
+/// Reads the points of a LAZ file, whose header has been read: `info` is what it says. The input
+/// can seek. Several chunks at once, on the threads of the caller's oneTBB arena; memory is bounded
+/// by their number, not by what the file says. Throws InputError with the chunk.
+std::unique_ptr<PointReader> read_laz_points(InputBuffer input, const laz::Scheme& scheme,
+                                             const laz::PointBytes& bytes, CloudInfo info);
+
+}  // namespace clearway

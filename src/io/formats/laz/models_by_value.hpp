@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "io/formats/laz/arithmetic_decoder.hpp"
+
+namespace clearway::laz {
+
+/// A model of bytes for each value that the byte had in the point before, made when first needed.
+class ModelsByValue {
+ public:
+  void renew() { used_.fill(false); }
+
+  std::uint8_t decode(ArithmeticDecoder& decoder, std::uint8_t last) {
+    if (!used_[last]) start(last);
+    return static_cast<std::uint8_t>(decoder.symbol(*models_[last]));
+  }
+
+ private:
+  void start(std::uint8_t last) {
+    if (!models_[last]) models_[last] = std::make_unique<SymbolModel<256>>();
+    laz::renew(*models_[last]);
+    used_[last] = true;
+  }
+
+  std::array<std::unique_ptr<SymbolModel<256>>, 256> models_;
+  std::array<bool, 256> used_{};
+};
+
+}  // namespace clearway::laz
