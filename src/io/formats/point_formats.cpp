@@ -68,8 +68,6 @@ bool is_surely_point_file(const std::filesystem::path& path) {
 
 void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
-    case PointFormat::kE57:
-      refuse_format(name, "E57");
     case PointFormat::kPcd:
       refuse_format(name, "PCD");
     case PointFormat::kPtx:
@@ -80,6 +78,7 @@ void refuse_unless_read(PointFormat format, const std::string& name) {
       refuse(name,
              "a mesh is not read; expected points in LAS, PLY or XYZ text. Sample its surface to "
              "points, for example with CloudCompare, and save them as PLY");
+    case PointFormat::kE57:
     case PointFormat::kLas:
     case PointFormat::kPly:
     case PointFormat::kXyz:
