@@ -60,19 +60,21 @@ std::vector<Message> E57Remarks::messages(const std::string& file) const {
   std::vector<Message> all;
   const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
   if (scans_ > 1 || posed_ > 0) {
-    all.push_back(note(
-        file + ": " + scans(scans_) + "; the poses of " + format_count(posed_) + " are applied",
-        {{"scans", number(scans_)}, {"posed_scans", number(posed_)}}));
+    const std::string poses = posed_ == 0   ? "; none has a pose"
+                              : posed_ == 1 ? "; 1 pose is applied"
+                                            : "; " + format_count(posed_) + " poses are applied";
+    all.push_back(note(file + ": " + scans(scans_) + poses,
+                       {{"scans", number(scans_)}, {"poses", number(posed_)}}));
   }
   if (empty_ > 0) {
-    all.push_back(
-        note(file + ": " + format_count(empty_) + " of " + scans(scans_) + " without points",
-             {{"empty_scans", number(empty_)}}));
+    all.push_back(note(file + ": " + scans(empty_) + " without points, of " + format_count(scans_),
+                       {{"empty_scans", number(empty_)}, {"scans", number(scans_)}}));
   }
   if (without_coordinates_ > 0) {
-    all.push_back(note(file + ": " + format_count(without_coordinates_) + " of " + scans(scans_) +
-                           " without coordinates; their records are not counted",
-                       {{"scans_without_coordinates", number(without_coordinates_)}}));
+    all.push_back(note(
+        file + ": " + scans(without_coordinates_) + " without coordinates, of " +
+            format_count(scans_) + "; their records are not counted",
+        {{"scans_without_coordinates", number(without_coordinates_)}, {"scans", number(scans_)}}));
   }
   if (absent_ > 0) {
     all.push_back(note(file + ": " + format_count(absent_) + " of " + format_count(records_) +
