@@ -36,12 +36,6 @@ const Ending* ending_of(const std::filesystem::path& path) {
   return nullptr;
 }
 
-[[noreturn]] void refuse_format(const std::string& name, const char* format) {
-  refuse(name, std::string(format) +
-                   " is not read; expected LAS, PLY or XYZ text. Convert it to LAS or PLY, for "
-                   "example with PDAL or CloudCompare");
-}
-
 }  // namespace
 
 std::optional<PointFormat> format_of_content(std::span<const std::byte> first_bytes) {
@@ -81,12 +75,11 @@ std::string sure_endings() {
 
 void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
-    case PointFormat::kE57:
-      refuse_format(name, "E57");
     case PointFormat::kMesh:
       refuse(name,
              "a mesh is not read; expected points in LAS, PLY or XYZ text. Sample its surface to "
              "points, for example with CloudCompare, and save them as PLY");
+    case PointFormat::kE57:
     case PointFormat::kLas:
     case PointFormat::kPly:
     case PointFormat::kXyz:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/formats/e57/e57_reader.hpp"
 #include "io/formats/input_buffer.hpp"
 #include "io/formats/las/las_reader.hpp"
 #include "io/formats/pcd/pcd_reader.hpp"
@@ -38,6 +39,7 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) 
   }
   const PointFormat format = format_of(file, path);
   refuse_unless_read(format, file.name());
+  if (format == PointFormat::kE57) return read_e57(std::move(file));
   InputBuffer input(std::move(file), InputBuffer::Access::kSeek);
   switch (format) {
     case PointFormat::kLas:

@@ -57,8 +57,8 @@ class PointReader {
 };
 
 /// Opens a file by its content, where the content tells, and by the ending of its name otherwise:
-/// LAS 1.0-1.4, LAZ, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is read
-/// as by open_las_stream, with the system's folder for temporary files. Unknown formats throw
+/// LAS 1.0-1.4, LAZ, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is
+/// read as by open_las_stream, with the system's folder for temporary files. Unknown formats throw
 /// InputError with advice.
 std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path);
 

@@ -6,7 +6,7 @@
 
 #include "io/formats/byte_load.hpp"
 #include "io/formats/las/geotiff_keys.hpp"
-#include "io/formats/las/wkt.hpp"
+#include "io/formats/wkt.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {

@@ -1,4 +1,4 @@
-#include "io/formats/las/wkt.hpp"
+#include "io/formats/wkt.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,4 +1,4 @@
-#include "io/formats/las/wkt.hpp"
+#include "io/formats/wkt.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/system/file.hpp"
+
+namespace clearway {
+
+/// The content of an E57 file: its pages without the checksum at the end of each. A page's checksum
+/// is verified before a byte of the page is given. A position in the content is called logical, one
+/// in the file physical; both count bytes from 0.
+class E57Pages {
+ public:
+  static constexpr std::size_t kChecksumBytes = 4;
+
+  /// page_bytes: at most kWindowBytes; the file holds whole pages.
+  E57Pages(File file, std::size_t page_bytes);
+
+  const std::string& name() const { return file_.name(); }
+  /// Logical bytes.
+  std::uint64_t size() const { return pages_ * content_; }
+  std::uint64_t physical(std::uint64_t logical) const {
+    return logical / content_ * page_ + logical % content_;
+  }
+  /// None behind the file's end and within a checksum.
+  std::optional<std::uint64_t> logical(std::uint64_t physical) const;
+
+  /// Copies the content from the logical position `at`. what: for the message where the file ends
+  /// before, as "the XML section".
+  void read(std::uint64_t at, std::span<std::byte> out, const char* what);
+
+  static constexpr std::size_t kWindowBytes = std::size_t{1} << 17;  ///< read from the file at once
+
+ private:
+  /// The content of a page.
+  std::span<const std::byte> verified_page(std::uint64_t page);
+
+  File file_;
+  std::size_t page_;     ///< bytes of a page
+  std::size_t content_;  ///< those without the checksum
+  std::uint64_t pages_;
+  std::unique_ptr<std::byte[]> window_;
+  std::uint64_t first_ = 0;     ///< page in the window
+  std::vector<bool> verified_;  ///< of the pages in the window
+};
+
+}  // namespace clearway

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "io/formats/e57/e57_scan.hpp"
+#include "io/formats/e57/e57_xml.hpp"
+
+namespace clearway {
+
+/// Reads which bytestreams a scan has, and which of them tell the points' places, from the element
+/// `points`. Fields of extensions count as bytestreams and are not read.
+void read_e57_prototype(const E57Xml& xml, pugi::xml_node points, E57Scan& scan);
+
+}  // namespace clearway

@@ -1,0 +1,172 @@
+// Every encoding of a number, in packets of every cut.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "support/e57_bytes.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+using Integers = std::vector<std::int64_t>;
+constexpr auto kLeast = std::numeric_limits<std::int64_t>::min();
+
+/// Values from `minimum` on that use all `width` bits.
+Integers values_of(unsigned width, std::int64_t minimum, std::size_t count) {
+  std::mt19937_64 random(width);
+  const std::uint64_t mask = width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
+  Integers values;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t stored = i == 0 ? 0 : i == 1 ? mask : random() & mask;
+    values.push_back(static_cast<std::int64_t>(static_cast<std::uint64_t>(minimum) + stored));
+  }
+  return values;
+}
+
+std::int64_t maximum_of(unsigned width, std::int64_t minimum) {
+  const std::uint64_t mask = width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(minimum) + mask);
+}
+
+/// Packets that hold from 0 to 12 bytes of each bytestream, as they come.
+std::vector<std::vector<std::size_t>> odd_packets(std::size_t fields, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<std::vector<std::size_t>> packets(60);
+  for (auto& packet : packets) {
+    for (std::size_t i = 0; i < fields; ++i) packet.push_back(random() % 13);
+  }
+  return packets;
+}
+
+ReadCloud read(const ReaderScratch& scratch, const E57Bytes& file) {
+  return read_all(scratch.write("a.e57", file.build()));
+}
+
+}  // namespace
+
+TEST_CASE("an E57 integer of any width from 0 to 64 bits is read, whatever its minimum") {
+  ReaderScratch scratch;
+  constexpr std::size_t kCount = 70;
+  for (unsigned width = 0; width <= 64; ++width) {
+    Integers minima{kLeast};
+    if (width < 64) minima.insert(minima.end(), {0, -5, -(std::int64_t{1} << (width / 2))});
+    for (const std::int64_t minimum : minima) {
+      INFO("width " << width << ", minimum " << minimum);
+      const Integers x = values_of(width, minimum, kCount);
+      const Integers y = values_of(21, -1000, kCount);
+      std::vector<double> z(kCount);
+      for (std::size_t i = 0; i < kCount; ++i) z[i] = 0.1 * static_cast<double>(i);
+      E57Bytes file;
+      file.scans.emplace_back();
+      file.scans[0].fields = {E57Bytes::integer("cartesianX", minimum, maximum_of(width, minimum),
+                                                x, "scale=\"0.001\" offset=\"-3.5\""),
+                              E57Bytes::integer("cartesianY", -1000, maximum_of(21, -1000), y),
+                              E57Bytes::float64("cartesianZ", z)};
+      if (width % 2 == 1) file.scans[0].packets = odd_packets(3, width);
+      REQUIRE(file.scans[0].fields[0].bits == width);
+      const ReadCloud cloud = read(scratch, file);
+      REQUIRE(cloud.positions.size() == kCount);
+      for (std::size_t i = 0; i < kCount; ++i) {
+        REQUIRE(cloud.positions[i].x == static_cast<double>(x[i]) * 0.001 + -3.5);
+        REQUIRE(cloud.positions[i].y == static_cast<double>(y[i]));
+        REQUIRE(cloud.positions[i].z == z[i]);
+      }
+    }
+  }
+}
+
+TEST_CASE("an integer without limits takes 64 bits, one of a single value takes none") {
+  ReaderScratch scratch;
+  E57Bytes file;
+  file.scans.emplace_back();
+  E57Bytes::Field wide{"<cartesianX type=\"Integer\"/>", 64, {1, std::uint64_t{1} << 63}};
+  file.scans[0].fields = {wide, E57Bytes::integer("cartesianY", -7, -7, {-7, -7}, "scale=\"0.5\""),
+                          E57Bytes::float32("cartesianZ", {1.5F, -0.1F})};
+  const ReadCloud cloud = read(scratch, file);
+  REQUIRE(cloud.positions.size() == 2);
+  CHECK(cloud.positions[0] == Vec3{static_cast<double>(kLeast + 1), -3.5, 1.5});
+  CHECK(cloud.positions[1] == Vec3{0, -3.5, static_cast<double>(-0.1F)});
+  CHECK(cloud.info.declared_points == 2);
+  CHECK(cloud.info.remarks.empty());
+}
+
+TEST_CASE("fields run ahead of each other across packets as far as they like") {
+  ReaderScratch scratch;
+  constexpr std::size_t kCount = 5000;
+  const Integers x = values_of(13, -9, kCount), z = values_of(33, kLeast / 2, kCount);
+  std::vector<float> y(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) y[i] = static_cast<float>(i);
+  E57Bytes file;
+  file.scans.emplace_back();
+  file.scans[0].fields = {
+      E57Bytes::integer("cartesianX", -9, maximum_of(13, -9), x),
+      E57Bytes::float32("cartesianY", y),
+      E57Bytes::integer("cartesianZ", kLeast / 2, maximum_of(33, kLeast / 2), z)};
+  const std::size_t all = std::string::npos;
+  SECTION("one field a packet") { file.scans[0].packets = {{all, 0, 0}, {0, all, 0}}; }
+  SECTION("the other way round") { file.scans[0].packets = {{0, 0, all}, {0, all, 0}}; }
+  SECTION("x in steps of a byte, then the others") {
+    for (int i = 0; i < 900; ++i) file.scans[0].packets.push_back({1, 0, i == 5 ? 7U : 0U});
+  }
+  SECTION("packets of odd sizes") { file.scans[0].packets = odd_packets(3, 1); }
+  file.scans[0].index_packets = GENERATE(false, true);
+  file.page = GENERATE(128U, 1024U, 65536U);
+  const ReadCloud cloud = read(scratch, file);
+  REQUIRE(cloud.positions.size() == kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    REQUIRE(cloud.positions[i] == Vec3{static_cast<double>(x[i]), y[i], static_cast<double>(z[i])});
+  }
+}
+
+TEST_CASE("fields that tell no place are stepped over: extensions, texts, structures, indices") {
+  ReaderScratch scratch;
+  E57Bytes file;
+  file.scans.push_back(e57_scan({1, 2}, {3, 4}, {5, 6}));
+  auto& fields = file.scans[0].fields;
+  fields.insert(fields.begin(), E57Bytes::integer("rowIndex", 0, 1000, {7, 8}));
+  fields.insert(fields.begin() + 2, E57Bytes::float32("nor:normalX", {1, 2}));
+  fields.insert(fields.begin() + 3,
+                {"<a:s type=\"Structure\"><cartesianX type=\"Integer\" minimum=\"0\" "
+                 "maximum=\"255\"/></a:s><a:e type=\"Structure\"/>",
+                 8,
+                 {1, 2}});
+  // Two texts, each with its length before it, doubled.
+  fields.push_back({"<a:t type=\"String\"/>", 24, {0x626104, 0x646304}});
+  const ReadCloud cloud = read(scratch, file);
+  REQUIRE(cloud.positions.size() == 2);
+  CHECK(cloud.positions[0] == Vec3{1, 3, 5});
+  CHECK(cloud.positions[1] == Vec3{2, 4, 6});
+}
+
+TEST_CASE("numbers that are not finite come as they are, and are not absent") {
+  ReaderScratch scratch;
+  E57Bytes file;
+  const double infinity = std::numeric_limits<double>::infinity();
+  file.scans.push_back(e57_scan({std::nan(""), 1}, {2, -infinity}, {0, 0}));
+  const auto reader = open_point_file(scratch.write("a.e57", file.build()));
+  PointBatch batch;
+  REQUIRE(reader->read(batch));
+  REQUIRE(batch.positions.size() == 2);
+  CHECK(std::isnan(batch.positions[0].x));
+  CHECK(batch.positions[1].y == -infinity);
+  CHECK(batch.absent.empty());
+}
+
+TEST_CASE("zeros up to the next word of 64 bits behind the last record are padding") {
+  ReaderScratch scratch;
+  E57Bytes file;
+  file.scans.emplace_back();
+  file.scans[0].fields = {E57Bytes::integer("cartesianX", 0, 3, {1, 2, 3}),
+                          E57Bytes::float64("cartesianY", {0, 0, 0}),
+                          E57Bytes::float64("cartesianZ", {0, 0, 0})};
+  file.scans[0].padding = std::string(7, '\0');
+  CHECK(read(scratch, file).positions.size() == 3);
+  file.scans[0].padding = std::string("\0\0\0\0\0\0\x40", 7);
+  CHECK_THROWS_AS(read(scratch, file), InputError);
+  file.scans[0].padding = std::string(8, '\0');
+  CHECK_THROWS_AS(read(scratch, file), InputError);
+}

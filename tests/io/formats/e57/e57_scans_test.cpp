@@ -1,0 +1,236 @@
+// Scans, poses, spherical coordinates, records without a point, and what is said of them.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/e57_bytes.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+struct ReadScans {
+  std::vector<Vec3> positions;
+  std::vector<std::uint64_t> absent;  ///< counted in the file
+  CloudInfo info;
+};
+
+ReadScans collect(PointReader& reader) {
+  ReadScans all;
+  for (PointBatch batch; reader.read(batch);) {
+    for (const std::uint32_t i : batch.absent) all.absent.push_back(all.positions.size() + i);
+    all.positions.insert(all.positions.end(), batch.positions.begin(), batch.positions.end());
+  }
+  all.info = reader.info();
+  return all;
+}
+
+ReadScans read(const E57Bytes& file) {
+  const ReaderScratch scratch;
+  return collect(*open_point_file(scratch.write("a.e57", file.build())));
+}
+
+void check_near(const Vec3& found, const Vec3& expected) {
+  for (int k = 0; k < 3; ++k) CHECK(found[k] == Approx(expected[k]).margin(1e-12));
+}
+
+std::string all_texts(const CloudInfo& info) {
+  std::string all;
+  for (const Message& message : info.remarks) all += message.text + "\n";
+  return all;
+}
+
+const std::string kHalf = "7.0710678118654752e-1";
+
+}  // namespace
+
+TEST_CASE("each scan's pose turns and then shifts its points, in the order of the file") {
+  E57Bytes file;
+  file.scans = {e57_scan({1, 0}, {2, 0}, {3, 1}), e57_scan({1}, {2}, {3}), e57_scan({1}, {2}, {3})};
+  // A quarter turn about z: x to y, y to -x.
+  file.scans[0].xml = E57Bytes::pose({kHalf, "", "", kHalf}, {"400000", "5e6", "-1.5"});
+  // A quarter turn about x: y to z, z to -y.
+  file.scans[1].xml = E57Bytes::pose({kHalf, kHalf, "0", "0"}, {"0", "0", "0"});
+  const ReadScans all = read(file);
+  REQUIRE(all.positions.size() == 4);
+  check_near(all.positions[0], {399998, 5000001, 1.5});
+  check_near(all.positions[1], {400000, 5000000, -0.5});
+  check_near(all.positions[2], {1, -3, 2});
+  CHECK(all.positions[3] == Vec3{1, 2, 3});
+  CHECK(all.info.declared_points == 4);
+  CHECK_THAT(all_texts(all.info), Contains("3 scans; 2 poses are applied"));
+}
+
+TEST_CASE("half of a pose is a pose; a quaternion is normalised") {
+  E57Bytes file;
+  file.scans = {e57_scan({1}, {2}, {3}), e57_scan({1}, {2}, {3}), e57_scan({1}, {2}, {3})};
+  const std::string shift = "<translation type=\"Structure\">" + E57Bytes::number("x", "4") +
+                            E57Bytes::number("y", "5") + E57Bytes::number("z", "+6") +
+                            "</translation>";
+  file.scans[0].xml = "<pose type=\"Structure\">" + shift + "</pose>";
+  file.scans[1].xml = "<pose type=\"Structure\"/>";
+  file.scans[2].xml = E57Bytes::pose({"0.707", "0", "0", "0.707"}, {"0", "0", "0"});
+  const ReadScans all = read(file);
+  CHECK(all.positions[0] == Vec3{5, 7, 9});
+  CHECK(all.positions[1] == Vec3{1, 2, 3});
+  check_near(all.positions[2], {-2, 1, 3});
+}
+
+TEST_CASE("spherical coordinates are range, azimuth from x to y, elevation from the plane to z") {
+  const double quarter = std::acos(0.0);
+  E57Bytes file;
+  file.scans.emplace_back();
+  file.scans[0].fields = {
+      E57Bytes::float64("sphericalRange", {2, 2, 2, 2, 2}),
+      E57Bytes::float64("sphericalAzimuth", {0, quarter, 0, -quarter, quarter / 2}),
+      E57Bytes::float64("sphericalElevation", {0, 0, quarter, 0, -quarter / 2}),
+      E57Bytes::integer("sphericalInvalidState", 0, 2, {0, 0, 0, 1, 0})};
+  const ReadScans all = read(file);
+  REQUIRE(all.positions.size() == 5);
+  check_near(all.positions[0], {2, 0, 0});
+  check_near(all.positions[1], {0, 2, 0});
+  check_near(all.positions[2], {0, 0, 2});
+  CHECK(std::isnan(all.positions[3].x));
+  check_near(all.positions[4], {1, 1, -std::sqrt(2.0)});
+  CHECK(all.absent == std::vector<std::uint64_t>{3});
+}
+
+TEST_CASE("the Cartesian coordinates count where they are valid, then the spherical ones") {
+  E57Bytes file;
+  file.scans = {e57_scan({1, 2, 3, 4}, {0, 0, 0, 0}, {0, 0, 0, 0})};
+  auto& fields = file.scans[0].fields;
+  for (const auto& [name, value] :
+       {std::pair{"sphericalRange", 9.0}, {"sphericalAzimuth", 0.0}, {"sphericalElevation", 0.0}}) {
+    fields.push_back(E57Bytes::float64(name, {value, value, value, value}));
+  }
+  SECTION("with states, whatever numbers they are") {
+    fields.push_back(E57Bytes::float32("cartesianInvalidState", {0, 1, 2, 2}));
+    fields.push_back(E57Bytes::integer("sphericalInvalidState", -1, 2, {2, 0, 0, 1}));
+    const ReadScans all = read(file);
+    CHECK(all.positions[0].x == 1);
+    CHECK(all.positions[1].x == 9);
+    CHECK(all.positions[2].x == 9);
+    CHECK(std::isnan(all.positions[3].x));
+    CHECK(all.absent == std::vector<std::uint64_t>{3});
+    REQUIRE(all.info.remarks.size() == 1);
+    CHECK_THAT(all.info.remarks[0].text, Contains("1 of 4 records have no valid point"));
+    CHECK(all.info.remarks[0].severity == Message::Severity::kNote);
+  }
+  SECTION("without states all are valid") {
+    const ReadScans all = read(file);
+    CHECK(all.positions[3].x == 4);
+    CHECK(all.absent.empty());
+  }
+}
+
+TEST_CASE("absent records keep their numbers over batches and scans; reading again says the same") {
+  E57Bytes file;
+  constexpr std::size_t kCount = 70'000;
+  std::vector<std::int64_t> x(kCount), state(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    x[i] = static_cast<std::int64_t>(i);
+    state[i] = i % 1000 == 7 ? 2 : 0;
+  }
+  for (int scan = 0; scan < 2; ++scan) {
+    file.scans.emplace_back();
+    file.scans.back().fields = {E57Bytes::integer("cartesianX", 0, 131071, x),
+                                E57Bytes::integer("cartesianY", 3, 3, x),
+                                E57Bytes::integer("cartesianZ", 0, 131071, x),
+                                E57Bytes::integer("cartesianInvalidState", 0, 2, state)};
+    file.scans.back().packets.assign(20, {8000, 0, 9000, 700});
+  }
+  const ReaderScratch scratch;
+  const auto reader = open_point_file(scratch.write("a.e57", file.build()));
+  for (int pass = 0; pass < 3; ++pass) {
+    const ReadScans all = collect(*reader);
+    REQUIRE(all.positions.size() == 2 * kCount);
+    REQUIRE(all.absent.size() == 140);
+    for (std::size_t i = 0; i < 140; ++i) REQUIRE(all.absent[i] == i * 1000 + 7);
+    CHECK(all.positions[kCount + 5].x == 5);
+    REQUIRE(all.info.remarks.size() == 2);
+    CHECK_THAT(all_texts(all.info),
+               Contains("2 scans; none has a pose") && Contains("140 of 140,000 records"));
+    reader->rewind();
+    PointBatch batch;
+    if (pass == 1) REQUIRE(reader->read(batch));  // and back from the middle
+    reader->rewind();
+  }
+}
+
+TEST_CASE("scans without points or coordinates are stepped over, and said") {
+  E57Bytes file;
+  file.scans = {e57_scan({}, {}, {}), e57_scan({1}, {2}, {3})};
+  file.scans.emplace_back();
+  file.scans[2].fields = {E57Bytes::integer("colorRed", 0, 255, {1, 2, 3})};
+  const ReadScans all = read(file);
+  CHECK(all.positions.size() == 1);
+  CHECK(all.info.declared_points == 1);
+  CHECK_THAT(all_texts(all.info), Contains("3 scans; none has a pose") &&
+                                      Contains("1 scan without points, of 3") &&
+                                      Contains("1 scan without coordinates, of 3"));
+}
+
+TEST_CASE("a file without scans, and a scan without a binary section, hold no points") {
+  E57Bytes file;
+  CHECK(read(file).positions.empty());
+  CHECK(read(file).info.declared_points == 0);
+  file.scans = {e57_scan({}, {}, {})};
+  E57Bytes::Content content = file.content();
+  const std::string offset = "fileOffset=\"48\"";
+  content.bytes.replace(content.bytes.find(offset), offset.size(), "fileOffset=\"00\"");
+  const ReaderScratch scratch;
+  CHECK(read_all(scratch.write("a.e57", E57Bytes::paged(content.bytes))).size() == 0);
+}
+
+TEST_CASE("the coordinate reference system is kept, and its unit; E57's own is the metre") {
+  E57Bytes file;
+  file.scans = {e57_scan({1}, {2}, {3})};
+  CHECK(read(file).info.unit == LengthUnit::kMetre);
+  CHECK(read(file).info.crs_wkt.empty());
+  const std::string wkt = R"(PROJCS["p",GEOGCS["g"],UNIT["US survey foot",0.3048006096012192]])";
+  file.root_xml =
+      "<coordinateMetadata type=\"String\"><![CDATA[" + wkt + "]]></coordinateMetadata>";
+  CHECK(read(file).info.unit == LengthUnit::kUsSurveyFoot);
+  CHECK(read(file).info.crs_wkt == wkt);
+  file.root_xml = "<coordinateMetadata type=\"String\">a &lt; b</coordinateMetadata>";
+  CHECK(read(file).info.unit == LengthUnit::kMetre);
+  CHECK(read(file).info.crs_wkt == "a < b");
+}
+
+TEST_CASE("points far beyond the declared bounds are warned of, in either frame") {
+  E57Bytes file;
+  file.scans = {e57_scan({1000, 5000}, {0, 0}, {0, 2000})};
+  const auto bounds = [](const std::string& least, const std::string& greatest) {
+    std::string xml = "<cartesianBounds type=\"Structure\">";
+    for (const std::string axis : {"x", "y", "z"}) {
+      xml +=
+          E57Bytes::number(axis + "Minimum", least) + E57Bytes::number(axis + "Maximum", greatest);
+    }
+    return xml + "</cartesianBounds>";
+  };
+  const auto remarks = [&] { return read(file).info.remarks; };
+  file.scans[0].xml = bounds("0", "5");  // the points are in millimetres
+  REQUIRE(remarks().size() == 1);
+  CHECK(remarks()[0].severity == Message::Severity::kWarning);
+  CHECK(remarks()[0].code == "declared-bounds");
+  CHECK_THAT(remarks()[0].text, Contains("scan 1") && Contains("(5000, 0, 2000)"));
+  for (const auto& [least, greatest] : {std::pair{"0", "5000"},
+                                        {"0", "4999.9"},
+                                        {"0", "0"},
+                                        {"-1.79e308", "1.79e308"},
+                                        {"3", "1"},
+                                        {"nan", "inf"}}) {
+    file.scans[0].xml = bounds(least, greatest);
+    CHECK(remarks().empty());
+  }
+  // Some writers declare the bounds behind the pose.
+  file.scans[0].xml =
+      bounds("-6000", "-2000") + E57Bytes::pose({"1", "0", "0", "0"}, {"-7000", "-4000", "-4000"});
+  CHECK(remarks().size() == 1);
+  CHECK(remarks()[0].severity == Message::Severity::kNote);
+  file.scans[0].xml =
+      bounds("0", "5000") + E57Bytes::pose({"1", "0", "0", "0"}, {"-1e6", "-4000", "-4000"});
+  CHECK(remarks().size() == 1);
+}
