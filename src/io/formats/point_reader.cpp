@@ -30,7 +30,8 @@ PointFormat format_of(const File& file, const std::filesystem::path& path) {
 
 }  // namespace
 
-std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) {
+std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
+                                             const PointReadOptions& options) {
   File file = File::open_for_reading(path);
   if (!file.is_regular()) return open_las_stream(std::move(file));
   const PointFormat format = format_of(file, path);
@@ -42,7 +43,7 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) 
     case PointFormat::kPly:
       return read_ply(std::move(input));
     default:
-      return read_xyz(std::move(input));
+      return read_xyz(std::move(input), options);
   }
 }
 
