@@ -32,7 +32,8 @@ PointFormat format_of(const File& file, const std::filesystem::path& path) {
 
 }  // namespace
 
-std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) {
+std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
+                                             const PointReadOptions& options) {
   File file = File::open_for_reading(path);
   if (!file.is_regular()) {
     return open_las_stream(std::move(file), std::filesystem::temp_directory_path());
@@ -55,7 +56,7 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path) 
     case PointFormat::k3dtk:
       return read_threedtk(std::move(input), path);
     default:
-      return read_scan_text(std::move(input), TextEnding::kXyz);
+      return read_scan_text(std::move(input), TextEnding::kXyz, options);
   }
 }
 

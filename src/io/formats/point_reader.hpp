@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct CloudInfo {
   std::string crs_wkt;                           ///< as found; empty where there is none
   LengthUnit unit = LengthUnit::kUnknown;        ///< of the horizontal coordinates
   std::uint64_t faces = 0;                       ///< of a mesh, which are not read
+  bool text_table = false;                       ///< whose columns can be chosen
   std::vector<Message> remarks;  ///< on the whole file; complete once read() has returned false
 };
 
@@ -54,13 +56,27 @@ class PointReader {
   virtual bool can_rewind() const { return true; }
   /// Back to the first point. Throws ResourceError where the input cannot seek.
   virtual void rewind() = 0;
+  /// The line of each of `points`, which are ascending numbers from 0; empty where the format has
+  /// no lines. Reads the file from its first point on, and leaves the reader anywhere.
+  virtual std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> /*points*/) {
+    return {};
+  }
+};
+
+/// How a text is read whose columns its own lines do not tell, or tell wrongly.
+struct PointReadOptions {
+  /// Of x, y and z: numbers counted from 1, or names of the header. Empty: as the text says, and
+  /// what looks like something else than points is refused. Other formats are not concerned.
+  std::vector<std::string> columns = {};
+  bool may_choose = false;  ///< refusals advise to choose the columns
 };
 
 /// Opens a file by its content, where the content tells, and by the ending of its name otherwise:
-/// LAS 1.0-1.4, LAZ, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is
+/// LAS 1.0-1.4, LAZ, E57, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is
 /// read as by open_las_stream, with the system's folder for temporary files. Unknown formats throw
 /// InputError with advice.
-std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path);
+std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
+                                             const PointReadOptions& options = {});
 
 /// Reads LAS or LAZ from a stream that cannot seek, for example standard input. Of LAS, a CRS that
 /// only a record behind the points holds (1.4) is in info() once read() has returned false; points

@@ -11,8 +11,8 @@ using namespace clearway::test;
 
 namespace {
 
-/// Requires that the file is read whole, and refused when cut at any byte.
-/// `spare`: so many bytes at the end may be missing.
+/// Requires that the file is read whole, and refused when cut at any byte, but for its last `spare`
+/// bytes: without them it has the same number of points.
 void check_every_cut(const std::string& name, const std::string& bytes, bool as_stream,
                      std::size_t spare = 0) {
   ReaderScratch scratch;
@@ -81,28 +81,66 @@ TEST_CASE("a cut binary PLY file is refused at every byte") {
     const std::string property = "property list ushort short a\n";
     check_every_cut("a.ply",
                     head + "element a 1\n" + property + "element vertex 1\n" + kXyz + property +
-                        "element b 1\n" + property + "end_header\n" + list + std::string(12, 'v') +
-                        list + list,
+                        "end_header\n" + list + std::string(12, 'v') + list,
                     false);
+  }
+  SECTION("elements behind the vertices are not looked at") {
+    check_every_cut("a.ply",
+                    head + "element vertex 3\n" + kXyz +
+                        "element face 1\nproperty list uchar int n\nend_header\n" +
+                        std::string(36, 'v') + std::string(9, 'f'),
+                    false, 9);
   }
   SECTION("no vertices") {
     check_every_cut("a.ply", head + "element vertex 0\n" + kXyz + "end_header\n", false);
   }
 }
 
-// A text that lacks its last line break counts as cut too: its last number may lack digits.
-TEST_CASE("a cut ASCII PLY file is refused at every byte") {
-  const std::string text =
+// A text that lacks its last line break is read where all values of its last line are there: that
+// digits of the last number are missing cannot be seen.
+TEST_CASE("a cut ASCII PLY file is refused at every byte before its last number") {
+  const std::string head =
       "ply\nformat ascii 1.0\nelement a 1\nproperty list uchar int n\n"
       "element vertex 2\n" +
-      kXyz + "element face 1\nproperty list uchar int n\nend_header\n";
-  check_every_cut("a.ply", text + "2 10 11\n1.25 2.25 3.25\n4.25 5.25 6.25\n3 10 11 12\n", false);
+      kXyz;
+  const std::string rows = "2 10 11\n1.25 2.25 3.25\n4.25 5.25 625\n";
+  check_every_cut("a.ply", head + "end_header\n" + rows, false, 3);
+  // Elements behind the vertices are not looked at, but the last vertex must be whole.
+  check_every_cut(
+      "a.ply",
+      head + "element face 1\nproperty list uchar int n\nend_header\n" + rows + "3 10 11 12\n",
+      false, 11);
 }
 
 TEST_CASE("a cut PTS file is refused at every byte before its last number") {
   std::string text = "12\n";
   for (int i = 0; i < 12; ++i) text += "1.25 2.25 3.25 100 200 255\n";
   check_every_cut("a.pts", text, false, 3);
+}
+
+TEST_CASE("a text that ends within a number is refused, one without a line break is noted") {
+  ReaderScratch scratch;
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\n" + kXyz + "end_header\n";
+  CHECK(refusal_of(scratch.write("a.ply", ply + "1 2 3.")) != "");
+  CHECK(refusal_of(scratch.write("a.pts", "1\n1 2 3.")) != "");
+  for (const auto& path :
+       {scratch.write("b.ply", ply + "1 2 3.5"), scratch.write("b.pts", "1\n1 2 3.5")}) {
+    const ReadCloud cloud = read_all(path);
+    CHECK(cloud.positions == std::vector<Vec3>{{1, 2, 3.5}});
+    REQUIRE(cloud.info.remarks.size() == 1);
+    CHECK(cloud.info.remarks[0].severity == Message::Severity::kNote);
+    CHECK(cloud.info.remarks[0].code == "no-line-break");
+  }
+}
+
+TEST_CASE("a text without a count whose last line lacks values may be cut") {
+  ReaderScratch scratch;
+  CHECK(read_all(scratch.write("a.xyz", "1 2 3 4\n1 2 3 4")).info.remarks.empty());
+  const ReadCloud cloud = read_all(scratch.write("b.xyz", "1 2 3 4\n1 2 3"));
+  CHECK(cloud.positions.size() == 2);
+  REQUIRE(cloud.info.remarks.size() == 1);
+  CHECK(cloud.info.remarks[0].severity == Message::Severity::kWarning);
+  CHECK(cloud.info.remarks[0].code == "cut-text");
 }
 
 TEST_CASE("a cut PTX file is refused at every byte before its last number") {

@@ -48,6 +48,12 @@ std::string advice_on(const Error& error) {
     case Remedy::kOneScale:
       return "; --scale " + (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
              " sets one for all";
+    case Remedy::kAcceptScale:
+      return "; --scale " + format_number(error.amount()) + " accepts that step";
+    case Remedy::kColumns:
+      return "; --columns says which ones hold x, y and z, for example --columns 2,3,4";
+    case Remedy::kSkipUnreadable:
+      return "; --skip-unreadable leaves out the files that cannot be read";
     case Remedy::kIgnoreCrs:
       return "; --ignore-crs takes the coordinates as they are";
     case Remedy::kOverwrite:

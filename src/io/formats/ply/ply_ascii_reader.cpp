@@ -28,8 +28,18 @@ class AsciiPlyReader final : public PlyBodyReader {
       read_row(vertices, next_, &point);
       batch.positions.push_back(point);
     }
-    if (batch.positions.empty()) finish();
+    if (batch.positions.empty()) check_end();
     return !batch.positions.empty();
+  }
+
+  std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
+    rewind();
+    std::vector<std::uint64_t> lines;
+    for (; lines.size() < points.size() && next_ < header_.vertices().count; ++next_) {
+      next_row(header_.vertices(), next_);
+      if (next_ == points[lines.size()]) lines.push_back(input_.line());
+    }
+    return lines;
   }
 
  private:
@@ -41,8 +51,7 @@ class AsciiPlyReader final : public PlyBodyReader {
     for (std::uint64_t row = 0; row < element.count; ++row) read_row(element, row, nullptr);
   }
 
-  /// The next line that is not blank. A line without its line break counts as cut: the missing rest
-  /// may be digits.
+  /// The next line that is not blank.
   std::string_view next_row(const PlyElement& element, std::uint64_t row) {
     std::string_view line;
     do {
@@ -51,13 +60,32 @@ class AsciiPlyReader final : public PlyBodyReader {
                                   std::to_string(row) + " of element " + excerpt(element.name) +
                                   "; expected " + std::to_string(element.count) + " of them");
       }
-      if (!input_.line_terminated()) {
-        fail(
-            "the file ends without a line break, so it may be cut; expected one behind the last "
-            "line");
-      }
-    } while (skip_blanks(line.data(), line.data() + line.size()) == line.data() + line.size());
+    } while (is_blank_line(line));
     return line;
+  }
+
+  static bool is_blank_line(std::string_view line) {
+    const char* const end = line.data() + line.size();
+    return skip_blanks(line.data(), end) == end;
+  }
+
+  /// The last vertex stands in the file's last line, which has no line break. It counts where that
+  /// is how the file ends, and all its values are there.
+  void check_open_end(std::string_view line) {
+    const std::string what = "the file ends without a line break";
+    if (!vertices_end_file()) fail(what + " in the last vertex, so it is cut; expected more lines");
+    if (line.ends_with('.')) fail(what + " within a number; expected all of it");
+    note("no-line-break", what);
+  }
+
+  /// More lines than declared are refused like fewer.
+  void check_end() {
+    std::string_view line;
+    while (vertices_end_file() && input_.next_line(line)) {
+      if (is_blank_line(line)) continue;
+      fail(excerpt(line) + " is more than the header declares; expected the end behind " +
+           std::to_string(header_.vertices().count) + " of element \"vertex\"");
+    }
   }
 
   /// point: receives the coordinates, or null.
@@ -80,6 +108,7 @@ class AsciiPlyReader final : public PlyBodyReader {
       fail("more than the " + std::to_string(element.properties.size()) +
            " properties of element " + excerpt(element.name) + "; expected the end of the line");
     }
+    if (point && !input_.line_terminated()) check_open_end(line);
   }
 
   double next_number(const char*& at, const char* end, const PlyProperty& property) const {

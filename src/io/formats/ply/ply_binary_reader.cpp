@@ -77,7 +77,7 @@ class BinaryPlyReader final : public PlyBodyReader {
     const std::uint64_t left = header_.vertices().count - next_;
     batch.positions.resize(std::min<std::uint64_t>(kBatchPoints, left));
     if (batch.positions.empty()) {
-      finish();
+      check_end();
       return false;
     }
     if (const auto stride = header_.vertices().fixed_bytes()) {
@@ -89,10 +89,10 @@ class BinaryPlyReader final : public PlyBodyReader {
   }
 
  private:
-  /// The file must hold at least what the elements take with empty lists.
+  /// The file must hold at least what the elements up to the vertices take with empty lists.
   void check_size() const {
     std::uint64_t room = *input_.size() - input_.position();
-    for (const PlyElement& element : header_.elements) {
+    for (const PlyElement& element : std::span(header_.elements).first(header_.vertex + 1)) {
       const std::size_t bytes = element.least_bytes();
       if (bytes > 0 && element.count > room / bytes) {
         refuse(input_.name(), "ends at byte " + std::to_string(*input_.size()) + "; expected " +
@@ -102,6 +102,21 @@ class BinaryPlyReader final : public PlyBodyReader {
       }
       room -= element.count * bytes;
     }
+  }
+
+  /// More data than declared is refused like less; a line break behind it is none.
+  void check_end() {
+    if (!vertices_end_file()) return;
+    const std::uint64_t end = input_.position();
+    const std::uint64_t more = *input_.size() - end;
+    if (more == 0) return;
+    const auto bytes = more <= 2 ? input_.take(more) : std::span<const std::byte>();
+    const auto is_break = [](std::byte b) { return b == std::byte{'\n'} || b == std::byte{'\r'}; };
+    if (!bytes.empty() && std::all_of(bytes.begin(), bytes.end(), is_break)) return;
+    refuse_byte(input_.name(), end,
+                std::to_string(more) + " bytes more than the header declares; expected the end " +
+                    "behind " + std::to_string(header_.vertices().count) +
+                    " of element \"vertex\"");
   }
 
   [[noreturn]] void refuse_cut(const PlyElement& element, std::uint64_t row) const {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "io/formats/input_buffer.hpp"
@@ -9,16 +12,16 @@
 
 namespace clearway {
 
-/// What the readers of both kinds of PLY file share: the way past the elements before and behind
-/// the vertices.
+/// What the readers of both kinds of PLY file share: the way past the elements before the vertices,
+/// and the end behind them. Elements behind the vertices are not read and not checked.
 class PlyBodyReader : public PointReader {
  public:
   const CloudInfo& info() const override { return info_; }
 
   void rewind() override {
     input_.return_to(first_vertex_);
+    info_.remarks.clear();
     next_ = 0;
-    finished_ = false;
   }
 
  protected:
@@ -39,13 +42,15 @@ class PlyBodyReader : public PointReader {
     first_vertex_ = input_.mark();
   }
 
-  /// From behind the last vertex to the end; the second time does nothing.
-  void finish() {
-    if (finished_) return;
-    for (std::size_t i = header_.vertex + 1; i < header_.elements.size(); ++i) {
-      skip_element(header_.elements[i]);
-    }
-    finished_ = true;
+  /// Whether the file ends where the vertices do, as no element behind them has a row.
+  bool vertices_end_file() const {
+    const auto behind = header_.elements.begin() + static_cast<std::ptrdiff_t>(header_.vertex) + 1;
+    return std::all_of(behind, header_.elements.end(),
+                       [](const PlyElement& element) { return element.count == 0; });
+  }
+
+  void note(const char* code, const std::string& text) {
+    info_.remarks.push_back({Message::Severity::kNote, code, input_.name() + ": " + text, {}});
   }
 
   InputBuffer input_;
@@ -55,7 +60,6 @@ class PlyBodyReader : public PointReader {
  private:
   CloudInfo info_;
   InputBuffer::Mark first_vertex_;
-  bool finished_ = false;
 };
 
 }  // namespace clearway

@@ -8,9 +8,9 @@
 
 namespace clearway {
 
-/// Reads the vertices of a PLY file from its start. Elements before them are skipped at once, those
-/// behind them when the last vertex has been read, so that a cut file is refused wherever it was
-/// cut. Coordinates may have any scalar type; in an ASCII file they count as written, whatever
+/// Reads the vertices of a PLY file from its start. Elements before them are skipped. Those behind
+/// them are not looked at: nobody reads them. Where there are none, the file must end with its last
+/// vertex. Coordinates may have any scalar type; in an ASCII file they count as written, whatever
 /// their type. The input must be able to seek.
 std::unique_ptr<PointReader> read_ply(InputBuffer input);
 

@@ -21,6 +21,7 @@ std::unique_ptr<PointReader> read_pts(InputBuffer input, std::vector<Message> re
 /// Reads the text that the count lines tell: PTX, PTS or XYZ, whatever its name says. A remark says
 /// so where the name says otherwise. ending: of the name, for that.
 enum class TextEnding { kXyz, kPts, kPtx };
-std::unique_ptr<PointReader> read_scan_text(InputBuffer input, TextEnding ending);
+std::unique_ptr<PointReader> read_scan_text(InputBuffer input, TextEnding ending,
+                                            const PointReadOptions& options = {});
 
 }  // namespace clearway

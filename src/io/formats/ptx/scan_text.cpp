@@ -15,7 +15,8 @@ std::vector<Message> named_otherwise(const InputBuffer& input, const char* forma
 
 }  // namespace
 
-std::unique_ptr<PointReader> read_scan_text(InputBuffer input, TextEnding ending) {
+std::unique_ptr<PointReader> read_scan_text(InputBuffer input, TextEnding ending,
+                                            const PointReadOptions& options) {
   const CountLines counts = find_count_lines(input);
   std::vector<Message> remarks;
   if (counts == CountLines::kTwo) {
@@ -26,7 +27,8 @@ std::unique_ptr<PointReader> read_scan_text(InputBuffer input, TextEnding ending
     if (ending == TextEnding::kPtx) remarks = named_otherwise(input, "PTS", "one count");
     return read_pts(std::move(input), std::move(remarks));
   }
-  return ending == TextEnding::kPtx ? read_ptx(std::move(input)) : read_xyz(std::move(input));
+  return ending == TextEnding::kPtx ? read_ptx(std::move(input))
+                                    : read_xyz(std::move(input), options);
 }
 
 }  // namespace clearway

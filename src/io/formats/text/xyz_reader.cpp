@@ -1,81 +1,27 @@
 #include "io/formats/text/xyz_reader.hpp"
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <string_view>
 #include <utility>
 
-#include "io/formats/text/column_names.hpp"
-#include "io/formats/text/text_number.hpp"
+#include "clearway/error.hpp"
+#include "io/formats/text/point_line.hpp"
+#include "io/formats/text/xyz_prologue.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
 
-using Columns = std::array<std::size_t, 3>;  // of x, y and z
-constexpr Columns kFirstThree{0, 1, 2};
-
-std::string_view without_leading_blanks(std::string_view line) {
-  const char* const end = line.data() + line.size();
-  const char* const start = skip_blanks(line.data(), end);
-  return {start, static_cast<std::size_t>(end - start)};
-}
-
-bool is_comment(std::string_view line) {
-  return line.empty() || line.front() == '#' || line.starts_with("//");
-}
-
-/// x y z in the first three columns of a line; false where it is anything else.
-bool parse_point(std::string_view line, Vec3& point) {
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  char first = 0;
-  if (!parse_number(at, end, point.x) || (first = skip_separator(at, end)) == 0 ||
-      !parse_number(at, end, point.y) || skip_separator(at, end) != first ||
-      !parse_number(at, end, point.z)) {
-    return false;
-  }
-  if (at == end) return true;
-  const char behind = skip_separator(at, end);
-  return behind == first || behind == ' ';
-}
-
-/// x, y and z in given columns.
-bool parse_point(std::string_view line, char separator, const Columns& columns,
-                 std::vector<std::string_view>& fields, Vec3& point) {
-  split_fields(line, separator, fields);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (columns[axis] >= fields.size()) return false;
-    const auto value = parse_whole_number(fields[columns[axis]]);
-    if (!value) return false;
-    point[static_cast<int>(axis)] = *value;
-  }
-  return true;
-}
-
-std::optional<Columns> columns_named(const ColumnNames& header) {
-  static constexpr std::string_view kPlain[] = {""};
-  const auto x = header.find(kPlain, "x");
-  const auto y = header.find(kPlain, "y");
-  const auto z = header.find(kPlain, "z");
-  if (!x || !y || !z) return std::nullopt;
-  return Columns{*x, *y, *z};
-}
-
-std::optional<std::uint64_t> whole_number(std::string_view line) {
-  while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
-  std::uint64_t value = 0;
-  const char* const end = line.data() + line.size();
-  const auto [stop, error] = std::from_chars(line.data(), end, value);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return value;
-}
-
 class XyzReader final : public PointReader {
  public:
-  explicit XyzReader(InputBuffer input) : input_(std::move(input)) {
-    read_prologue();
+  XyzReader(InputBuffer input, const PointReadOptions& options)
+      : input_(std::move(input)), may_choose_(options.may_choose) {
+    XyzPrologue prologue = read_xyz_prologue(input_, options);
+    line_ = std::move(prologue.line);
+    fields_ = prologue.fields;
+    info_.declared_points = prologue.declared_points;
+    info_.unit = prologue.unit;
+    info_.remarks = std::move(prologue.remarks);
+    info_.text_table = true;
+    remarks_at_start_ = info_.remarks.size();
     first_point_ = input_.mark();
   }
 
@@ -83,14 +29,16 @@ class XyzReader final : public PointReader {
 
   bool read(PointBatch& batch) override {
     batch.quanta.clear();
+    batch.absent.clear();
     batch.positions.resize(kBatchPoints);
     std::size_t count = 0;
     std::string_view line;
-    while (count < kBatchPoints && next_data_line(line)) {
+    while (count < kBatchPoints && next_data_line(input_, line)) {
       if (next_ == info_.declared_points) {
         fail("more than the " + std::to_string(next_) + " points that the first line declares");
       }
-      parse(line, batch.positions[count++]);
+      if (!line_.parse(line, batch.positions[count++])) refuse_point(line);
+      if (!input_.line_terminated()) check_open_end(line);
       ++next_;
     }
     batch.positions.resize(count);
@@ -100,36 +48,56 @@ class XyzReader final : public PointReader {
 
   void rewind() override {
     input_.return_to(first_point_);
+    info_.remarks.resize(remarks_at_start_);
     next_ = 0;
   }
 
+  std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
+    rewind();
+    std::vector<std::uint64_t> lines;
+    std::string_view line;
+    for (; lines.size() < points.size() && next_data_line(input_, line); ++next_) {
+      if (next_ == points[lines.size()]) lines.push_back(input_.line());
+    }
+    return lines;
+  }
+
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    refuse_line(input_.name(), input_.line(), what);
+  [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
+    refuse_line(input_.name(), input_.line(), what, remedy);
   }
 
-  bool next_data_line(std::string_view& line) {
-    do {
-      if (!input_.next_line(line)) return false;
-      line = without_leading_blanks(line);
-    } while (is_comment(line));
-    return true;
+  [[noreturn]] void refuse_point(std::string_view line) const {
+    std::string where = "the coordinates x y z";
+    if (line_.columns() != kFirstThree) {
+      where = "in columns";
+      for (const std::size_t column : line_.columns()) where += " " + std::to_string(column + 1);
+    }
+    fail(excerpt(line) + decimal_commas_in(line) + "; expected three numbers, " + where +
+             ", in blanks, commas or semicolons",
+         next_ == 0 && may_choose_ ? Remedy::kColumns : Remedy::kNone);
   }
 
-  void parse(std::string_view line, Vec3& point) {
-    const bool valid = columns_ == kFirstThree
-                           ? parse_point(line, point)
-                           : parse_point(line, separator_, columns_, fields_, point);
-    if (!valid) {
-      fail(excerpt(line) +
-           "; expected three numbers, the coordinates x y z, in blanks, commas or "
-           "semicolons");
+  /// The last line has no line break. It counts where no value is missing.
+  void check_open_end(std::string_view line) {
+    const std::size_t found = count_fields(line);
+    const std::string what = "the file ends without a line break";
+    if (line.ends_with('.') && info_.declared_points) {
+      fail(what + " within a number; expected all of it");
     }
-    if (info_.declared_points && !input_.line_terminated()) {
-      fail(
-          "the file ends without a line break, so it may be cut; expected one behind the last "
-          "line");
+    if (found >= fields_) {
+      if (!info_.declared_points) return;
+      info_.remarks.push_back(
+          {Message::Severity::kNote, "no-line-break", input_.name() + ": " + what, {}});
+      return;
     }
+    const std::string cut = what + " after " + std::to_string(found) + " of " +
+                            std::to_string(fields_) + " values, so it may be cut";
+    if (info_.declared_points) fail(cut + "; expected all values of the last line");
+    info_.remarks.push_back({Message::Severity::kWarning,
+                             "cut-text",
+                             input_.name() + ": " + cut,
+                             {{"line", static_cast<double>(input_.line())}}});
   }
 
   void check_count() const {
@@ -141,81 +109,24 @@ class XyzReader final : public PointReader {
     }
   }
 
-  /// Reads what stands before the first point and leaves the input there.
-  void read_prologue() {
-    if (input_.size() == 0u) refuse(input_.name(), "is empty; expected points, one a line");
-    input_.skip_byte_order_mark();
-    std::string_view line;
-    for (bool first = true;; first = false) {
-      const InputBuffer::Mark start = input_.mark();
-      if (!input_.next_line(line)) return;
-      line = without_leading_blanks(line);
-      if (is_comment(line)) {
-        if (first) note_comment(line);
-        continue;
-      }
-      Vec3 point{};
-      if (parse_point(line, point)) return input_.return_to(start);
-      read_first_line(line);
-      return;
-    }
-  }
-
-  /// The order of the columns where a first comment starts with x, y and z.
-  void note_comment(std::string_view line) {
-    ColumnNames header = parse_column_names(line);
-    if (!line.starts_with("//") || header.names.size() < 3) return;
-    header.names.resize(3);
-    if (const auto columns = columns_named(header)) use_columns(*columns, header.separator);
-  }
-
-  void use_columns(const Columns& columns, char separator) {
-    columns_ = columns;
-    separator_ = separator;
-  }
-
-  /// A first line that is no point.
-  void read_first_line(std::string_view line) {
-    if (const auto count = whole_number(line)) {
-      if (!input_.line_terminated()) fail("expected a line break behind the number of points");
-      info_.declared_points = *count;
-      refuse_ptx();
-      return;
-    }
-    const ColumnNames header = parse_column_names(line);
-    const auto columns = columns_named(header);
-    if (!columns) {
-      fail(excerpt(line) +
-           "; expected the coordinates x y z, the number of points, or a header with "
-           "one column each named x, y and z");
-    }
-    use_columns(*columns, header.separator);
-  }
-
-  void refuse_ptx() {
-    const InputBuffer::Mark start = input_.mark();
-    std::string_view line;
-    if (next_data_line(line) && whole_number(line)) {
-      fail(
-          "two lines of one number each start a PTX file, which is not read; expected points. "
-          "Convert it to LAS or PLY, for example with PDAL");
-    }
-    input_.return_to(start);
-  }
-
   InputBuffer input_;
+  bool may_choose_;
   CloudInfo info_;
-  Columns columns_ = kFirstThree;
-  char separator_ = ' ';
-  std::vector<std::string_view> fields_;
+  PointLine line_;
+  std::size_t fields_ = 0;  ///< of the first point's line
+  std::size_t remarks_at_start_ = 0;
   InputBuffer::Mark first_point_;
   std::uint64_t next_ = 0;  ///< number of points read
 };
 
 }  // namespace
 
-std::unique_ptr<PointReader> read_xyz(InputBuffer input) {
-  return std::make_unique<XyzReader>(std::move(input));
+std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions& options) {
+  if (!options.columns.empty() && options.columns.size() != 3) {
+    throw UsageError(std::to_string(options.columns.size()) +
+                     " columns chosen; expected three, of x, y and z");
+  }
+  return std::make_unique<XyzReader>(std::move(input), options);
 }
 
 }  // namespace clearway

@@ -207,3 +207,51 @@ TEST_CASE("a list that counts nonsense is refused") {
   CHECK_THAT(refusal_of_bytes(ascii + "1.5 1\n1 2 3\n"), Contains("whole number"));
   CHECK_THAT(refusal_of_bytes(ascii + "4000000000 1\n1 2 3\n"), Contains("line 10"));
 }
+
+TEST_CASE("more data than declared is refused where the vertices end the file") {
+  const std::string vertices = "element vertex 1\n" + kXyz;
+  const std::string face = "element face 0\nproperty list uchar int n\n";
+  for (const std::string& behind : {std::string(), face}) {
+    const std::string ascii = header("ascii", vertices + behind) + "1 2 3\n";
+    CHECK_THAT(refusal_of_bytes(ascii + "4 5 6\n"), Contains("line") && Contains("more than"));
+    CHECK_THAT(refusal_of_bytes(ascii + "\n \n7"), Contains("more than"));
+    const std::string binary =
+        header("binary_little_endian", vertices + behind) + std::string(12, '\0');
+    CHECK_THAT(refusal_of_bytes(binary + "x"), Contains("1 bytes more"));
+    CHECK_THAT(refusal_of_bytes(binary + std::string(12, '\0')), Contains("12 bytes more"));
+    ReaderScratch scratch;
+    CHECK(read_all(scratch.write("a.ply", ascii + " \n\n")).size() == 1);
+    CHECK(read_all(scratch.write("b.ply", binary + "\r\n")).size() == 1);
+  }
+}
+
+TEST_CASE("elements behind the vertices are not looked at") {
+  ReaderScratch scratch;
+  const std::string body = "element vertex 1\n" + kXyz +
+                           "element face 3\nproperty list uchar int n\nelement edge 1\n"
+                           "property int a\n";
+  for (const std::string tail :
+       {"", "3 0 1\n", "no face\n", "3 0 1 2\n3 0 1 2\n3 1 2 3\n1\n9 9\n"}) {
+    const auto cloud = read_all(scratch.write("a.ply", header("ascii", body) + "1 2 3\n" + tail));
+    CHECK(cloud.positions == std::vector<Vec3>{{1, 2, 3}});
+    CHECK(cloud.info.faces == 3);
+  }
+  for (const std::size_t bytes : {0, 1, 1000}) {
+    const auto cloud =
+        read_all(scratch.write("b.ply", header("binary_big_endian", body) + std::string(12, '\0') +
+                                            std::string(bytes, '\xFF')));
+    CHECK(cloud.positions == std::vector<Vec3>{{0, 0, 0}});
+  }
+}
+
+TEST_CASE("the lines of vertices are told") {
+  ReaderScratch scratch;
+  const auto path = scratch.write(
+      "a.ply", header("ascii", "element vertex 3\n" + kXyz) + "1 2 3\n\n4 5 6\n7 8 9\n");
+  const auto reader = open_point_file(path);
+  CHECK(reader->lines_of(std::vector<std::uint64_t>{0, 1, 2}) ==
+        std::vector<std::uint64_t>{8, 10, 11});
+  CHECK(reader->lines_of(std::vector<std::uint64_t>{2}) == std::vector<std::uint64_t>{11});
+  reader->rewind();
+  CHECK(read_all(*reader).size() == 3);
+}

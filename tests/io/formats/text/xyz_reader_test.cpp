@@ -53,7 +53,7 @@ TEST_CASE("a header says where the coordinates stand") {
   CHECK(points_of("# columns: x y z\n1 -2.5 3e2\n4 5 6\n") == kTwo);
   CHECK_THAT(refusal_of_text("id,x,y,z\n1,1,2,3\n2,1,2\n"), Contains("line 3"));
   CHECK_THAT(refusal_of_text("id;x;y;z\n1;1,5;2;3\n"), Contains("line 2"));
-  CHECK_THAT(refusal_of_text("x,y,height\n1,2,3\n"), Contains("line 1") && Contains("header"));
+  CHECK_THAT(refusal_of_text("x,y,depth\n1,2,3\n"), Contains("line 1") && Contains("header"));
 }
 
 TEST_CASE("a number of points at the start is required") {

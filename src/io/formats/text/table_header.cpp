@@ -1,0 +1,189 @@
+#include "io/formats/text/table_header.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "io/formats/text/column_names.hpp"
+
+namespace clearway {
+namespace {
+
+using Names = std::span<const std::string_view>;
+
+constexpr std::string_view kEast[] = {"easting",    "east",  "e",       "utm_easting",
+                                      "rechtswert", "utm_e", "utm_east"};
+constexpr std::string_view kNorth[] = {"northing", "north", "n",        "utm_northing",
+                                       "hochwert", "utm_n", "utm_north"};
+constexpr std::string_view kHeight[] = {"height", "elevation", "altitude", "h",
+                                        "elev",   "alt",       "hgt"};
+constexpr std::string_view kMetres[] = {"m", "metre", "metres", "meter", "meters"};
+constexpr std::string_view kFeet[] = {"ft", "foot", "feet", "ift"};
+constexpr std::string_view kSurveyFeet[] = {"us-ft", "usft",   "us_ft", "us ft",
+                                            "ftus",  "ft(us)", "ftus",  "us survey foot"};
+constexpr std::string_view kOthers[] = {
+    "mm", "millimetres", "millimeters", "cm",     "centimetres", "centimeters", "dm",    "km",
+    "in", "\"",          "inch",        "inches", "yd",          "yard",        "yards", "mil",
+    "um", "deg",         "°",           "degree", "degrees",     "arcsec",      "rad"};
+
+bool is_one_of(std::string_view text, Names names) {
+  return std::find(names.begin(), names.end(), text) != names.end();
+}
+
+std::string lower(std::string_view text) {
+  std::string out;
+  for (const char c : text) out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\"'";
+  const std::size_t start = text.find_first_not_of(kBlanks);
+  if (start == std::string_view::npos) return {};
+  return text.substr(start, text.find_last_not_of(kBlanks) - start + 1);
+}
+
+/// "# columns: x y z" becomes "x y z".
+std::string_view without_mark_and_label(std::string_view line) {
+  line = trimmed(line);
+  while (line.starts_with('#')) line.remove_prefix(1);
+  if (line.starts_with("//")) line.remove_prefix(2);
+  if (line.starts_with('%')) line.remove_prefix(1);
+  const std::size_t colon = line.find(':');
+  if (colon != std::string_view::npos && line.find_first_of(",;") > colon) {
+    line.remove_prefix(colon + 1);
+  }
+  return line;
+}
+
+/// Of a field such as "X [m]": what stands in brackets.
+std::string unit_in(std::string_view field) {
+  const std::size_t open = field.find_first_of("[(");
+  if (open == std::string_view::npos) return {};
+  const char close = field[open] == '[' ? ']' : ')';
+  const std::size_t end = field.rfind(close);
+  const std::size_t stop = end == std::string_view::npos || end < open ? field.size() : end;
+  return lower(trimmed(field.substr(open + 1, stop - open - 1)));
+}
+
+void add_name(TableHeader& header, std::string_view field) {
+  std::string name = table_name(field);
+  std::string unit = unit_in(field);
+  const std::size_t mark = name.rfind('_');
+  if (unit.empty() && mark != std::string::npos && mark > 0) {
+    const std::string_view end = std::string_view(name).substr(mark + 1);
+    if (is_one_of(end, kMetres) || is_one_of(end, kFeet) || is_one_of(end, kOthers)) {
+      unit = end;
+      name.resize(mark);
+    }
+  }
+  header.names.push_back(std::move(name));
+  header.units.push_back(std::move(unit));
+}
+
+/// The only column with one of the names.
+std::optional<std::size_t> find_one(const TableHeader& header, Names names) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < header.names.size(); ++i) {
+    if (!is_one_of(header.names[i], names)) continue;
+    if (found) return std::nullopt;
+    found = i;
+  }
+  return found;
+}
+
+bool has(const TableHeader& header, Names names) {
+  return std::any_of(header.names.begin(), header.names.end(),
+                     [&](const std::string& name) { return is_one_of(name, names); });
+}
+
+/// Names such as qx or q_rs_x for each of x, y, z and w.
+bool has_quaternion(const TableHeader& header) {
+  return std::all_of(std::begin("xyzw"), std::end("xyzw") - 1, [&](char part) {
+    return std::any_of(header.names.begin(), header.names.end(), [&](const std::string& name) {
+      return name.size() > 1 && name.starts_with('q') && name.ends_with(part);
+    });
+  });
+}
+
+}  // namespace
+
+std::string table_name(std::string_view field) {
+  field = trimmed(field);
+  field = field.substr(0, field.find_first_of("[(", 1));
+  std::string name;
+  for (const char c : lower(field)) {
+    if (c != ' ' && c != '\t' && c != '"' && c != '\'') name += c;
+  }
+  return name;
+}
+
+TableHeader parse_table_header(std::string_view line) {
+  TableHeader header;
+  line = without_mark_and_label(line);
+  header.separator = line.find(';') != std::string_view::npos   ? ';'
+                     : line.find(',') != std::string_view::npos ? ','
+                                                                : ' ';
+  std::vector<std::string_view> fields;
+  split_fields(line, header.separator, fields);
+  for (const std::string_view field : fields) {
+    // In "X [m] Y [m]" with blanks for separators the unit is a field of its own.
+    if (header.separator == ' ' && !header.units.empty() && field.find_first_of("[(") == 0) {
+      header.units.back() = unit_in(field);
+    } else {
+      add_name(header, field);
+    }
+  }
+  return header;
+}
+
+std::optional<std::size_t> column_named(const TableHeader& header, std::string_view name) {
+  return find_one(header, {&name, 1});
+}
+
+std::optional<CoordinateColumns> coordinate_columns(const TableHeader& header) {
+  auto x = column_named(header, "x");
+  auto y = column_named(header, "y");
+  if (!x && !y) {
+    x = find_one(header, kEast);
+    y = find_one(header, kNorth);
+  }
+  auto z = column_named(header, "z");
+  if (!z && !has(header, std::array<std::string_view, 1>{"z"})) z = find_one(header, kHeight);
+  if (!x || !y || !z) return std::nullopt;
+  return CoordinateColumns{*x, *y, *z};
+}
+
+std::string other_table(const TableHeader& header) {
+  constexpr std::string_view kLatitude[] = {"lat", "latitude"};
+  constexpr std::string_view kLongitude[] = {"lon", "long", "lng", "longitude"};
+  constexpr std::string_view kRoll[] = {"roll"};
+  constexpr std::string_view kPitch[] = {"pitch"};
+  constexpr std::string_view kHeading[] = {"yaw", "heading", "azimuth"};
+  if (has_quaternion(header)) return "a trajectory (columns of a quaternion)";
+  if (has(header, kRoll) && has(header, kPitch) && has(header, kHeading)) {
+    return "a trajectory (columns roll, pitch and heading)";
+  }
+  if (has(header, kLatitude) && has(header, kLongitude) && !coordinate_columns(header)) {
+    return "latitudes and longitudes, which are angles and no lengths";
+  }
+  return {};
+}
+
+TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns) {
+  std::optional<LengthUnit> found;
+  for (const std::size_t column : columns) {
+    if (column >= header.units.size()) continue;
+    const std::string& unit = header.units[column];
+    const auto known = is_one_of(unit, kMetres)       ? std::optional(LengthUnit::kMetre)
+                       : is_one_of(unit, kFeet)       ? std::optional(LengthUnit::kFoot)
+                       : is_one_of(unit, kSurveyFeet) ? std::optional(LengthUnit::kUsSurveyFoot)
+                                                      : std::nullopt;
+    if (!known && is_one_of(unit, kOthers)) return {LengthUnit::kUnknown, unit};
+    if (!known) continue;
+    if (found && *found != *known) return {LengthUnit::kUnknown, "m and ft together"};
+    found = known;
+  }
+  return {found.value_or(LengthUnit::kUnknown), {}};
+}
+
+}  // namespace clearway

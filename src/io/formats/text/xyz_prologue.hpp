@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "io/formats/input_buffer.hpp"
+#include "io/formats/point_reader.hpp"
+#include "io/formats/text/point_line.hpp"
+
+namespace clearway {
+
+/// What a text says before its first point.
+struct XyzPrologue {
+  PointLine line;
+  std::optional<std::uint64_t> declared_points;
+  LengthUnit unit = LengthUnit::kUnknown;
+  std::vector<Message> remarks;
+  std::size_t fields = 0;  ///< of the first point's line
+};
+
+/// Reads what stands before the first point, and leaves the input there. Throws InputError for a
+/// text that is no table of points.
+XyzPrologue read_xyz_prologue(InputBuffer& input, const PointReadOptions& options);
+
+}  // namespace clearway
