@@ -33,6 +33,7 @@ enum class Remedy {
   kNameFormat,          ///< of the trajectory
   kAllowNonRigid,
   kAskForClearance,
+  kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kResume,  ///< the same call goes on from what was finished
 };
 

@@ -21,6 +21,8 @@ namespace {
 constexpr const char* kHowToResume =
     "the same command with --resume, without --force, continues from the finished work";
 
+constexpr double kSpacingsInRadius = 4;  // of a mesh, where no spacing is given
+
 /// Beside what the library reports.
 struct ProgramReport {
   double inputs_seconds = 0, total_seconds = 0;  ///< wall clock
@@ -108,7 +110,9 @@ void log_report(const SearchReport& report, const RunOptions& options, double se
 
 Query read_query(const RunOptions& options) {
   std::vector<Message> warnings;
-  std::vector<Vec3> model = read_model(options.model, &warnings);
+  ModelOptions how = options.model_options;
+  if (how.spacing == 0) how.spacing = options.query.radius / kSpacingsInRadius;
+  std::vector<Vec3> model = read_model(options.model, how, &warnings);
   for (const Message& warning : warnings) log_message(warning);
   return {std::move(model), read_trajectory(options.trajectory, options.trajectory_options),
           options.query};

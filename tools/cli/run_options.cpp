@@ -14,7 +14,9 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("--env", options.environment, "The environment: a store of clearway convert")
       ->type_name("FILE")
       ->required();
-  command.add_option("--model", options.model, "The model's points: LAS, PLY or XYZ text, metres")
+  command
+      .add_option("--model", options.model,
+                  "The model: a mesh in STL, OBJ, PLY or OFF, or points in LAS, PLY or XYZ text")
       ->type_name("FILE")
       ->required();
   command
@@ -29,6 +31,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
+  add_model_options(command, options.model_options);
   add_trajectory_options(command, options.trajectory_options);
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "clearway/model.hpp"
 #include "clearway/search.hpp"
 #include "clearway/trajectory.hpp"
 
@@ -16,6 +17,7 @@ struct RunOptions {
   std::filesystem::path environment, model, trajectory, output;
   QueryParameters query;
   SearchOptions search;
+  ModelOptions model_options;
   TrajectoryOptions trajectory_options;
   bool json = false;
 };

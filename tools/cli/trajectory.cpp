@@ -30,7 +30,7 @@ namespace {
 
 struct ChangeOptions {
   std::filesystem::path input, output, model;
-  double max_motion = 0;
+  double max_motion = 0, model_unit = 1;
   TrajectoryOptions trajectory;
   bool force = false;
   bool json = false;
@@ -65,7 +65,9 @@ void write_changed(const ChangeOptions& options, const Change& change) {
   PendingFile output(options.output, options.force);
   const std::vector<Pose> before = read_trajectory(options.input, options.trajectory);
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
-  const Box model = box_of(read_model(options.model));
+  // No other place of a mesh is farther out than its vertices.
+  const Box model =
+      box_of(read_model(options.model, {.unit = options.model_unit, .vertices_only = true}));
   const double motion_before = largest_motion(model, before);
   if (!std::isfinite(motion_before)) {
     throw InputError(options.input.string() +
@@ -108,11 +110,11 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
       ->required()
       ->check(positive_length());
   command
-      .add_option(
-          "--model", options->model,
-          "The model's points: LAS, PLY or XYZ text, metres; its bounding box is what moves")
+      .add_option("--model", options->model,
+                  "The model, as clearway run reads it; its bounding box is what moves")
       ->type_name("FILE")
       ->required();
+  add_model_unit(command, "--model-unit", options->model_unit);
   add_trajectory_options(command, options->trajectory);
   command.add_flag("--force", options->force, "Overwrite an existing output");
   command.add_flag("--json", options->json, "One JSON object on standard output");

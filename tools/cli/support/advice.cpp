@@ -70,6 +70,10 @@ std::string advice_on(const Error& error) {
       return "; --allow-non-rigid accepts any invertible matrix";
     case Remedy::kAskForClearance:
       return "; run with --clearance";
+    case Remedy::kModelSpacing:
+      return "; --model-spacing " +
+             (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
+             " sets it, and --model-unit says what the file counts in";
     case Remedy::kResume:
       return "; the same command with --resume, without --force, continues from the finished work";
   }

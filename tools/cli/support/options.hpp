@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 
 namespace CLI {
@@ -27,6 +28,12 @@ void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 
 /// --threads; 0 stands for all cores.
 void add_threads_option(CLI::App& command, int& threads);
+
+/// --model-unit; `names` where it is called otherwise too.
+void add_model_unit(CLI::App& command, const std::string& names, double& unit);
+
+/// --model-spacing, --model-unit and --model-vertices.
+void add_model_options(CLI::App& command, ModelOptions& options);
 
 /// --trajectory-format and --allow-non-rigid.
 void add_trajectory_options(CLI::App& command, TrajectoryOptions& options);

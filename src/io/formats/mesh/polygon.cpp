@@ -1,0 +1,164 @@
+#include "io/formats/mesh/polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearway {
+namespace {
+
+struct Place {
+  double x, y;
+};
+
+Vec3 newell_normal(std::span<const Vec3> corners) {
+  Vec3 normal{0, 0, 0};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3& a = corners[i];
+    const Vec3& b = corners[(i + 1) % corners.size()];
+    normal.x += (a.y - b.y) * (a.z + b.z);
+    normal.y += (a.z - b.z) * (a.x + b.x);
+    normal.z += (a.x - b.x) * (a.y + b.y);
+  }
+  return normal;
+}
+
+/// The corners as seen along the normal's largest axis, counter-clockwise, about the first corner.
+std::vector<Place> projected(std::span<const Vec3> corners, const Vec3& normal) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+  }
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const bool turned = normal[axis] < 0;
+  std::vector<Place> places;
+  places.reserve(corners.size());
+  for (const Vec3& corner : corners) {
+    const double x = corner[u] - corners[0][u], y = corner[v] - corners[0][v];
+    places.push_back(turned ? Place{y, x} : Place{x, y});
+  }
+  return places;
+}
+
+/// Above 0 where a, b, c turn left.
+double turn(const Place& a, const Place& b, const Place& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+bool is_fan(const std::vector<Place>& places) {
+  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+    if (!(turn(places[0], places[i], places[i + 1]) >= 0)) return false;
+  }
+  return true;
+}
+
+double bend_of(std::span<const Vec3> corners, const Vec3& normal) {
+  const double length = std::hypot(normal.x, normal.y, normal.z);
+  if (!(length > 0) || !std::isfinite(length)) return 0;
+  Vec3 mean{0, 0, 0};
+  const auto count = static_cast<double>(corners.size());
+  for (const Vec3& corner : corners) {
+    for (int k = 0; k < 3; ++k) mean[k] += corner[k] / count;
+  }
+  double bend = 0;
+  for (const Vec3& corner : corners) {
+    double height = 0;
+    for (int k = 0; k < 3; ++k) height += (corner[k] - mean[k]) * (normal[k] / length);
+    bend = std::max(bend, std::abs(height));
+  }
+  return bend;
+}
+
+void cut_fan(std::size_t corners, CutPolygon& cut) {
+  cut.triangles.clear();
+  for (std::uint32_t i = 1; i + 1 < corners; ++i) cut.triangles.push_back({0, i, i + 1});
+}
+
+/// The rest of a polygon from which ears are cut. Whether a corner is an ear is looked at again
+/// only for the neighbours of one that was cut, so all takes the square of the number of corners.
+class EarCutter {
+ public:
+  explicit EarCutter(const std::vector<Place>& places) : places_(places) {
+    const auto count = static_cast<std::uint32_t>(places.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+      next_.push_back((i + 1) % count);
+      before_.push_back((i + count - 1) % count);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) ear_.push_back(is_ear(i));
+  }
+
+  /// False where no ear is left: the outline crosses itself.
+  bool cut(CutPolygon& cut) {
+    std::uint32_t at = 0, looked_at = 0;
+    for (std::size_t left = places_.size(); left > 3;) {
+      if (!ear_[at]) {
+        if (++looked_at > left) return false;
+        at = next_[at];
+        continue;
+      }
+      looked_at = 0;
+      cut.triangles.push_back({before_[at], at, next_[at]});
+      at = take_out(at);
+      --left;
+    }
+    cut.triangles.push_back({before_[at], at, next_[at]});
+    return true;
+  }
+
+ private:
+  /// Returns the corner behind.
+  std::uint32_t take_out(std::uint32_t corner) {
+    const std::uint32_t before = before_[corner], next = next_[corner];
+    next_[before] = next;
+    before_[next] = before;
+    ear_[before] = is_ear(before);
+    ear_[next] = is_ear(next);
+    return next;
+  }
+
+  bool is_ear(std::uint32_t corner) const {
+    const Place& a = places_[before_[corner]];
+    const Place& b = places_[corner];
+    const Place& c = places_[next_[corner]];
+    if (!(turn(a, b, c) >= 0)) return false;
+    for (std::uint32_t i = next_[next_[corner]]; i != before_[corner]; i = next_[i]) {
+      const Place& p = places_[i];
+      const bool on_corner = same(p, a) || same(p, b) || same(p, c);
+      if (!on_corner && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  static bool same(const Place& a, const Place& b) { return a.x == b.x && a.y == b.y; }
+
+  const std::vector<Place>& places_;
+  std::vector<std::uint32_t> next_, before_;
+  std::vector<bool> ear_;
+};
+
+}  // namespace
+
+bool is_fan(std::span<const Vec3> corners) {
+  return is_fan(projected(corners, newell_normal(corners)));
+}
+
+CutPolygon cut_polygon(std::span<const Vec3> corners) {
+  CutPolygon cut;
+  if (corners.size() == 3) {
+    cut.triangles = {{0, 1, 2}};
+    return cut;
+  }
+  const Vec3 normal = newell_normal(corners);
+  cut.bend = bend_of(corners, normal);
+  const std::vector<Place> places = projected(corners, normal);
+  if (is_fan(places)) {
+    cut_fan(corners.size(), cut);
+  } else if (!EarCutter(places).cut(cut)) {
+    cut.crossing = true;
+    cut_fan(corners.size(), cut);
+  }
+  return cut;
+}
+
+}  // namespace clearway

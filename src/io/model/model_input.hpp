@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "clearway/model.hpp"
+#include "io/formats/mesh/triangle_mesh.hpp"
+
+namespace clearway {
+
+/// What a model's file holds, in metres: vertices and triangles of a mesh, or points alone.
+struct ModelInput {
+  std::filesystem::path path;
+  TriangleMesh mesh;  ///< no triangles: the vertices are points
+  MeshRemarks remarks;
+  std::vector<Message> messages;  ///< on the file as a whole
+
+  bool is_mesh() const { return !mesh.triangles.empty(); }
+};
+
+/// Reads a file that has one vertex or point at least; everything is finite in metres too. unit:
+/// metres of a unit of the file. with_faces: false leaves the faces out. Throws InputError.
+ModelInput read_model_input(const std::filesystem::path& path, double unit, bool with_faces);
+
+/// Its points as the options ask: samples of a mesh, or all its vertices. Throws InputError as
+/// sample_mesh does, and for a mesh without a spacing. Notes and warnings are appended.
+std::vector<Vec3> points_of(const ModelInput& input, const ModelOptions& options,
+                            std::vector<Message>& messages);
+
+}  // namespace clearway

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "clearway/vec3.hpp"
+
+namespace clearway {
+
+/// The distances of points to their nearest neighbours, metres.
+struct PointGaps {
+  double median = 0, largest = 0;
+  std::uint64_t repeated = 0;  ///< points at the place of another; they are left out
+};
+
+/// Zeros for fewer than two places.
+PointGaps gaps_of(std::span<const Vec3> points);
+
+}  // namespace clearway

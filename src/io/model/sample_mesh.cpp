@@ -1,0 +1,102 @@
+#include "io/model/sample_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/point_box.hpp"
+#include "core/util/format.hpp"
+#include "io/formats/mesh/vertex_welder.hpp"
+#include "io/model/surface_cover.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kMostSpacings = 0x1p28;  // of the largest coordinate; the proof needs it
+
+/// The positions of the triangles' vertices, each once, in the order of the vertices.
+std::vector<Vec3> used_vertices(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size());
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) used[corner] = true;
+  }
+  std::vector<Vec3> places;
+  VertexWelder welder(places);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) welder.number_of(mesh.vertices[i]);
+  }
+  return places;
+}
+
+double estimate(const TriangleMesh& mesh, double spacing) {
+  const SurfaceCover cover(spacing, 0);
+  double samples = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    samples += cover.estimate(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+  }
+  return samples;
+}
+
+/// The next of 1, 2, 5, 10 ... above.
+double rounder(double spacing) {
+  const double power = std::pow(10, std::floor(std::log10(spacing)));
+  for (const double digit : {1, 2, 5}) {
+    if (digit * power > spacing * 1.0001) return digit * power;
+  }
+  return 10 * power;
+}
+
+[[noreturn]] void refuse_spacing(const TriangleMesh& mesh, double spacing, double samples,
+                                 const std::vector<Vec3>& vertices, const std::string& name) {
+  double fits = spacing;
+  do {
+    fits = rounder(fits);
+  } while (fits < kLargestSpacing && estimate(mesh, fits) > kMostSamples / 2.0);
+  const Box box = box_of(vertices);
+  refuse(name,
+         "the mesh is " + format_brief(box.hi.x - box.lo.x) + " x " +
+             format_brief(box.hi.y - box.lo.y) + " x " + format_brief(box.hi.z - box.lo.z) +
+             " m; at a spacing of " + format_number(spacing) + " m it takes " +
+             (samples > 0 ? "some " + format_brief(samples) + " points" : "more points") +
+             ", and at most " + format_count(kMostSamples) +
+             " are allowed. Is the file in metres? A spacing of " + format_number(fits) +
+             " m is possible",
+         Remedy::kModelSpacing, fits);
+}
+
+void check_spacing(const std::vector<Vec3>& vertices, double spacing, const std::string& name) {
+  if (!(spacing >= kLeastSpacing && spacing <= kLargestSpacing)) {
+    throw UsageError(name + ": a model spacing of " + shown(spacing) +
+                     " m; expected one from 1e-9 to 1e9");
+  }
+  double largest = 0;
+  for (const Vec3& v : vertices) {
+    largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  }
+  if (largest > spacing * kMostSpacings) {
+    refuse(name,
+           "coordinates up to " + format_brief(largest) + " m are too large for a spacing of " +
+               format_number(spacing) + " m; expected at most " +
+               format_brief(spacing * kMostSpacings) + " m. Move the model to its own origin",
+           Remedy::kModelSpacing, 0);
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const std::string& name) {
+  const std::vector<Vec3> vertices = used_vertices(mesh);
+  check_spacing(vertices, spacing, name);
+  const double expected = estimate(mesh, spacing);
+  if (expected > 4.0 * kMostSamples) refuse_spacing(mesh, spacing, expected, vertices, name);
+  SurfaceCover cover(spacing, kMostSamples);
+  for (const Vec3& vertex : vertices) cover.add(vertex);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    if (!cover.cover(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) {
+      refuse_spacing(mesh, spacing, expected, vertices, name);
+    }
+  }
+  return cover.samples().take_points();
+}
+
+}  // namespace clearway

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clearway/vec3.hpp"
+#include "io/formats/mesh/triangle_mesh.hpp"
+
+namespace clearway {
+
+inline constexpr std::uint64_t kMostSamples = 50'000'000;
+inline constexpr double kLeastSpacing = 1e-9, kLargestSpacing = 1e9;  // metres
+
+/// Points of a mesh's surface such that no place of it is farther than `spacing` from the nearest:
+/// the vertices of its triangles, then what else is needed. Each lies on its triangle within 2^-48
+/// of the largest coordinate. The same mesh gives the same points in the same order. Throws
+/// InputError, which begins with `name`, where more than kMostSamples are needed, and for a spacing
+/// too fine for the size of the coordinates. docs/design/model.md has the proof.
+std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const std::string& name);
+
+}  // namespace clearway

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clearway/vec3.hpp"
+
+namespace clearway {
+
+/// Points, with a hash grid that finds those within a reach.
+class SampleSet {
+ public:
+  /// reach: above 0; coordinates are at most 2^31 of it.
+  explicit SampleSet(double reach) : reach_(reach), heads_(1024, kNone) {}
+
+  const std::vector<Vec3>& points() const { return points_; }
+  std::vector<Vec3> take_points() { return std::move(points_); }
+  std::size_t size() const { return points_.size(); }
+
+  void add(const Vec3& point);
+
+  /// Calls use(point) for points until it returns true: for all within the reach of `place`, but
+  /// for a few whose distance is the reach but for rounding, and for some farther ones. Whether it
+  /// returned true.
+  template <typename Use>
+  bool any_near(const Vec3& place, Use use) const {
+    const Cell middle = cell_of(place);
+    for (std::int64_t x = middle.x - 1; x <= middle.x + 1; ++x) {
+      for (std::int64_t y = middle.y - 1; y <= middle.y + 1; ++y) {
+        for (std::int64_t z = middle.z - 1; z <= middle.z + 1; ++z) {
+          for (std::uint32_t i = heads_[slot_of({x, y, z})]; i != kNone; i = next_[i]) {
+            if (use(points_[i])) return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  struct Cell {
+    std::int64_t x, y, z;
+  };
+
+  Cell cell_of(const Vec3& point) const;
+  /// Cells that share a slot share their points.
+  std::size_t slot_of(const Cell& cell) const {
+    std::uint64_t hash = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15;
+    hash = (hash ^ (hash >> 32) ^ static_cast<std::uint64_t>(cell.y)) * 0xD6E8FEB86659FD93;
+    hash = (hash ^ (hash >> 32) ^ static_cast<std::uint64_t>(cell.z)) * 0xD6E8FEB86659FD93;
+    return (hash ^ (hash >> 32)) & (heads_.size() - 1);
+  }
+  void grow();
+
+  double reach_;
+  std::vector<Vec3> points_;
+  std::vector<std::uint32_t> next_;   // of the same slot
+  std::vector<std::uint32_t> heads_;  // power of two
+};
+
+}  // namespace clearway
