@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 #include "core/util/format.hpp"
 
@@ -70,25 +69,6 @@ void add_threads_option(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "Threads (default: all cores)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-}
-
-void add_trajectory_options(CLI::App& command, TrajectoryOptions& options) {
-  const std::map<std::string, TrajectoryFormat> formats{{"auto", TrajectoryFormat::kAuto},
-                                                        {"matrix", TrajectoryFormat::kMatrix},
-                                                        {"tum", TrajectoryFormat::kTum},
-                                                        {"euroc", TrajectoryFormat::kEuroc},
-                                                        {"csv", TrajectoryFormat::kCsv}};
-  command
-      .add_option_function<std::string>(
-          "--trajectory-format",
-          [formats, &format = options.format](const std::string& name) {
-            format = formats.at(name);
-          },
-          "Format of the trajectory where a guess could go wrong (default: auto)")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "matrix", "tum", "euroc", "csv"}));
-  command.add_flag("--allow-non-rigid", options.allow_non_rigid,
-                   "Accept matrices that scale or shear");
 }
 
 }  // namespace clearway::tool

@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <string>
 
-#include "clearway/trajectory.hpp"
-
 namespace CLI {
 class App;
 class Validator;
@@ -27,9 +25,6 @@ void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 
 /// --threads; 0 stands for all cores.
 void add_threads_option(CLI::App& command, int& threads);
-
-/// --trajectory-format and --allow-non-rigid.
-void add_trajectory_options(CLI::App& command, TrajectoryOptions& options);
 
 /// Bytes of "512M", "1.5G", "4GiB" or "300000000"; throws CLI::ValidationError naming the option.
 std::uint64_t parse_size(const std::string& option, const std::string& text);
