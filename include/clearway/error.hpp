@@ -31,6 +31,9 @@ enum class Remedy {
   kOverwriteNotResume,  ///< what was to be resumed is damaged
   kRestoreOptions,      ///< what was to be resumed belongs to other options or files
   kNameFormat,          ///< of the trajectory
+  kNameCrs,             ///< that the trajectory is to be in
+  kDeclareAngles,       ///< unit and frame of the trajectory's angles
+  kDeclareLength,       ///< unit of the trajectory's positions
   kAllowNonRigid,
   kAskForClearance,
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice

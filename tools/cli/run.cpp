@@ -108,14 +108,16 @@ void log_report(const SearchReport& report, const RunOptions& options, double se
   }
 }
 
-Query read_query(const RunOptions& options) {
+Query read_query(RunOptions& options, const Store& store) {
   std::vector<Message> warnings;
   ModelOptions how = options.model_options;
   if (how.spacing == 0) how.spacing = options.query.radius / kSpacingsInRadius;
   std::vector<Vec3> model = read_model(options.model, how, &warnings);
+  options.trajectory_options.default_crs = store.crs_wkt();
+  std::vector<Pose> poses =
+      read_trajectory(options.trajectory, options.trajectory_options, &warnings);
   for (const Message& warning : warnings) log_message(warning);
-  return {std::move(model), read_trajectory(options.trajectory, options.trajectory_options),
-          options.query};
+  return {std::move(model), std::move(poses), options.query};
 }
 
 void run(RunOptions& options) {
@@ -126,7 +128,7 @@ void run(RunOptions& options) {
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
   const Store store(options.environment);
-  const Query query = read_query(options);
+  const Query query = read_query(options, store);
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/support/options.hpp"
+#include "cli/support/trajectory_options.hpp"
 
 namespace clearway::tool {
 namespace {

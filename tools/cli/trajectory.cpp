@@ -17,6 +17,7 @@
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
+#include "cli/support/trajectory_options.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
 #include "core/trajectory/thin_trajectory.hpp"

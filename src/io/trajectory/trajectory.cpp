@@ -1,214 +1,176 @@
 #include "clearway/trajectory.hpp"
 
-#include <array>
-#include <cmath>
-#include <optional>
-#include <string_view>
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "io/formats/input_buffer.hpp"
-#include "io/formats/text/column_names.hpp"
-#include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/pose_input.hpp"
-#include "io/trajectory/trajectory_columns.hpp"
+#include "io/trajectory/sbet.hpp"
+#include "io/trajectory/text_trajectory.hpp"
+#include "io/trajectory/threedtk_trajectory.hpp"
+#include "io/trajectory/trajectory_file.hpp"
 
 namespace clearway {
 namespace {
 
-bool starts_with_number(std::string_view line) {
-  const char* at = line.data();
-  double value = 0;
-  return parse_number(at, at + line.size(), value);
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return ending;
 }
 
-class TrajectoryParser {
- public:
-  TrajectoryParser(InputBuffer input, const TrajectoryOptions& options)
-      : input_(std::move(input)), options_(options), format_(options.format) {}
+bool is_text(std::span<const std::byte> bytes) {
+  return std::none_of(bytes.begin(), bytes.end(), [](std::byte byte) {
+    const auto c = static_cast<unsigned char>(byte);
+    return c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f';
+  });
+}
 
-  std::vector<Pose> parse() {
-    input_.skip_byte_order_mark();
-    std::string_view line;
-    while (input_.next_line(line)) {
-      const char* const end = line.data() + line.size();
-      line.remove_prefix(static_cast<std::size_t>(skip_blanks(line.data(), end) - line.data()));
-      if (line.empty()) continue;
-      if (line.front() == '#') {
-        if (first_line_ == 0 && reads_names()) note_header(line);
-      } else if (first_line_ == 0 && !started_ && is_header(line)) {
-        started_ = true;
-      } else {
-        if (first_line_ == 0) start(line);
-        add_row(line);
-      }
-    }
-    return std::move(poses_);
+/// Whether an input that no ending names holds an SBET; refused where that is likely only.
+bool holds_sbet(InputBuffer& input, const std::string& ending) {
+  if (ending == ".sbet") return true;
+  if (!input.can_seek()) return false;
+  const InputBuffer::Mark start = input.mark();
+  const auto record = input.take(kSbetRecordBytes);
+  const bool text = is_text(record);
+  const bool plausible = may_be_sbet(record) && input.size().value_or(0) % kSbetRecordBytes == 0;
+  input.return_to(start);
+  if (text || record.empty()) return false;
+  if (ending == ".out") return true;
+  if (plausible) {
+    refuse(input.name(), "binary, and may be an SBET; expected the ending .sbet or .out",
+           Remedy::kNameFormat);
   }
+  return false;
+}
 
- private:
-  [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
-    refuse_line(input_.name(), input_.line(), what, remedy);
+/// The format where the name decides it.
+TrajectoryFormat format_by_name(const std::string& ending) {
+  if (ending == ".pose") return TrajectoryFormat::kThreedtkPose;
+  if (ending == ".frames") return TrajectoryFormat::kThreedtkFrames;
+  return TrajectoryFormat::kAuto;
+}
+
+void read_file(const std::filesystem::path& path, TrajectoryOptions options, TrajectoryFile& out) {
+  const std::string ending = ending_of(path);
+  if (options.format == TrajectoryFormat::kAuto) options.format = format_by_name(ending);
+  if (options.format == TrajectoryFormat::kThreedtkPose ||
+      options.format == TrajectoryFormat::kThreedtkFrames) {
+    read_threedtk_file(path, options, out);
+    return;
   }
-
-  bool reads_names() const {
-    return format_ == TrajectoryFormat::kAuto || format_ == TrajectoryFormat::kCsv;
+  File file = File::open_for_reading(path);
+  const auto access = file.is_regular() ? InputBuffer::Access::kSeek : InputBuffer::Access::kStream;
+  InputBuffer input(std::move(file), access);
+  if (options.format == TrajectoryFormat::kAuto && holds_sbet(input, ending)) {
+    options.format = TrajectoryFormat::kSbet;
   }
-
-  void note_header(std::string_view line) {
-    if (auto columns = pose_columns(parse_column_names(line))) columns_ = std::move(columns);
+  if (options.format == TrajectoryFormat::kSbet) {
+    out.format = options.format;
+    read_sbet(input, options, out);
+  } else {
+    read_text_trajectory(std::move(input), options, out);
   }
+}
 
-  /// Whether the first line that is no comment names columns; refused where they make no pose.
-  bool is_header(std::string_view line) {
-    if (starts_with_number(line)) return false;
-    if (format_ == TrajectoryFormat::kEuroc) return true;
-    if (!reads_names()) return false;
-    columns_ = pose_columns(parse_column_names(line));
-    if (!columns_) {
-      fail(excerpt(line) +
-           "; expected numbers, or a header with the columns x y z (or tx, p_x, pos_x, ...) and qx "
-           "qy "
-           "qz qw (or q_x, ...) or r00 to r22");
-    }
-    format_ = TrajectoryFormat::kCsv;
-    return true;
+/// Options that the file gives no use for were meant for something.
+void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& options,
+                    const TrajectoryFile& found) {
+  const std::string name = path.string();
+  if (found.poses.empty()) return;
+  if (!found.has_angles && (options.angle_unit != AngleUnit::kDeclared ||
+                            options.angle_frame != AngleFrame::kDeclared)) {
+    throw UsageError(name +
+                     ": has no angles whose unit or frame could be declared; its format is " +
+                     name_of(found.format));
   }
-
-  /// Settles the format by the first line of numbers.
-  void start(std::string_view line) {
-    first_line_ = input_.line();
-    std::vector<std::string_view> fields;
-    split_fields(line, columns_ ? columns_->separator : ',', fields);
-    if (format_ == TrajectoryFormat::kEuroc) {
-      if (fields.size() < 8) {
-        fail(std::to_string(fields.size()) +
-             " columns; expected at least 8 with commas: time, position x y z, quaternion w x y z");
-      }
-      columns_ = euroc_columns(fields.size());
-    } else if (format_ == TrajectoryFormat::kCsv && !columns_) {
-      fail("expected a header that names the columns before the first numbers");
-    } else if (format_ == TrajectoryFormat::kAuto) {
-      if (columns_ && columns_->fields == fields.size()) {
-        format_ = TrajectoryFormat::kCsv;
-      } else {
-        guess(line);
-      }
-    }
+  if (found.crs.empty() && !(options.crs.empty() && options.datum.empty())) {
+    throw UsageError(name + ": has no latitudes and longitudes that could be turned into a CRS");
   }
+  const bool own_unit = found.format == TrajectoryFormat::kSbet ||
+                        found.format == TrajectoryFormat::kThreedtkPose ||
+                        found.format == TrajectoryFormat::kThreedtkFrames;
+  if (options.metres_per_unit != 0 && own_unit) {
+    throw UsageError(name + ": the format " + name_of(found.format) + " has a unit of its own");
+  }
+}
 
-  /// By the number of numbers, where there is no header.
-  void guess(std::string_view line) {
-    const auto count = parse_number_line(line, numbers_);
-    if (count == 12u || count == 16u) {
-      format_ = TrajectoryFormat::kMatrix;
-    } else if (count == 8u) {
-      constexpr double kSurelyNanoseconds = 1e14;
-      if (numbers_[0] >= kSurelyNanoseconds) {
-        fail(
-            "8 numbers with a time in nanoseconds, but no header; the format can be tum (qx qy qz "
-            "qw) or euroc (qw qx qy qz)",
-            Remedy::kNameFormat);
-      }
-      format_ = TrajectoryFormat::kTum;
-    } else {
-      refuse_count(
-          line, count,
-          "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the columns. "
-          "EuRoC without a header has to be named");
+/// The model's origin, where the file has the positions of another point of the model.
+void apply_lever_arm(const Vec3& lever, std::vector<Pose>& poses) {
+  if (lever == Vec3{0, 0, 0}) return;
+  for (Pose& pose : poses) {
+    for (int row = 0; row < 3; ++row) {
+      const double* r = pose.rotation + 3 * row;
+      pose.translation[row] -= r[0] * lever.x + r[1] * lever.y + r[2] * lever.z;
     }
   }
+}
 
-  [[noreturn]] void refuse_count(std::string_view line, std::optional<std::size_t> count,
-                                 const std::string& expected) const {
-    if (!count) fail(excerpt(line) + "; expected numbers only, in blanks or commas: " + expected);
-    if (count == 4u || count == 3u) {
-      fail(std::to_string(*count) +
-           " numbers; a matrix spread over several lines is not read. Expected each pose on one "
-           "line: " +
-           expected);
-    }
-    fail((*count > numbers_.size() ? "more than " + std::to_string(numbers_.size())
-                                   : std::to_string(*count)) +
-         " numbers; expected " + expected);
-  }
-
-  void add_row(std::string_view line) {
-    Pose pose{};
-    const Objection objection = format_ == TrajectoryFormat::kMatrix ? parse_matrix(line, pose)
-                                : format_ == TrajectoryFormat::kTum  ? parse_tum(line, pose)
-                                                                     : parse_columns(line, pose);
-    if (!objection.text.empty()) fail(objection.text, objection.remedy);
-    poses_.push_back(pose);
-  }
-
-  Objection parse_matrix(std::string_view line, Pose& pose) {
-    const auto count = parse_number_line(line, numbers_);
-    if (count != 12u && count != 16u) refuse_count(line, count, "12 or 16, a row-major matrix");
-    if (row_numbers_ == 0) row_numbers_ = *count;
-    if (count != row_numbers_) {
-      return {std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
-              " as in line " + std::to_string(first_line_)};
-    }
-    return pose_of_matrix(std::span(numbers_).first(*count), options_.allow_non_rigid, pose);
-  }
-
-  Objection parse_tum(std::string_view line, Pose& pose) {
-    const auto count = parse_number_line(line, numbers_);
-    if (count != 8u) refuse_count(line, count, "8: t x y z qx qy qz qw");
-    if (!std::isfinite(numbers_[0])) return {"expected a finite time"};
-    const std::span<const double> numbers(numbers_);
-    return pose_of_quaternion(numbers.subspan<1, 3>(), numbers.subspan<4, 4>(), pose);
-  }
-
-  Objection parse_columns(std::string_view line, Pose& pose) {
-    split_fields(line, columns_->separator, fields_);
-    if (fields_.size() != columns_->fields) {
-      return {std::to_string(fields_.size()) + " columns; expected " +
-              std::to_string(columns_->fields) + " as before"};
-    }
-    std::array<double, 3> position{};
-    for (std::size_t k = 0; k < 3; ++k) position[k] = number_in(columns_->position[k]);
-    const auto& rotation = columns_->rotation;
-    if (rotation.size() == 4) {
-      std::array<double, 4> quaternion{};
-      for (std::size_t k = 0; k < 4; ++k) quaternion[k] = number_in(rotation[k]);
-      return pose_of_quaternion(position, quaternion, pose);
-    }
-    std::array<double, 12> matrix{};
-    for (std::size_t k = 0; k < 9; ++k) matrix[4 * (k / 3) + k % 3] = number_in(rotation[k]);
-    for (std::size_t k = 0; k < 3; ++k) matrix[4 * k + 3] = position[k];
-    return pose_of_matrix(matrix, options_.allow_non_rigid, pose);
-  }
-
-  double number_in(std::size_t column) const {
-    const auto value = parse_whole_number(fields_[column]);
-    if (!value) {
-      fail(excerpt(fields_[column]) + " in column " + std::to_string(column + 1) +
-           "; expected a number");
-    }
-    return *value;
-  }
-
-  InputBuffer input_;
-  TrajectoryOptions options_;
-  TrajectoryFormat format_;             ///< kAuto until the first numbers
-  std::optional<PoseColumns> columns_;  ///< of kCsv and kEuroc, and what a comment may have named
-  std::uint64_t first_line_ = 0;        ///< of numbers; 0: none yet
-  bool started_ = false;                ///< a header has been read
-  std::size_t row_numbers_ = 0;         ///< 12 or 16 in every line; 0: none yet
-  std::array<double, 16> numbers_{};
-  std::vector<std::string_view> fields_;
-  std::vector<Pose> poses_;
-};
+void remark_times(const std::filesystem::path& path, TrajectoryFile& found) {
+  const auto late = std::is_sorted_until(found.times.begin(), found.times.end());
+  if (late == found.times.end()) return;
+  const auto pose = late - found.times.begin();
+  found.warn("time-order",
+             path.string() + ": time goes back at pose " + std::to_string(pose) +
+                 "; poses are taken in the order of the file",
+             {{"pose", static_cast<double>(pose)}});
+}
 
 }  // namespace
 
+const char* name_of(TrajectoryFormat format) {
+  switch (format) {
+    case TrajectoryFormat::kAuto:
+      return "auto";
+    case TrajectoryFormat::kMatrix:
+      return "matrix";
+    case TrajectoryFormat::kTum:
+      return "tum";
+    case TrajectoryFormat::kEuroc:
+      return "euroc";
+    case TrajectoryFormat::kCsv:
+      return "csv";
+    case TrajectoryFormat::kPoseXyzw:
+      return "pose-xyzw";
+    case TrajectoryFormat::kPoseWxyz:
+      return "pose-wxyz";
+    case TrajectoryFormat::kSbet:
+      return "sbet";
+    case TrajectoryFormat::kThreedtkPose:
+      return "3dtk-pose";
+    case TrajectoryFormat::kThreedtkFrames:
+      return "3dtk-frames";
+  }
+  return "";
+}
+
+TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
+                                    const TrajectoryOptions& options) {
+  TrajectoryFile found;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    read_threedtk_folder(path, options, found);
+  } else {
+    read_file(path, options, found);
+  }
+  refuse_useless(path, options, found);
+  apply_lever_arm(options.lever_arm, found.poses);
+  remark_times(path, found);
+  return found;
+}
+
 std::vector<Pose> read_trajectory(const std::filesystem::path& path,
-                                  const TrajectoryOptions& options) {
-  File file = File::open_for_reading(path);
-  const auto access = file.is_regular() ? InputBuffer::Access::kSeek : InputBuffer::Access::kStream;
-  return TrajectoryParser(InputBuffer(std::move(file), access), options).parse();
+                                  const TrajectoryOptions& options, std::vector<Message>* remarks) {
+  TrajectoryFile found = read_trajectory_file(path, options);
+  if (remarks != nullptr) {
+    remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
+                    std::make_move_iterator(found.remarks.end()));
+  }
+  return std::move(found.poses);
 }
 
 }  // namespace clearway

@@ -1,5 +1,7 @@
 #include "io/trajectory/trajectory_columns.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -48,31 +50,135 @@ std::vector<std::size_t> find_all(const ColumnNames& header,
   return found;
 }
 
-std::vector<std::size_t> find_rotation(const ColumnNames& header) {
+/// "roll_deg" is a column "roll" in the unit "deg". A unit in brackets stays.
+ColumnNames with_units(ColumnNames header) {
+  static constexpr std::string_view kUnits[] = {
+      "deg", "degree", "degrees", "rad", "radian", "radians", "m", "mm", "cm", "in", "ft"};
+  for (std::size_t i = 0; i < header.names.size(); ++i) {
+    std::string& name = header.names[i];
+    const std::size_t at = name.rfind('_');
+    if (at == std::string::npos || at == 0 || !header.units[i].empty()) continue;
+    const std::string_view unit = std::string_view(name).substr(at + 1);
+    if (std::find(std::begin(kUnits), std::end(kUnits), unit) == std::end(kUnits)) continue;
+    header.units[i] = unit;
+    name.resize(at);
+  }
+  return header;
+}
+
+/// The only column with one of the names.
+std::optional<std::size_t> find_one(const ColumnNames& header,
+                                    std::span<const std::string_view> names) {
+  return header.find(names, "");
+}
+
+constexpr std::string_view kEasting[] = {"easting", "east"};
+constexpr std::string_view kNorthing[] = {"northing", "north"};
+constexpr std::string_view kHeight[] = {"height", "altitude", "alt", "elevation", "elev", "z"};
+constexpr std::string_view kLatitude[] = {"latitude", "lat"};
+constexpr std::string_view kLongitude[] = {"longitude", "long", "lon", "lng"};
+constexpr std::string_view kRoll[] = {"roll"};
+constexpr std::string_view kPitch[] = {"pitch"};
+constexpr std::string_view kHeading[] = {"heading", "azimuth"};
+constexpr std::string_view kYaw[] = {"yaw"};
+constexpr std::string_view kTime[] = {"time",     "timestamp", "t",       "gpstime",
+                                      "gps_time", "sec",       "seconds", "stamp"};
+
+bool has(const ColumnNames& header, std::span<const std::string_view> names) {
+  return std::any_of(header.names.begin(), header.names.end(), [names](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+}
+
+bool find_position(const ColumnNames& header, PoseColumns& columns) {
+  static constexpr std::string_view kXyz[] = {"x", "y", "z"};
+  const auto xyz = find_all(header, kPosition, kXyz);
+  const auto height = find_one(header, kHeight);
+  const bool map = has(header, kEasting) || has(header, kNorthing);
+  const bool globe = has(header, kLatitude) || has(header, kLongitude);
+  if (!xyz.empty() && !map && !globe) {
+    columns.position = {xyz[0], xyz[1], xyz[2]};
+    return true;
+  }
+  if (!height || map == globe) return false;  // none, or both: which is meant?
+  const auto first = globe ? find_one(header, kLongitude) : find_one(header, kEasting);
+  const auto second = globe ? find_one(header, kLatitude) : find_one(header, kNorthing);
+  if (!first || !second) return false;
+  columns.position = {*first, *second, *height};
+  columns.geographic = globe;
+  return true;
+}
+
+bool find_angles(const ColumnNames& header, PoseColumns& columns) {
+  const auto roll = find_one(header, kRoll);
+  const auto pitch = find_one(header, kPitch);
+  const auto heading = find_one(header, kHeading);
+  const auto yaw = find_one(header, kYaw);
+  if (!roll || !pitch || heading.has_value() == yaw.has_value()) return false;
+  columns.heading = heading.has_value();
+  columns.rotation = {*roll, *pitch, heading ? *heading : *yaw};
+  return true;
+}
+
+bool find_rotation(const ColumnNames& header, PoseColumns& columns) {
   static constexpr std::string_view kXyzw[] = {"x", "y", "z", "w"};
   static constexpr std::string_view kFromZero[] = {"00", "01", "02", "10", "11",
                                                    "12", "20", "21", "22"};
   static constexpr std::string_view kFromOne[] = {"11", "12", "13", "21", "22",
                                                   "23", "31", "32", "33"};
-  auto found = find_all(header, kQuaternion, kXyzw);
+  auto& found = columns.rotation;
+  found = find_all(header, kQuaternion, kXyzw);
   if (found.empty()) found = find_all(header, kMatrix, kFromZero);
   if (found.empty()) found = find_all(header, kMatrix, kFromOne);
-  return found;
+  return !found.empty() || find_angles(header, columns);
 }
 
 }  // namespace
 
-std::optional<PoseColumns> pose_columns(const ColumnNames& header) {
-  static constexpr std::string_view kXyz[] = {"x", "y", "z"};
-  const auto position = find_all(header, kPosition, kXyz);
-  auto rotation = find_rotation(header);
-  if (position.empty() || rotation.empty()) return std::nullopt;
-  return PoseColumns{header.separator,
-                     header.names.size(),
-                     {position[0], position[1], position[2]},
-                     std::move(rotation)};
+std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
+  const ColumnNames header = with_units(given);
+  PoseColumns columns{.separator = header.separator, .fields = header.names.size()};
+  if (!find_position(header, columns) || !find_rotation(header, columns)) return std::nullopt;
+  if (columns.geographic && columns.rotation.size() != 3) return std::nullopt;
+  for (std::size_t k = 0; k < 3; ++k) {
+    columns.position_units[k] = header.units[columns.position[k]];
+    if (columns.rotation.size() == 3) columns.angle_units[k] = header.units[columns.rotation[k]];
+  }
+  columns.time = find_one(header, kTime);
+  return columns;
 }
 
-PoseColumns euroc_columns(std::size_t fields) { return {',', fields, {1, 2, 3}, {5, 6, 7, 4}}; }
+std::string objection_to_header(const ColumnNames& given) {
+  static constexpr std::string_view kPhotogrammetric[] = {"omega", "phi", "kappa"};
+  const ColumnNames header = with_units(given);
+  PoseColumns columns{};
+  if (has(header, kPhotogrammetric)) {
+    return "omega, phi and kappa are not read, as their order and axes differ between programs; "
+           "expected roll, pitch and heading, or a quaternion or a matrix";
+  }
+  const bool globe = has(header, kLatitude) || has(header, kLongitude);
+  if (globe && (has(header, kEasting) || has(header, kNorthing))) {
+    return "both latitude and longitude and easting and northing; expected one of them";
+  }
+  if (has(header, kHeading) && has(header, kYaw))
+    return "both heading and yaw; expected one of them";
+  if (!find_position(header, columns)) {
+    return "no position; expected the columns x y z (or tx, p_x, pos_x, ...), easting northing "
+           "height, or latitude longitude height";
+  }
+  if (globe) {
+    return "latitude and longitude without angles; expected roll, pitch and heading beside them";
+  }
+  return "no rotation; expected the columns qx qy qz qw (or q_x, ...), r00 to r22, or roll pitch "
+         "heading";
+}
+
+PoseColumns euroc_columns(std::size_t fields) {
+  PoseColumns columns{.separator = ',', .fields = fields};
+  columns.position = {1, 2, 3};
+  columns.rotation = {5, 6, 7, 4};
+  columns.time = 0;
+  return columns;
+}
 
 }  // namespace clearway

@@ -66,6 +66,12 @@ std::string advice_on(const Error& error) {
       return "; give the options and files that it was started with, or --force to start again";
     case Remedy::kNameFormat:
       return "; --trajectory-format names it";
+    case Remedy::kNameCrs:
+      return "; --trajectory-crs names it, for example --trajectory-crs EPSG:25832";
+    case Remedy::kDeclareAngles:
+      return "; --angles says it: deg or rad, ned or enu, for example --angles deg,ned";
+    case Remedy::kDeclareLength:
+      return "; --trajectory-unit says it";
     case Remedy::kAllowNonRigid:
       return "; --allow-non-rigid accepts any invertible matrix";
     case Remedy::kAskForClearance:

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 #include "core/util/format.hpp"
 
@@ -99,25 +98,6 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
       .add_flag("--model-vertices", options.vertices_only,
                 "Take the vertices of a mesh alone as the model, not its surface")
       ->excludes(spacing);
-}
-
-void add_trajectory_options(CLI::App& command, TrajectoryOptions& options) {
-  const std::map<std::string, TrajectoryFormat> formats{{"auto", TrajectoryFormat::kAuto},
-                                                        {"matrix", TrajectoryFormat::kMatrix},
-                                                        {"tum", TrajectoryFormat::kTum},
-                                                        {"euroc", TrajectoryFormat::kEuroc},
-                                                        {"csv", TrajectoryFormat::kCsv}};
-  command
-      .add_option_function<std::string>(
-          "--trajectory-format",
-          [formats, &format = options.format](const std::string& name) {
-            format = formats.at(name);
-          },
-          "Format of the trajectory where a guess could go wrong (default: auto)")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "matrix", "tum", "euroc", "csv"}));
-  command.add_flag("--allow-non-rigid", options.allow_non_rigid,
-                   "Accept matrices that scale or shear");
 }
 
 }  // namespace clearway::tool

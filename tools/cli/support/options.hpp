@@ -4,7 +4,6 @@
 #include <string>
 
 #include "clearway/model.hpp"
-#include "clearway/trajectory.hpp"
 
 namespace CLI {
 class App;
@@ -34,9 +33,6 @@ void add_model_unit(CLI::App& command, const std::string& names, double& unit);
 
 /// --model-spacing, --model-unit and --model-vertices.
 void add_model_options(CLI::App& command, ModelOptions& options);
-
-/// --trajectory-format and --allow-non-rigid.
-void add_trajectory_options(CLI::App& command, TrajectoryOptions& options);
 
 /// Bytes of "512M", "1.5G", "4GiB" or "300000000"; throws CLI::ValidationError naming the option.
 std::uint64_t parse_size(const std::string& option, const std::string& text);

@@ -1,6 +1,7 @@
 #include "io/formats/text/column_names.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace clearway {
 namespace {
@@ -15,16 +16,42 @@ std::string_view without_mark(std::string_view line) {
   return line;
 }
 
-/// "  \"p_x [m]\"" becomes "p_x".
-std::string name_in(std::string_view field) {
-  const std::size_t unit = field.find_first_of("[(", 1);
-  field = field.substr(0, unit);
+/// Lower case, without quotes and blanks.
+std::string cleaned(std::string_view field) {
   std::string name;
   for (const char c : field) {
     if (c == ' ' || c == '\t' || c == '"' || c == '\'') continue;
     name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
   return name;
+}
+
+/// "  \"p_x [m]\"" becomes "p_x".
+std::string name_in(std::string_view field) {
+  return cleaned(field.substr(0, field.find_first_of("[(", 1)));
+}
+
+/// "  \"p_x [m]\"" becomes "m".
+std::string unit_in(std::string_view field) {
+  const std::size_t open = field.find_first_of("[(", 1);
+  if (open == std::string_view::npos) return {};
+  field.remove_prefix(open + 1);
+  return cleaned(field.substr(0, field.find_first_of("])")));
+}
+
+/// In a header in blanks, "roll [deg]" is one column.
+void join_units(std::string_view line, std::vector<std::string_view>& fields) {
+  std::vector<std::string_view> joined;
+  for (const std::string_view field : fields) {
+    if (!joined.empty() && (field.front() == '[' || field.front() == '(')) {
+      const char* const start = joined.back().data();
+      const std::size_t length = static_cast<std::size_t>(field.data() - start) + field.size();
+      joined.back() = line.substr(static_cast<std::size_t>(start - line.data()), length);
+    } else {
+      joined.push_back(field);
+    }
+  }
+  fields = std::move(joined);
 }
 
 }  // namespace
@@ -70,7 +97,11 @@ ColumnNames parse_column_names(std::string_view line) {
                                                                 : ' ';
   std::vector<std::string_view> fields;
   split_fields(line, result.separator, fields);
-  for (const std::string_view field : fields) result.names.push_back(name_in(field));
+  if (result.separator == ' ') join_units(line, fields);
+  for (const std::string_view field : fields) {
+    result.names.push_back(name_in(field));
+    result.units.push_back(unit_in(field));
+  }
   return result;
 }
 

@@ -13,6 +13,7 @@ namespace clearway {
 struct ColumnNames {
   char separator = ' ';            ///< ',', ';' or ' ' for any blanks
   std::vector<std::string> names;  ///< lower case, without quotes, units in brackets and blanks
+  std::vector<std::string> units;  ///< those in brackets, lower case; empty where there is none
 
   /// The index of the only column whose name is one of `prefixes` with `suffix` behind it; none
   /// where there is no such column or more than one.

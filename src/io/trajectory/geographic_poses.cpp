@@ -1,0 +1,162 @@
+#include "io/trajectory/geographic_poses.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "io/system/input_error.hpp"
+#include "io/trajectory/map_projection.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct Range {
+  double least = 0, greatest = 0;
+  bool empty = true;
+
+  void add(double value) {
+    least = empty ? value : std::min(least, value);
+    greatest = empty ? value : std::max(greatest, value);
+    empty = false;
+  }
+  std::string text() const {
+    return least == greatest ? brief(least) : brief(least) + " to " + brief(greatest);
+  }
+};
+
+/// What the poses of a file had in common with the map.
+struct Ranges {
+  Range north, scale, height;
+};
+
+MapProjection open_projection(const TrajectoryOptions& options, const std::string& name) {
+  if (options.crs.empty() && options.default_crs.empty()) {
+    refuse(name,
+           "positions are latitudes and longitudes; expected the projected coordinate reference "
+           "system of the environment",
+           Remedy::kNameCrs);
+  }
+  try {
+    return MapProjection(options);
+  } catch (const InputError& error) {
+    refuse(name, error.what(), error.remedy());
+  }
+}
+
+/// The rotation of a pose follows one angle, so the map must turn all directions alike.
+void check_shape(const MapProjection& map, const AttitudeRow& row, const std::string& name,
+                 TrajectoryFile& out) {
+  const double skew = map.skew(row.position[0], row.position[1], row.position[2]);
+  constexpr double kMirrored = 1;
+  constexpr double kConformal = 1e-3;
+  if (skew > kMirrored) {
+    refuse(name, map.name() + " has axes that mirror the map; expected easting and northing",
+           Remedy::kNameCrs);
+  }
+  if (skew > kConformal) {
+    out.warn("map-distorts",
+             name + ": " + map.name() + " distorts angles by " + brief(skew / kDegree) +
+                 " degrees; a rigid model does not fit such a map",
+             {{"degrees", skew / kDegree}});
+  }
+}
+
+void remark_heights(const MapProjection& map, const TrajectoryOptions& options,
+                    const Ranges& ranges, const std::string& name, TrajectoryFile& out) {
+  if (map.converts_heights()) {
+    out.note("heights-converted",
+             name + ": heights are those of " + map.name() + ", from " + ranges.height.text());
+    return;
+  }
+  const std::string what =
+      name + ": heights are ellipsoidal, as in the file, from " + ranges.height.text();
+  const std::vector<std::pair<std::string, double>> numbers{{"least", ranges.height.least},
+                                                            {"greatest", ranges.height.greatest}};
+  if (options.crs.ends_with("+ellipsoidal")) {
+    out.note("ellipsoidal-heights", what, numbers);
+    return;
+  }
+  out.warn("ellipsoidal-heights",
+           what +
+               ". Heights above sea level differ by up to 107 m. Give a CRS with a vertical part, "
+               "or add +ellipsoidal to it where the scan has such heights too",
+           numbers);
+}
+
+void remark_map(const MapProjection& map, const TrajectoryOptions& options, const Ranges& ranges,
+                const std::string& name, TrajectoryFile& out) {
+  constexpr double kFeet = 0.9;
+  constexpr double kGoodScale = 2e-3;
+  out.note("map-projection",
+           name + ": positions are in " + map.name() +
+               (options.crs.empty() ? ", as the environment" : "") + "; true north lies " +
+               Range{ranges.north.least / kDegree, ranges.north.greatest / kDegree, false}.text() +
+               " degrees clockwise from its northing; its scale, " + ranges.scale.text() +
+               ", is not applied to the model",
+           {{"least_scale", ranges.scale.least}, {"greatest_scale", ranges.scale.greatest}});
+  if (map.metres_per_unit() < kFeet) {
+    out.note("map-unit",
+             name + ": the unit of " + map.name() + " is " + brief(map.metres_per_unit()) +
+                 " m; model, radius and lever arm are to be in it too",
+             {{"metres", map.metres_per_unit()}});
+  }
+  const double worst = std::max(ranges.scale.greatest - 1, 1 - ranges.scale.least);
+  if (worst > kGoodScale) {
+    out.warn("map-scale",
+             name + ": lengths on the map of " + map.name() + " are wrong by " +
+                 brief(100 * worst) + " % here; another zone or another CRS may be meant",
+             {{"error", worst}});
+  }
+}
+
+void remark_datum(const MapProjection& map, const TrajectoryOptions& options,
+                  const std::string& name, TrajectoryFile& out) {
+  const double accuracy = map.accuracy();
+  constexpr double kExpected = 1;  // metres, between WGS 84 and its kin
+  if (accuracy == 0) return;
+  const std::string datum = options.datum.empty() ? "WGS 84" : options.datum;
+  const std::string text = name + ": positions were taken as " + datum + ", and the datum of " +
+                           map.name() + " is reached with an accuracy of " +
+                           (accuracy > 0 ? brief(accuracy) + " m" : "unknown size") +
+                           "; name the datum of the file where it is another";
+  if (accuracy > 0 && accuracy <= kExpected) {
+    out.note("datum-accuracy", text, {{"metres", accuracy}});
+  } else {
+    out.warn("datum-accuracy", text, {{"metres", accuracy}});
+  }
+}
+
+}  // namespace
+
+void append_geographic_poses(std::span<const AttitudeRow> rows, AngleFrame frame,
+                             const TrajectoryOptions& options, const std::string& name,
+                             TrajectoryFile& out) {
+  if (rows.empty()) return;
+  const MapProjection map = open_projection(options, name);
+  check_shape(map, rows[0], name, out);
+  Ranges ranges;
+  out.poses.reserve(out.poses.size() + rows.size());
+  for (const AttitudeRow& row : rows) {
+    const auto place = map.place(row.position[0], row.position[1], row.position[2]);
+    if (!place) {
+      refuse(name,
+             "pose " + std::to_string(out.poses.size()) + ": " + map.name() +
+                 " does not reach latitude " + brief(row.position[1]) + ", longitude " +
+                 brief(row.position[0]) + "; expected a CRS of this place",
+             Remedy::kNameCrs);
+    }
+    Pose pose{{}, {place->position.x, place->position.y, place->position.z}};
+    set_rotation(row, frame, place->north, pose);
+    out.poses.push_back(pose);
+    ranges.north.add(place->north);
+    ranges.scale.add(place->scale);
+    ranges.height.add(place->position.z);
+  }
+  out.crs = map.name();
+  remark_map(map, options, ranges, name, out);
+  remark_heights(map, options, ranges, name, out);
+  remark_datum(map, options, name, out);
+}
+
+}  // namespace clearway

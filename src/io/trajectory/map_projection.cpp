@@ -1,0 +1,194 @@
+#include "io/trajectory/map_projection.hpp"
+
+#include <proj.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "clearway/error.hpp"
+#include "clearway/trajectory.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kSemiMajor = 6378137;               // of WGS 84
+constexpr double kEccentricity2 = 6.69437999014e-3;  // squared, of WGS 84
+
+struct FreeContext {
+  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
+};
+struct FreeObject {
+  void operator()(PJ* object) const { proj_destroy(object); }
+};
+using Context = std::unique_ptr<PJ_CONTEXT, FreeContext>;
+using Object = std::unique_ptr<PJ, FreeObject>;
+
+/// The text that PROJ logs, rather than printing it.
+void keep_log(void* kept, int, const char* text) { *static_cast<std::string*>(kept) = text; }
+
+/// Well-known text from a file must not make PROJ open other files (docs/design/security.md).
+bool names_files(std::string_view wkt) {
+  std::string upper(wkt);
+  std::ranges::transform(upper, upper.begin(), [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  });
+  for (const char* word : {"PARAMETERFILE", "EXTENSION", "GRIDS", "INIT="}) {
+    if (upper.find(word) != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+struct MapProjection::Parts {
+  std::string log;  ///< outlives the context
+  Context context;
+  Object transformation;
+
+  Object create(const std::string& text, bool from_file) {
+    if (from_file) {
+      return Object(proj_create_from_wkt(context.get(), text.c_str(), nullptr, nullptr, nullptr));
+    }
+    const bool proj_string = text.find("+proj=") != std::string::npos;
+    const bool typed = text.find("+type=crs") != std::string::npos;
+    return Object(
+        proj_create(context.get(), (proj_string && !typed ? text + " +type=crs" : text).c_str()));
+  }
+
+  /// Metres of a unit of the axis; 0 where there is no such axis.
+  double unit_of_axis(const PJ* crs, int axis) const {
+    const Object system(proj_crs_get_coordinate_system(context.get(), crs));
+    double unit = 0;
+    if (!system || proj_cs_get_axis_info(context.get(), system.get(), axis, nullptr, nullptr,
+                                         nullptr, &unit, nullptr, nullptr, nullptr) == 0) {
+      return 0;
+    }
+    return unit;
+  }
+};
+
+MapProjection::~MapProjection() = default;
+MapProjection::MapProjection(MapProjection&&) noexcept = default;
+MapProjection& MapProjection::operator=(MapProjection&&) noexcept = default;
+
+MapProjection::MapProjection(const TrajectoryOptions& options) : parts_(std::make_unique<Parts>()) {
+  parts_->context.reset(proj_context_create());
+  PJ_CONTEXT* context = parts_->context.get();
+  if (context == nullptr) throw ResourceError("PROJ cannot be started");
+  proj_context_set_enable_network(context, 0);
+  proj_log_func(context, &parts_->log, keep_log);
+
+  const bool from_file = options.crs.empty();
+  std::string crs = from_file ? options.default_crs : options.crs;
+  constexpr std::string_view kEllipsoidal = "+ellipsoidal";
+  if (crs.ends_with(kEllipsoidal)) crs.resize(crs.size() - kEllipsoidal.size());
+  const auto refuse_crs = [&](const std::string& what) {
+    if (!from_file) throw UsageError("the CRS " + excerpt(crs) + ": " + what);
+    throw InputError("the environment's coordinate reference system: " + what, Remedy::kNameCrs);
+  };
+  if (from_file && names_files(crs)) refuse_crs("names files, which are not opened");
+  try {
+    open(crs, from_file, options.datum);
+  } catch (const Error& error) {
+    refuse_crs(error.what());
+  }
+}
+
+void MapProjection::open(const std::string& crs, bool from_file, const std::string& datum) {
+  PJ_CONTEXT* context = parts_->context.get();
+  Object target = parts_->create(crs, from_file);
+  if (!target) throw InputError("PROJ does not know it (" + parts_->log + ")");
+  if (proj_get_type(target.get()) == PJ_TYPE_BOUND_CRS) {
+    target.reset(proj_get_source_crs(context, target.get()));
+  }
+  name_ = proj_get_name(target.get()) != nullptr ? proj_get_name(target.get()) : crs;
+  Object part;
+  const PJ* horizontal = target.get();
+  if (proj_get_type(target.get()) == PJ_TYPE_COMPOUND_CRS) {
+    part.reset(proj_crs_get_sub_crs(context, target.get(), 0));
+    horizontal = part.get();
+    const Object vertical(proj_crs_get_sub_crs(context, target.get(), 1));
+    vertical_unit_ = parts_->unit_of_axis(vertical.get(), 0);
+  } else {
+    vertical_unit_ = parts_->unit_of_axis(horizontal, 2);
+  }
+  if (proj_get_type(horizontal) != PJ_TYPE_PROJECTED_CRS) {
+    throw InputError("expected a projected one, with easting and northing");
+  }
+  unit_ = parts_->unit_of_axis(horizontal, 0);
+  if (!(unit_ > 0)) throw InputError("its unit is not known");
+
+  const Object source = parts_->create(datum.empty() ? "EPSG:4979" : datum, false);
+  if (!source) throw UsageError(excerpt(datum) + " is no geographic datum that PROJ knows");
+  const std::array<const char*, 2> options{"ALLOW_BALLPARK=NO", nullptr};
+  const Object found(
+      proj_create_crs_to_crs_from_pj(context, source.get(), target.get(), nullptr, options.data()));
+  if (found) parts_->transformation.reset(proj_normalize_for_visualization(context, found.get()));
+  if (!parts_->transformation) {
+    throw InputError("PROJ has no transformation to it from " +
+                     (datum.empty() ? "WGS 84" : excerpt(datum)) +
+                     " without grids that are not installed; expected another CRS, or one without "
+                     "a vertical part");
+  }
+}
+
+bool MapProjection::project(double longitude, double latitude, double height,
+                            double (&xyz)[3]) const {
+  const PJ_COORD place =
+      proj_trans(parts_->transformation.get(), PJ_FWD, proj_coord(longitude, latitude, height, 0));
+  for (int k = 0; k < 3; ++k) {
+    xyz[k] = place.v[k];
+    if (!std::isfinite(xyz[k])) return false;  // HUGE_VAL: an error
+  }
+  return true;
+}
+
+/// What a metre to true north or east is on the map, in its unit; zeros outside the map.
+Vec3 MapProjection::slope(double longitude, double latitude, double height,
+                          bool along_north) const {
+  constexpr double kStep = 1e-4;  // degrees: 11 m, over which a map bends by less than 1e-10
+  const double sine = std::sin(latitude * kDegree);
+  const double w2 = 1 - kEccentricity2 * sine * sine;
+  double metres = 2 * kStep * kDegree * kSemiMajor / std::sqrt(w2);
+  metres *= along_north ? (1 - kEccentricity2) / w2 : std::cos(latitude * kDegree);
+  const double east = along_north ? 0 : kStep;
+  const double north = along_north ? kStep : 0;
+  double ahead[3];
+  double behind[3];
+  if (!project(longitude + east, latitude + north, height, ahead) ||
+      !project(longitude - east, latitude - north, height, behind)) {
+    return {};
+  }
+  return {(ahead[0] - behind[0]) / metres, (ahead[1] - behind[1]) / metres, 0};
+}
+
+std::optional<MapProjection::Place> MapProjection::place(double longitude, double latitude,
+                                                         double height) const {
+  double xyz[3];
+  if (!project(longitude, latitude, height, xyz)) return std::nullopt;
+  const Vec3 north = slope(longitude, latitude, height, true);
+  const double scale = std::hypot(north.x, north.y) * unit_;
+  if (!(scale > 0)) return std::nullopt;
+  const double vertical = vertical_unit_ > 0 ? vertical_unit_ : 1;  // a height that passed through
+  return Place{{xyz[0], xyz[1], xyz[2] * vertical / unit_}, std::atan2(north.x, north.y), scale};
+}
+
+double MapProjection::skew(double longitude, double latitude, double height) const {
+  const Vec3 north = slope(longitude, latitude, height, true);
+  const Vec3 east = slope(longitude, latitude, height, false);
+  const double turn = std::atan2(north.x, north.y) - std::atan2(-east.y, east.x);
+  return std::abs(std::remainder(turn, 2 * std::numbers::pi));
+}
+
+double MapProjection::accuracy() const {
+  const Object used(proj_trans_get_last_used_operation(parts_->transformation.get()));
+  if (!used) return -1;
+  return proj_coordoperation_get_accuracy(parts_->context.get(), used.get());
+}
+
+}  // namespace clearway

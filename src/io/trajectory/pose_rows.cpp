@@ -1,0 +1,203 @@
+#include "io/trajectory/pose_rows.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "io/formats/text/text_number.hpp"
+#include "io/system/input_error.hpp"
+#include "io/trajectory/angle_table.hpp"
+#include "io/trajectory/length_unit.hpp"
+
+namespace clearway {
+namespace {
+
+/// Seconds of a time whose unit only its size tells: those since 1970 in ns, us, ms or s.
+double seconds_of(double time) {
+  constexpr double kNanoseconds = 1e17;
+  constexpr double kMicroseconds = 1e14;
+  constexpr double kMilliseconds = 1e11;
+  const double size = std::abs(time);
+  return time * (size >= kNanoseconds    ? 1e-9
+                 : size >= kMicroseconds ? 1e-6
+                 : size >= kMilliseconds ? 1e-3
+                                         : 1);
+}
+
+bool all_finite(std::span<const double> numbers) {
+  for (const double number : numbers) {
+    if (!std::isfinite(number)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
+                             std::size_t most, const std::string& expected) {
+  if (!count) return {excerpt(line) + "; expected numbers only, in blanks or commas: " + expected};
+  const std::string found =
+      *count > most ? "more than " + std::to_string(most) : std::to_string(*count);
+  switch (*count) {
+    case 3:
+    case 4:
+      return {found +
+              " numbers; a matrix spread over several lines is not read. Expected each "
+              "pose on one line: " +
+              expected};
+    case 6:
+      return {
+          "6 numbers; for a position and three angles, expected a header before them, for "
+          "example: x y z roll_deg pitch_deg heading_deg"};
+    case 7:
+      return {
+          "7 numbers; for a position and a quaternion, the order of the quaternion is to be "
+          "named: the format is pose-xyzw (w last) or pose-wxyz (w first)",
+          Remedy::kNameFormat};
+    default:
+      return {found + " numbers; expected " + expected};
+  }
+}
+
+PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
+                   const TrajectoryOptions& options, std::string name)
+    : format_(format), columns_(std::move(columns)), options_(options), name_(std::move(name)) {
+  std::span<const std::string> units;
+  if (columns_) units = columns_->position_units;
+  if (columns_ && columns_->geographic) units = units.subspan(2);
+  metres_ = metres_per_unit(units, options_, name_);
+}
+
+Objection PoseRows::add(std::string_view line) {
+  switch (format_) {
+    case TrajectoryFormat::kMatrix:
+      return add_matrix(line);
+    case TrajectoryFormat::kTum:
+    case TrajectoryFormat::kPoseXyzw:
+    case TrajectoryFormat::kPoseWxyz:
+      return add_quaternion(line);
+    default:
+      return add_columns(line);
+  }
+}
+
+void PoseRows::push(const Pose& pose) {
+  poses_.push_back(pose);
+  for (double& coordinate : poses_.back().translation) coordinate *= metres_;
+}
+
+Objection PoseRows::add_matrix(std::string_view line) {
+  const auto count = parse_number_line(line, numbers_);
+  if (count != 12u && count != 16u) {
+    return objection_to_count(line, count, numbers_.size(), "12 or 16, a row-major matrix");
+  }
+  if (row_numbers_ == 0) row_numbers_ = *count;
+  if (count != row_numbers_) {
+    return {std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
+            " as in the first line"};
+  }
+  Pose pose{};
+  Objection objection =
+      pose_of_matrix(std::span(numbers_).first(*count), options_.allow_non_rigid, pose);
+  if (objection.text.empty()) push(pose);
+  return objection;
+}
+
+Objection PoseRows::add_quaternion(std::string_view line) {
+  const auto count = parse_number_line(line, numbers_);
+  const bool tum = format_ == TrajectoryFormat::kTum;
+  const bool w_first = format_ == TrajectoryFormat::kPoseWxyz;
+  if (count != (tum ? 8u : 7u)) {
+    return {count ? (*count > numbers_.size() ? "more than 16" : std::to_string(*count)) +
+                        " numbers; expected " +
+                        (tum       ? "8: t x y z qx qy qz qw"
+                         : w_first ? "7: x y z qw qx qy qz"
+                                   : "7: x y z qx qy qz qw")
+                  : objection_to_count(line, count, numbers_.size(), "a pose").text};
+  }
+  if (tum && !std::isfinite(numbers_[0])) return {"expected a finite time"};
+  const auto numbers = std::span<const double>(numbers_).subspan(tum ? 1 : 0, 7);
+  std::array<double, 4> quaternion{numbers[3], numbers[4], numbers[5], numbers[6]};
+  if (w_first) quaternion = {numbers[4], numbers[5], numbers[6], numbers[3]};
+  Pose pose{};
+  Objection objection = pose_of_quaternion(numbers.first<3>(), quaternion, pose);
+  if (!objection.text.empty()) return objection;
+  if (tum) add_time(seconds_of(numbers_[0]));
+  push(pose);
+  return {};
+}
+
+Objection PoseRows::add_columns(std::string_view line) {
+  split_fields(line, columns_->separator, fields_);
+  if (fields_.size() != columns_->fields) {
+    return {std::to_string(fields_.size()) + " columns; expected " +
+            std::to_string(columns_->fields) + " as before"};
+  }
+  std::array<double, 3> position{};
+  Objection objection = numbers_in(columns_->position, position);
+  if (!objection.text.empty()) return objection;
+  if (columns_->rotation.size() == 3) return add_angles(position);
+  std::array<double, 9> rotation{};
+  const auto found = std::span(rotation).first(columns_->rotation.size());
+  objection = numbers_in(columns_->rotation, found);
+  if (!objection.text.empty()) return objection;
+  Pose pose{};
+  if (found.size() == 4) {
+    objection = pose_of_quaternion(position, std::span<const double>(found).first<4>(), pose);
+  } else {
+    std::array<double, 12> matrix{};
+    for (std::size_t k = 0; k < 9; ++k) matrix[4 * (k / 3) + k % 3] = rotation[k];
+    for (std::size_t k = 0; k < 3; ++k) matrix[4 * k + 3] = position[k];
+    objection = pose_of_matrix(matrix, options_.allow_non_rigid, pose);
+  }
+  if (!objection.text.empty()) return objection;
+  if (columns_->time) {
+    const auto time = parse_whole_number(fields_[*columns_->time]);
+    if (time && std::isfinite(*time)) add_time(seconds_of(*time));
+  }
+  push(pose);
+  return {};
+}
+
+Objection PoseRows::add_angles(const std::array<double, 3>& position) {
+  std::array<double, 3> angles{};
+  Objection objection = numbers_in(columns_->rotation, angles);
+  if (!objection.text.empty()) return objection;
+  if (!all_finite(position) || !all_finite(angles)) return {"expected finite numbers"};
+  const double horizontal = columns_->geographic ? 1 : metres_;
+  angles_.push_back({{position[0] * horizontal, position[1] * horizontal, position[2] * metres_},
+                     angles[0],
+                     angles[1],
+                     angles[2]});
+  if (columns_->time) {
+    const auto time = parse_whole_number(fields_[*columns_->time]);
+    if (time && std::isfinite(*time)) add_time(seconds_of(*time));
+  }
+  return {};
+}
+
+Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto value = parse_whole_number(fields_[columns[k]]);
+    if (!value) {
+      return {excerpt(fields_[columns[k]]) + " in column " + std::to_string(columns[k] + 1) +
+              "; expected a number"};
+    }
+    out[k] = *value;
+  }
+  return {};
+}
+
+void PoseRows::finish(TrajectoryFile& out) {
+  out.format = format_;
+  out.poses = std::move(poses_);
+  const bool angles = columns_ && columns_->rotation.size() == 3;
+  if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
+  if (times_.size() == out.poses.size()) out.times = std::move(times_);
+  if (metres_ != 1) {
+    out.note("trajectory-unit",
+             name_ + ": positions were multiplied by " + brief(metres_) + " to give metres",
+             {{"metres", metres_}});
+  }
+}
+
+}  // namespace clearway

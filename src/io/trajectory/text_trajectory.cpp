@@ -1,0 +1,140 @@
+#include "io/trajectory/text_trajectory.hpp"
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "io/formats/text/column_names.hpp"
+#include "io/formats/text/text_number.hpp"
+#include "io/system/input_error.hpp"
+#include "io/trajectory/pose_rows.hpp"
+
+namespace clearway {
+namespace {
+
+bool starts_with_number(std::string_view line) {
+  const char* at = line.data();
+  double value = 0;
+  return parse_number(at, at + line.size(), value);
+}
+
+bool is_comment(std::string_view line) { return line.front() == '#' || line.starts_with("//"); }
+
+class TextTrajectory {
+ public:
+  TextTrajectory(InputBuffer input, const TrajectoryOptions& options)
+      : input_(std::move(input)), options_(options), format_(options.format) {}
+
+  void read(TrajectoryFile& out) {
+    input_.skip_byte_order_mark();
+    std::string_view line;
+    while (input_.next_line(line)) {
+      const char* const end = line.data() + line.size();
+      line.remove_prefix(static_cast<std::size_t>(skip_blanks(line.data(), end) - line.data()));
+      if (line.empty()) continue;
+      if (is_comment(line)) {
+        if (!rows_ && reads_names()) note_header(line);
+      } else if (!rows_ && !started_ && is_header(line)) {
+        started_ = true;
+      } else {
+        if (!rows_) start(line);
+        const Objection objection = rows_->add(line);
+        if (!objection.text.empty()) fail(objection);
+      }
+    }
+    out.format = format_;
+    if (rows_) rows_->finish(out);
+  }
+
+ private:
+  [[noreturn]] void fail(const Objection& objection) const {
+    refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
+  }
+
+  bool reads_names() const {
+    return format_ == TrajectoryFormat::kAuto || format_ == TrajectoryFormat::kCsv;
+  }
+
+  void note_header(std::string_view line) {
+    if (auto columns = pose_columns(parse_column_names(line))) columns_ = std::move(columns);
+  }
+
+  /// Whether the first line that is no comment names columns; refused where they make no pose.
+  bool is_header(std::string_view line) {
+    if (starts_with_number(line)) return false;
+    if (format_ == TrajectoryFormat::kEuroc) return true;
+    if (!reads_names()) return false;
+    const ColumnNames names = parse_column_names(line);
+    columns_ = pose_columns(names);
+    if (!columns_) {
+      fail({excerpt(line) + ": " + objection_to_header(names)});
+    }
+    format_ = TrajectoryFormat::kCsv;
+    return true;
+  }
+
+  /// Settles the format by the first line of numbers.
+  void start(std::string_view line) {
+    std::vector<std::string_view> fields;
+    split_fields(line, columns_ ? columns_->separator : ',', fields);
+    if (format_ == TrajectoryFormat::kEuroc) {
+      if (fields.size() < 8) {
+        fail({std::to_string(fields.size()) +
+              " columns; expected at least 8 with commas: time, position x y z, quaternion w x y "
+              "z"});
+      }
+      columns_ = euroc_columns(fields.size());
+    } else if (format_ == TrajectoryFormat::kCsv && !columns_) {
+      fail({"expected a header that names the columns before the first numbers"});
+    } else if (format_ == TrajectoryFormat::kAuto) {
+      if (columns_ && columns_->fields == fields.size()) {
+        format_ = TrajectoryFormat::kCsv;
+      } else {
+        columns_.reset();
+        guess(line);
+      }
+    }
+    rows_.emplace(format_, std::move(columns_), options_, input_.name());
+  }
+
+  /// By the number of numbers, where there is no header.
+  void guess(std::string_view line) {
+    std::array<double, 16> numbers{};
+    const auto count = parse_number_line(line, numbers);
+    if (count == 12u || count == 16u) {
+      format_ = TrajectoryFormat::kMatrix;
+      return;
+    }
+    if (count != 8u) {
+      fail(objection_to_count(
+          line, count, numbers.size(),
+          "12 or 16 (a matrix), 8 (TUM: t x y z qx qy qz qw), or a header that names the columns. "
+          "EuRoC without a header has to be named"));
+    }
+    constexpr double kSurelyNanoseconds = 1e14;
+    if (numbers[0] >= kSurelyNanoseconds) {
+      fail(
+          {"8 numbers with a time in nanoseconds, but no header; the format can be tum (qx qy qz "
+           "qw) or euroc (qw qx qy qz)",
+           Remedy::kNameFormat});
+    }
+    format_ = TrajectoryFormat::kTum;
+  }
+
+  InputBuffer input_;
+  TrajectoryOptions options_;
+  TrajectoryFormat format_;             ///< kAuto until the first numbers
+  std::optional<PoseColumns> columns_;  ///< what a header or a comment has named
+  bool started_ = false;                ///< a header has been read
+  std::optional<PoseRows> rows_;        ///< from the first line of numbers on
+};
+
+}  // namespace
+
+void read_text_trajectory(InputBuffer input, const TrajectoryOptions& options,
+                          TrajectoryFile& out) {
+  TextTrajectory(std::move(input), options).read(out);
+}
+
+}  // namespace clearway
