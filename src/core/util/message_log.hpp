@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "clearway/error.hpp"
 #include "clearway/progress.hpp"
 
 namespace clearway {
@@ -32,5 +34,22 @@ class MessageLog {
   const MessageCallback& callback_;
   std::vector<Message>& warnings_;
 };
+
+/// For a strict call: throws InputError with the number of warnings and their codes, each code
+/// once, in the order of the warnings; does nothing where there is none. To be called when all have
+/// been told and nothing has been published.
+inline void refuse_warnings(const std::vector<Message>& warnings) {
+  if (warnings.empty()) return;
+  std::vector<std::string> codes;
+  for (const Message& warning : warnings) {
+    if (std::find(codes.begin(), codes.end(), warning.code) == codes.end()) {
+      codes.push_back(warning.code);
+    }
+  }
+  std::string text = "strict: " + std::to_string(warnings.size()) +
+                     (warnings.size() == 1 ? " warning (" : " warnings (");
+  for (const std::string& code : codes) text += (&code == codes.data() ? "" : ", ") + code;
+  throw InputError(text + "), expected none; no output was written");
+}
 
 }  // namespace clearway
