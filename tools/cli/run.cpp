@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include "cli/support/console.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
+#include "cli/support/warnings_json.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -88,26 +90,42 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["peak_device_bytes"] = report.peak_device_bytes;
   if (!report.was_finished) out["tolerance"] = tolerance_of(report, options.query.tolerance);
   out["seconds"] = seconds_of(report.seconds, program);
+  out["warnings"] = warnings_json(report.warnings);
   return out;
+}
+
+/// No all-clear where something was warned of.
+std::string caveat(const SearchReport& report) {
+  const std::size_t count = report.warnings.size();
+  if (count == 0) return "";
+  return ", but see the " + (count == 1 ? "warning" : std::to_string(count) + " warnings") +
+         " above";
 }
 
 void log_report(const SearchReport& report, const RunOptions& options, double seconds) {
   const std::string output = options.output.string();
   if (report.was_finished) {
-    spdlog::info("{}: is the finished result of this query already; nothing to do", output);
+    spdlog::info("{}: is the finished result of this query already; nothing to do{}", output,
+                 caveat(report));
     return;
   }
-  spdlog::info("{}: {} of {} environment points collide; engine {} on {}, {:.2f} s", output,
-               format_count(report.colliding_points), format_count(report.environment_points),
-               name_of(report.engine), report.device_name, seconds);
+  const std::string found =
+      fmt::format("{} of {} environment points collide", format_count(report.colliding_points),
+                  format_count(report.environment_points));
+  const std::string how =
+      fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
+  const bool doubtful = !report.warnings.empty();
+  spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
   if (options.query.clearance > 0) {
     spdlog::info("{} points are within the clearance of {} m",
                  format_count(report.clearance_points), options.query.clearance);
   }
+  if (doubtful) spdlog::info("{}{}", found, caveat(report));
 }
 
-Query read_query(const RunOptions& options) {
-  std::vector<Message> warnings;
+/// Warnings of the inputs are told at once, and go into the report with those of the search.
+Query read_query(RunOptions& options) {
+  std::vector<Message>& warnings = options.search.input_warnings;
   std::vector<Vec3> model = read_model(options.model, &warnings);
   for (const Message& warning : warnings) log_message(warning);
   return {std::move(model), read_trajectory(options.trajectory, options.trajectory_options),

@@ -133,6 +133,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("SECONDS")
       ->check(seconds_up_to(3600))
       ->capture_default_str();
+  command.add_flag("--strict", options.search.strict,
+                   "Refuse to search where anything is warned of (exit code 3)");
   command.add_flag("--json", options.json, "Print one JSON object about the run");
 }
 

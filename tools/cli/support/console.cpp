@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cli/support/advice.hpp"
 #include "cli/support/signals.hpp"
 
 namespace clearway::tool {
@@ -96,7 +97,8 @@ void ConsoleProgress::draw(Clock::time_point now) {
 
 void log_message(const Message& message) {
   const bool warning = message.severity == Message::Severity::kWarning;
-  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", message.text);
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}{}", message.text,
+              advice_on(message));
 }
 
 }  // namespace clearway::tool
