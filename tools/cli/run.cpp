@@ -7,6 +7,7 @@
 
 #include "clearway/clearway.hpp"
 #include "cli/commands.hpp"
+#include "cli/input_roles.hpp"
 #include "cli/memory_use.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
@@ -139,6 +140,9 @@ void run(RunOptions& options) {
   watch_call(options.search, progress);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
+  check_is_store(options.environment);
+  check_is_model(options.model);
+  check_is_trajectory(options.trajectory);
   const Store store(options.environment);
   const Query query = read_query(options);
   ProgramReport program{.inputs_seconds = total.seconds()};
