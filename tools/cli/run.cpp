@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "clearway/clearway.hpp"
 #include "cli/commands.hpp"
@@ -133,6 +134,13 @@ Query read_query(RunOptions& options) {
           options.query};
 }
 
+/// Of the environment's unit where it is a foot.
+std::optional<double> metres_of(const Store& store) {
+  if (store.length_unit() == "foot") return 0.3048;
+  if (store.length_unit() == "us-survey-foot") return 1200.0 / 3937;
+  return std::nullopt;
+}
+
 void run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
@@ -144,6 +152,7 @@ void run(RunOptions& options) {
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store(options.environment);
+  if (const auto metres = metres_of(store)) options.lengths.convert(*metres);
   const Query query = read_query(options);
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);

@@ -4,6 +4,7 @@
 
 #include "clearway/search.hpp"
 #include "clearway/trajectory.hpp"
+#include "cli/support/lengths.hpp"
 
 namespace CLI {
 class App;
@@ -17,6 +18,7 @@ struct RunOptions {
   QueryParameters query;
   SearchOptions search;
   TrajectoryOptions trajectory_options;
+  LengthOptions lengths;
   bool json = false;
 };
 
