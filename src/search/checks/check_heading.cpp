@@ -104,15 +104,16 @@ bool hardly_turns(const Question& question) {
 
 void warn_of_tiny_path(const Question& question, MessageLog& log) {
   const auto& poses = question.query.poses;
+  constexpr std::size_t kMany = 10;
+  if (poses.size() < kMany) return;
   const Vec3 first = translation_of(poses.front());
   Box path{first, first};
   for (const Pose& pose : poses) {
     const Vec3 p = translation_of(pose);
     path = united(path, {p, p});
   }
-  constexpr std::size_t kMany = 10;
   const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
-  if (poses.size() < kMany || !(across < longest / 4) || !hardly_turns(question)) return;
+  if (!(across < longest / 4) || !hardly_turns(question)) return;
   log.warn("tiny-path",
            "all " + format_count(poses.size()) + " poses lie within " +
                length_text(across, question.unit) + ", and the model is " +

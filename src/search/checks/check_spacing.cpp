@@ -10,32 +10,37 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kSample = 2048;
+constexpr std::size_t kSample = 512;
 constexpr std::size_t kMeasured = 16;
+constexpr std::size_t kMarks = (1 << 19) - 1;
 constexpr double kSomeAlone = 0.01;  ///< share of points that may stand alone, such as antennas
 
 /// Which points of a sample have no other point of the model within the radius. One pass over the
 /// model: the sample's surroundings are in a table of cubes as wide as the radius.
 class Neighbours {
  public:
-  Neighbours(const std::vector<Vec3>& model, double radius) : model_(model), radius_(radius) {
+  Neighbours(const std::vector<Vec3>& model, double radius)
+      : model_(model), radius_(radius), per_radius_(1 / radius) {
     for (const std::uint32_t i : spread_poses(model.size(), kSample)) sample_.push_back(model[i]);
     alone_.assign(sample_.size(), true);
     fill();
   }
 
-  /// The sample's points that stand alone.
+  /// The sample's points that stand alone; some of them where they are as few as may be.
   std::vector<Vec3> find() {
     std::size_t left = sample_.size();
+    const auto enough = static_cast<std::size_t>(kSomeAlone * static_cast<double>(left));
     for (const Vec3& p : model_) {
-      const auto near = cubes_.find(key(cube(p.x), cube(p.y), cube(p.z)));
+      const std::uint64_t place = key(cube(p.x), cube(p.y), cube(p.z));
+      if (!marked_[place % marked_.size()]) continue;
+      const auto near = cubes_.find(place);
       if (near == cubes_.end()) continue;
       for (const std::uint32_t i : near->second) {
         if (!alone_[i] || sample_[i] == p || !collides(p, sample_[i], radius_)) continue;
         alone_[i] = false;
         --left;
       }
-      if (left == 0) break;
+      if (left <= enough) break;
     }
     std::vector<Vec3> out;
     for (std::size_t i = 0; i < sample_.size(); ++i) {
@@ -49,7 +54,9 @@ class Neighbours {
  private:
   std::int64_t cube(double x) const {
     constexpr double kMost = 1e15;
-    return static_cast<std::int64_t>(std::clamp(std::floor(x / radius_), -kMost, kMost));
+    const double cubes = std::clamp(x * per_radius_, -kMost, kMost);
+    const auto whole = static_cast<std::int64_t>(cubes);
+    return whole - (cubes < static_cast<double>(whole) ? 1 : 0);
   }
 
   /// Different cubes may share one: their points are compared by distance all the same.
@@ -71,9 +78,10 @@ class Neighbours {
   }
 
   const std::vector<Vec3>& model_;
-  double radius_;
+  double radius_, per_radius_;
   std::vector<Vec3> sample_;
   std::vector<bool> alone_;
+  std::vector<bool> marked_ = std::vector<bool>(kMarks);  ///< cubes by key: rules most points out
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cubes_;
 };
 

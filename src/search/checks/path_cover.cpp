@@ -8,7 +8,7 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kLookedAt = 16'384;  ///< poses
-constexpr std::size_t kMeasured = 128;
+constexpr std::size_t kMeasured = 64;
 /// Metres.
 constexpr double kFar = 10;
 constexpr double kNear = 3;

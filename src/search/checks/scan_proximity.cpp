@@ -20,6 +20,35 @@ std::uint32_t blocks_of(const Cell& cell) {
   return static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
 }
 
+/// A box and what is within a distance of it, in a cell's steps of block boxes: leaves out most
+/// blocks before they are decoded, and none that is within the distance.
+class StepRange {
+ public:
+  StepRange(const Box& cell, const Box& box, double distance) {
+    for (int k = 0; k < 3; ++k) {
+      const double extent = cell.hi[k] - cell.lo[k];
+      const double steps = extent > 0 ? static_cast<double>(kBlockBoxSteps) / extent : 0;
+      lo_[k] = step((box.lo[k] - distance - cell.lo[k]) * steps - kSlack);
+      hi_[k] = step((box.hi[k] + distance - cell.lo[k]) * steps + kSlack);
+    }
+  }
+
+  bool meets(const BlockBox& block) const {
+    bool meets = true;
+    for (int k = 0; k < 3; ++k) meets = meets & (block.lo[k] <= hi_[k]) & (block.hi[k] >= lo_[k]);
+    return meets;
+  }
+
+ private:
+  static constexpr double kSlack = 2;  // block boxes are rounded by a step
+
+  static std::int32_t step(double steps) {
+    return static_cast<std::int32_t>(std::clamp(steps, -1e9, 1e9));
+  }
+
+  std::int32_t lo_[3], hi_[3];
+};
+
 }  // namespace
 
 ScanProximity::ScanProximity(const PackedCloud& cloud, double longest_block)
@@ -56,7 +85,10 @@ double ScanProximity::median_block() const {
 }
 
 void ScanProximity::look_into(std::uint32_t cell, const Box& box, bool any, Nearest& best) const {
+  const StepRange range(cell_box(cell), box, best.distance);
+  const std::uint64_t first = std::uint64_t{cell} * cloud_.blocks_per_cell();
   for (std::uint32_t block = 0; block < blocks_of(cloud_.cells()[cell]); ++block) {
+    if (!range.meets(cloud_.blocks()[first + block])) continue;
     const Box place = block_box(cell, block);
     const double distance = gap(place, box);
     if (distance > best.distance || (best.found && distance == best.distance)) continue;
