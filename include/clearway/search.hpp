@@ -32,6 +32,10 @@ struct SearchOptions {
   bool float_precision = false;           ///< engine grid decides in floats, for comparison
   bool overwrite = false;                 ///< an existing result, and the journal of an earlier run
   bool resume = false;                    ///< goes on from the journal of an earlier run
+  bool strict = false;                    ///< any warning ends with InputError, nothing searched
+  /// Of reading model and trajectory, told already: the report holds them too, and strict counts
+  /// them.
+  std::vector<Message> input_warnings = {};
   double journal_interval_seconds = 5;    ///< between two syncs of the journal to the disk
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< notes, and the warnings that the report holds

@@ -10,6 +10,7 @@
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
+#include "search/checks/query_warnings.hpp"
 #include "search/devices.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/cuda_kind.hpp"
@@ -41,7 +42,7 @@ class Search {
   }
 
   SearchReport run() {
-    warn_of_query();
+    check();
     report_sizes();
     if (journal_.already_done(store_, header_, progress_)) {
       report_finished();
@@ -69,15 +70,12 @@ class Search {
             metadata.crs_wkt};
   }
 
-  void warn_of_query() {
-    if (query_.poses.empty()) {
-      log_.warn("no-poses", "the trajectory has no poses: nothing can collide");
-    }
-    const LengthUnit unit = store_.metadata().unit;
-    if (unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) {
-      log_.warn("feet",
-                "the environment is in feet: radius, model and trajectory are taken in feet too");
-    }
+  /// Before anything is searched, and of a result that is there already too.
+  void check() {
+    report_.warnings = options_.input_warnings;
+    check_sizes(query_);
+    warn_of_query(store_, query_, log_);
+    if (options_.strict) refuse_warnings(report_.warnings);
   }
 
   void report_sizes() {
@@ -97,7 +95,6 @@ class Search {
 
   /// Device kAuto goes on where the run that is resumed was.
   void resolve_device() {
-    check_sizes(query_);
     const Device earlier = journal_.earlier_device();
     if (options_.device == Device::kAuto && options_.gpus.empty() && earlier != Device::kAuto) {
       options_.device = earlier;

@@ -161,7 +161,7 @@ void add_query(CLI::App& command, std::filesystem::path& environment, std::files
 void add_radius_and_threads(CLI::App& command, double& radius, int& threads) {
   command.add_option("--radius", radius, "Search radius in metres")
       ->type_name("METRES")
-      ->check(tool::positive_length())
+      ->transform(tool::positive_length())
       ->capture_default_str();
   tool::add_threads_option(command, threads);
 }

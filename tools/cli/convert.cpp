@@ -87,7 +87,7 @@ void add_convert(CLI::App& program) {
                    "finest power "
                    "of ten >= 1e-6 that fits)")
       ->type_name("METRES")
-      ->check(positive_length());
+      ->transform(positive_length());
   command->add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")
       ->type_name("N")
       ->capture_default_str();

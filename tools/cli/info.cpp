@@ -6,10 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
-#include "cli/support/options.hpp"
 #include "cli/support/standard_output.hpp"
-#include "io/hdf5/hdf5.hpp"
+#include "core/geometry/point_box.hpp"
+#include "io/inspect/file_kind.hpp"
+#include "io/inspect/inspect_points.hpp"
 #include "io/journal/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
@@ -22,10 +24,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json box_json(const StoreReader& store) {
-  if (store.tree().empty()) return nullptr;
-  const Box box = position_box(store.quantisation(), store.tree()[0].box);
+ordered_json box_json(const Box& box) {
   return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
+}
+
+ordered_json bounds_of(const StoreReader& store) {
+  if (store.tree().empty()) return nullptr;
+  return box_json(position_box(store.quantisation(), store.tree()[0].box));
 }
 
 ordered_json describe(const StoreReader& store) {
@@ -47,7 +52,7 @@ ordered_json describe(const StoreReader& store) {
           {"packed_bytes", packed},
           {"scale", m.quantisation.scale},
           {"offset", m.quantisation.offset},
-          {"bounds", box_json(store)},
+          {"bounds", bounds_of(store)},
           {"length_unit", to_string(m.unit)},
           {"crs_wkt", m.crs_wkt},
           {"points_hash", hash_text(m.points_hash)},
@@ -99,10 +104,80 @@ ordered_json describe(const JournalReader& journal) {
   return description;
 }
 
-ordered_json describe_file(const std::filesystem::path& file) {
-  if (is_journal(file)) return describe(JournalReader(file));
-  if (hdf5::holds(file, "collisions")) return describe(ResultReader(file));
-  return describe(StoreReader(file));
+ordered_json describe_points(const std::filesystem::path& file) {
+  const PointsDescription points = inspect_points(file);
+  ordered_json remarks = ordered_json::array();
+  for (const Message& remark : points.info.remarks) remarks.push_back(remark.text);
+  ordered_json description{{"kind", "scan"},
+                           {"format", point_format_name(file)},
+                           {"points", points.points},
+                           {"absent_points", points.absent},
+                           {"non_finite_points", points.non_finite},
+                           {"faces", points.info.faces},
+                           {"scale", nullptr},
+                           {"offset", nullptr},
+                           {"bounds", points.points > 0 ? box_json(points.box) : nullptr},
+                           {"length_unit", to_string(points.info.unit)},
+                           {"crs_wkt", points.info.crs_wkt},
+                           {"spacing", nullptr},
+                           {"remarks", remarks}};
+  if (points.info.quantisation) {
+    description["scale"] = points.info.quantisation->scale;
+    description["offset"] = points.info.quantisation->offset;
+  }
+  if (points.spacing) description["spacing"] = *points.spacing;
+  return description;
+}
+
+ordered_json describe_trajectory(const std::filesystem::path& file) {
+  const std::vector<Pose> poses = read_trajectory(file);
+  ordered_json bounds = nullptr;
+  if (!poses.empty()) {
+    std::vector<Vec3> positions;
+    for (const Pose& pose : poses) {
+      positions.push_back({pose.translation[0], pose.translation[1], pose.translation[2]});
+    }
+    bounds = box_json(box_of(positions));
+  }
+  return {{"kind", "trajectory"},
+          {"poses", poses.size()},
+          {"bounds", bounds},
+          {"more", "clearway trajectory info " + file.filename().string()}};
+}
+
+/// The first of two readings that succeeds. Where neither does the first one's complaint is the
+/// better one: it is what the file looks like.
+template <typename First, typename Second>
+ordered_json either(const std::filesystem::path& file, First first, Second second) {
+  try {
+    return first(file);
+  } catch (const InputError&) {
+    const std::exception_ptr complaint = std::current_exception();
+    try {
+      return second(file);
+    } catch (const Error&) {
+      std::rethrow_exception(complaint);
+    }
+  }
+}
+
+ordered_json describe(const std::filesystem::path& file) {
+  switch (describe_file(file).kind) {
+    case FileKind::kJournal:
+      return describe(JournalReader(file));
+    case FileKind::kResult:
+      return describe(ResultReader(file));
+    case FileKind::kStore:
+    case FileKind::kOtherHdf5:
+      return describe(StoreReader(file));
+    case FileKind::kPoints:
+    case FileKind::kMesh:
+      return describe_points(file);
+    case FileKind::kTrajectory:
+      return either(file, describe_trajectory, describe_points);
+    default:
+      return either(file, describe_points, describe_trajectory);
+  }
 }
 
 std::string text_of(const ordered_json& description) {
@@ -130,7 +205,7 @@ struct InfoOptions {
 };
 
 void run_info(const InfoOptions& options) {
-  const ordered_json description = describe_file(options.file);
+  const ordered_json description = describe(options.file);
   // Names of files need not be UTF-8.
   constexpr auto kReplace = ordered_json::error_handler_t::replace;
   print(options.json ? description.dump(2, ' ', false, kReplace) + "\n" : text_of(description));
@@ -140,14 +215,14 @@ void run_info(const InfoOptions& options) {
 
 void add_info(CLI::App& program) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command =
-      program.add_subcommand("info", "Print what is in a store, a result or a journal");
-  command->add_option("FILE", options->file, "Store, result or journal")
+  CLI::App* command = program.add_subcommand(
+      "info", "Print what is in a file: store, result, journal, scan, model or trajectory");
+  command->add_option("FILE", options->file, "Any file that Clearway reads or writes")
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
-      "Lengths are in the environment's unit, normally metres.\n"
+      "Lengths are in the file's unit, normally metres. Scans and models are read to their end.\n"
       "Example: clearway info site.h5");
   command->callback([options] { run_info(*options); });
 }

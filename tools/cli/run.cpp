@@ -1,16 +1,20 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "clearway/clearway.hpp"
 #include "cli/commands.hpp"
+#include "cli/input_roles.hpp"
 #include "cli/memory_use.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
+#include "cli/support/warnings_json.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -90,26 +94,42 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["peak_device_bytes"] = report.peak_device_bytes;
   if (!report.was_finished) out["tolerance"] = tolerance_of(report, options.query.tolerance);
   out["seconds"] = seconds_of(report.seconds, program);
+  out["warnings"] = warnings_json(report.warnings);
   return out;
+}
+
+/// No all-clear where something was warned of.
+std::string caveat(const SearchReport& report) {
+  const std::size_t count = report.warnings.size();
+  if (count == 0) return "";
+  return ", but see the " + (count == 1 ? "warning" : std::to_string(count) + " warnings") +
+         " above";
 }
 
 void log_report(const SearchReport& report, const RunOptions& options, double seconds) {
   const std::string output = options.output.string();
   if (report.was_finished) {
-    spdlog::info("{}: is the finished result of this query already; nothing to do", output);
+    spdlog::info("{}: is the finished result of this query already; nothing to do{}", output,
+                 caveat(report));
     return;
   }
-  spdlog::info("{}: {} of {} environment points collide; engine {} on {}, {:.2f} s", output,
-               format_count(report.colliding_points), format_count(report.environment_points),
-               name_of(report.engine), report.device_name, seconds);
+  const std::string found =
+      fmt::format("{} of {} environment points collide", format_count(report.colliding_points),
+                  format_count(report.environment_points));
+  const std::string how =
+      fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
+  const bool doubtful = !report.warnings.empty();
+  spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
   if (options.query.clearance > 0) {
     spdlog::info("{} points are within the clearance of {} m",
                  format_count(report.clearance_points), options.query.clearance);
   }
+  if (doubtful) spdlog::info("{}{}", found, caveat(report));
 }
 
+/// Warnings of the inputs are told at once, and go into the report with those of the search.
 Query read_query(RunOptions& options, const Store& store) {
-  std::vector<Message> warnings;
+  std::vector<Message>& warnings = options.search.input_warnings;
   ModelOptions how = options.model_options;
   if (how.spacing == 0) how.spacing = options.query.radius / kSpacingsInRadius;
   std::vector<Vec3> model = read_model(options.model, how, &warnings);
@@ -120,6 +140,13 @@ Query read_query(RunOptions& options, const Store& store) {
   return {std::move(model), std::move(poses), options.query};
 }
 
+/// Of the environment's unit where it is a foot.
+std::optional<double> metres_of(const Store& store) {
+  if (store.length_unit() == "foot") return 0.3048;
+  if (store.length_unit() == "us-survey-foot") return 1200.0 / 3937;
+  return std::nullopt;
+}
+
 void run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
@@ -127,7 +154,11 @@ void run(RunOptions& options) {
   watch_call(options.search, progress);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
+  check_is_store(options.environment);
+  check_is_model(options.model);
+  check_is_trajectory(options.trajectory);
   const Store store(options.environment);
+  if (const auto metres = metres_of(store)) options.lengths.convert(*metres);
   const Query query = read_query(options, store);
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);

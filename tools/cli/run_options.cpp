@@ -25,10 +25,10 @@ void add_inputs(CLI::App& command, RunOptions& options) {
                   "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
       ->type_name("FILE")
       ->required();
-  command.add_option("--radius", options.query.radius, "Search radius in metres, for example 0.1")
-      ->type_name("METRES")
-      ->required()
-      ->check(positive_length());
+  options.lengths
+      .add(command, "--radius", options.query.radius,
+           "Search radius in metres, for example 0.1, or with a unit, for example 10cm")
+      ->required();
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
@@ -39,22 +39,16 @@ void add_inputs(CLI::App& command, RunOptions& options) {
 void add_query(CLI::App& command, RunOptions& options) {
   command.add_flag("--first-pose", options.query.first_pose,
                    "Also report the first pose that touches each colliding point, counted from 0");
-  command
-      .add_option(
-          "--clearance", options.query.clearance,
-          "Also report the least distance, and its pose, of every point closer than this, for "
-          "example 0.5; engine sweep only")
-      ->type_name("METRES")
-      ->check(positive_length());
+  options.lengths.add(
+      command, "--clearance", options.query.clearance,
+      "Also report the least distance, and its pose, of every point closer than this, for "
+      "example 0.5; engine sweep only");
   command.add_flag("--between-poses", options.query.between_poses,
                    "Move every model point on a straight segment from each pose to the next");
-  command
-      .add_option(
-          "--tolerance", options.query.tolerance,
-          "Faster: may decide wrongly for points within this distance of the radius, for example "
-          "0.001; engine sweep only")
-      ->type_name("METRES")
-      ->check(positive_length());
+  options.lengths.add(
+      command, "--tolerance", options.query.tolerance,
+      "Faster: may decide wrongly for points within this distance of the radius, for example "
+      "0.001; engine sweep only");
 }
 
 /// An option that takes the name of one of the values.
@@ -89,23 +83,17 @@ void add_device(CLI::App& command, SearchOptions& options) {
                   "Memory bound of each GPU, without CUDA's own (default: 2G, or what is free)");
 }
 
-void add_engine(CLI::App& command, SearchOptions& options) {
+void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& lengths) {
   add_choice(command, "--engine", options.engine,
              {Engine::kAuto, Engine::kSweep, Engine::kGrid, Engine::kKdtree},
              "sweep, grid or kdtree; auto takes sweep");
   add_device(command, options);
   add_threads_option(command, options.threads);
   add_memory_option(command, options.memory_bytes);
-  command
-      .add_option("--field-voxel", options.field_voxel,
-                  "Voxel of the sweep engine's model field in metres (default: chosen)")
-      ->type_name("METRES")
-      ->check(positive_length());
-  command
-      .add_option("--grid-cell", options.grid_cell,
-                  "Grid cell of engine grid in metres (default: chosen)")
-      ->type_name("METRES")
-      ->check(positive_length());
+  lengths.add(command, "--field-voxel", options.field_voxel,
+              "Voxel of the sweep engine's model field in metres (default: chosen)");
+  lengths.add(command, "--grid-cell", options.grid_cell,
+              "Grid cell of engine grid in metres (default: chosen)");
   command
       .add_option_function<std::string>(
           "--precision",
@@ -121,7 +109,7 @@ void add_engine(CLI::App& command, SearchOptions& options) {
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);
   add_query(command, options);
-  add_engine(command, options.search);
+  add_engine(command, options.search, options.lengths);
   CLI::Option* force =
       command.add_flag("--force", options.search.overwrite,
                        "Overwrite an existing result; remove the journal of an earlier run");
@@ -137,6 +125,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("SECONDS")
       ->check(seconds_up_to(3600))
       ->capture_default_str();
+  command.add_flag("--strict", options.search.strict,
+                   "Refuse to search where anything is warned of (exit code 3)");
   command.add_flag("--json", options.json, "Print one JSON object about the run");
 }
 

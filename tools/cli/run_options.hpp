@@ -5,6 +5,7 @@
 #include "clearway/model.hpp"
 #include "clearway/search.hpp"
 #include "clearway/trajectory.hpp"
+#include "cli/support/lengths.hpp"
 
 namespace CLI {
 class App;
@@ -19,6 +20,7 @@ struct RunOptions {
   SearchOptions search;
   ModelOptions model_options;
   TrajectoryOptions trajectory_options;
+  LengthOptions lengths;
   bool json = false;
 };
 

@@ -109,7 +109,7 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
   command.add_option("--max-motion", options->max_motion, max_motion_help)
       ->type_name("METRES")
       ->required()
-      ->check(positive_length());
+      ->transform(positive_length());
   command
       .add_option("--model", options->model,
                   "The model, as clearway run reads it; its bounding box is what moves")

@@ -1,11 +1,14 @@
 #include "io/export/export_result.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "clearway/error.hpp"
+#include "io/export/decimal_axis.hpp"
 #include "io/formats/las/las_writer.hpp"
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/formats/requantize.hpp"
@@ -90,29 +93,50 @@ class PlySink final : public RowSink {
   PlyWriter writer_;
 };
 
+/// Positions as texts, three numbers and what stands between them.
+class PositionText {
+ public:
+  explicit PositionText(const Quantisation& quantisation)
+      : axes_{DecimalAxis(quantisation, 0), DecimalAxis(quantisation, 1),
+              DecimalAxis(quantisation, 2)} {}
+
+  void write(TextWriter& out, const Vec3& p, std::string_view between) {
+    out << axes_[0].text(p.x) << between << axes_[1].text(p.y) << between << axes_[2].text(p.z);
+  }
+
+ private:
+  std::array<DecimalAxis, 3> axes_;
+};
+
 class XyzSink final : public RowSink {
  public:
-  XyzSink(const ResultReader&, const File& file, const Progress&) : out_(file) {}
+  XyzSink(const ResultReader& result, const File& file, const Progress&)
+      : out_(file), position_(result.header().quantisation) {}
 
   void write(const ResultRows& rows) override {
-    for (const Vec3& p : rows.xyz) out_ << p.x << " " << p.y << " " << p.z << "\n";
+    for (const Vec3& p : rows.xyz) {
+      position_.write(out_, p, " ");
+      out_ << "\n";
+    }
   }
   void finish() override { out_.flush(); }
 
  private:
   TextWriter out_;
+  PositionText position_;
 };
 
 class CsvSink final : public RowSink {
  public:
-  CsvSink(const ResultReader& result, const File& file, const Progress&) : out_(file) {
+  CsvSink(const ResultReader& result, const File& file, const Progress&)
+      : out_(file), position_(result.header().quantisation) {
     out_ << (result.header().first_pose ? "source,x,y,z,first_pose\n" : "source,x,y,z\n");
   }
 
   void write(const ResultRows& rows) override {
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const Vec3& p = rows.xyz[i];
-      out_ << rows.source[i] << "," << p.x << "," << p.y << "," << p.z;
+      out_ << rows.source[i] << ",";
+      position_.write(out_, rows.xyz[i], ",");
       if (!rows.first_pose.empty()) out_ << "," << rows.first_pose[i];
       out_ << "\n";
     }
@@ -121,6 +145,7 @@ class CsvSink final : public RowSink {
 
  private:
   TextWriter out_;
+  PositionText position_;
 };
 
 using MakeSink = std::unique_ptr<RowSink> (*)(const ResultReader&, const File&, const Progress&);

@@ -86,4 +86,11 @@ std::string advice_on(const Error& error) {
   return "";
 }
 
+std::string advice_on(const Message& message) {
+  if (message.code == "large-steps") {
+    return ". --between-poses searches the way too; clearway trajectory resample adds poses";
+  }
+  return "";
+}
+
 }  // namespace clearway::tool

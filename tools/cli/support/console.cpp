@@ -2,12 +2,17 @@
 
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <initializer_list>
+#include <iterator>
 
+#include "cli/support/advice.hpp"
 #include "cli/support/signals.hpp"
 
 namespace clearway::tool {
@@ -29,6 +34,26 @@ std::string short_time(double seconds) {
   const long whole = std::lround(seconds);
   std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
   return text;
+}
+
+/// Of the terminal at standard error, now: it can be made narrower at any time.
+std::size_t terminal_columns() {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  const char* columns = std::getenv("COLUMNS");
+  const long number = columns != nullptr ? std::strtol(columns, nullptr, 10) : 0;
+  constexpr long kUsual = 80;
+  return static_cast<std::size_t>(number > 0 ? number : kUsual);
+}
+
+/// The first text that leaves the last column free, where some terminals wrap; the last one cut
+/// where none does.
+std::string first_that_fits(std::initializer_list<std::string> texts) {
+  const std::size_t room = terminal_columns() - 1;
+  for (const std::string& text : texts) {
+    if (text.size() <= room) return text;
+  }
+  return std::data(texts)[texts.size() - 1].substr(0, room);
 }
 
 }  // namespace
@@ -80,23 +105,30 @@ void ConsoleProgress::draw(Clock::time_point now) {
   drawn_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const double rate = static_cast<double>(done_) / std::max(seconds, 1e-9);
-  std::string line = stage_ + ": " + short_number(static_cast<double>(done_));
+  const std::string speed = ", " + short_number(rate) + " " + unit_ + "/s";
+  const std::string done = short_number(static_cast<double>(done_));
+  std::string line;
   if (total_ > 0) {
     const double share = static_cast<double>(done_) / static_cast<double>(total_);
     const double left =
         static_cast<double>(total_ - std::min(done_, total_)) / std::max(rate, 1e-9);
-    line += " of " + short_number(static_cast<double>(total_)) + " " + unit_ + ", " +
-            std::to_string(static_cast<int>(100 * share)) + " %, " + short_number(rate) + " " +
-            unit_ + "/s, " + short_time(left) + " left";
+    const std::string of = " of " + short_number(static_cast<double>(total_)) + " " + unit_;
+    const std::string percent = std::to_string(static_cast<int>(100 * share)) + " %";
+    const std::string time = ", " + short_time(left) + " left";
+    line = first_that_fits({stage_ + ": " + done + of + ", " + percent + speed + time,
+                            stage_ + ": " + done + of + ", " + percent + time,
+                            stage_ + ": " + percent + time, stage_ + ": " + percent, percent});
   } else {
-    line += " " + unit_ + ", " + short_number(rate) + " " + unit_ + "/s";
+    line = first_that_fits(
+        {stage_ + ": " + done + " " + unit_ + speed, stage_ + ": " + done + " " + unit_, done});
   }
   std::fprintf(stderr, "\r%s\033[K", line.c_str());
 }
 
 void log_message(const Message& message) {
   const bool warning = message.severity == Message::Severity::kWarning;
-  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", message.text);
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}{}", message.text,
+              advice_on(message));
 }
 
 }  // namespace clearway::tool

@@ -6,18 +6,21 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cli/support/lengths.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway::tool {
 
 CLI::Validator positive_length() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    const bool number = CLI::detail::lexical_cast(text, value);
-    if (number && std::isfinite(value) && value > 0) return "";
-    return text + ": expected a finite number of metres above 0, for example 0.1";
+  const auto read = [](std::string& text) -> std::string {
+    try {
+      text = format_number(parse_length("", text).value);
+    } catch (const CLI::ValidationError& error) {
+      return error.what();
+    }
+    return "";
   };
-  return {check, ""};
+  return {read, "", ""};
 }
 
 CLI::Validator seconds_up_to(double most) {

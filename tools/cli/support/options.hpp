@@ -12,7 +12,7 @@ class Validator;
 
 namespace clearway::tool {
 
-/// Accepts a finite number of metres above 0.
+/// Accepts a finite length above 0, of which it makes metres. For Option::transform.
 CLI::Validator positive_length();
 
 /// Accepts a number of seconds from 0 to `most`.

@@ -15,25 +15,13 @@
 #include "cli/support/advice.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/exit_code.hpp"
+#include "cli/support/mistyped.hpp"
 #include "cli/support/standard_output.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/system/mapped_file.hpp"
 
 namespace clearway::tool {
 namespace {
-
-void check_command(const CLI::App& program, const char* program_name, int argc, char** argv) {
-  const std::string name = argc > 1 ? argv[1] : "--help";
-  if (name == "-h" || name == "--help" || name == "--version") return;
-  std::string commands;
-  for (const CLI::App* command : program.get_subcommands({})) {
-    if (command->get_name() == name) return;
-    if (command->get_group().empty()) continue;  // hidden
-    commands += (commands.empty() ? "" : ", ") + command->get_name();
-  }
-  throw UsageError(name + ": no such command; expected one of " + commands + " (" + program_name +
-                   " --help explains them)");
-}
 
 /// Help goes to standard output too: a disk that is full there is an error.
 int finish(const CLI::App& program, const CLI::ParseError& error) {
@@ -48,7 +36,7 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   program.require_subcommand(1);
   int exit_code = kDone;
   add_commands(program, exit_code);
-  check_command(program, text.name, argc, argv);
+  check_words(program, text.name, argc, argv);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

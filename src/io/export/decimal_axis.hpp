@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "core/geometry/quantisation.hpp"
+
+namespace clearway {
+
+/// The coordinates of one axis as decimals: 14.78 where the double is 14.780000000000001, because
+/// scale and offset are decimals themselves. A text reads back as a number of which
+/// nearbyint((x - offset) / scale) is the stored integer. Where that cannot be, it has the shortest
+/// digits that give the double back.
+class DecimalAxis {
+ public:
+  DecimalAxis(const Quantisation& quantisation, int axis);
+
+  /// Valid until the next call.
+  std::string_view text(double coordinate);
+
+ private:
+  std::string_view decimal(std::int32_t quantum);
+
+  const Quantisation quantisation_;
+  int axis_;
+  /// Scale and offset in units of 10^-digits_; none where that is no whole number.
+  std::optional<std::array<std::int64_t, 2>> whole_;
+  int digits_ = 0;
+  std::array<char, 64> buffer_{};
+};
+
+}  // namespace clearway

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/point_box.hpp"
+#include "core/util/format.hpp"
+#include "search/checks/checks.hpp"
+#include "search/checks/drive.hpp"
+#include "search/checks/words.hpp"
+
+namespace clearway {
+namespace {
+
+// Shares of the motion along one axis of the model. 0.8: 27 degrees aside on average.
+constexpr double kAlongAxis = 0.8;
+constexpr double kSurelyAlongAxis = 0.95;
+
+double greatest_share(const Vec3& shares) { return std::max({shares.x, shares.y, shares.z}); }
+
+struct Misreading {
+  Reading reading;
+  const char* sentence;
+};
+constexpr Misreading kMisreadings[] = {
+    {Reading::kTransposed,
+     "It moves along its axis when the rotations are transposed: they seem to be column-major, or "
+     "to turn the scan into the model's frame"},
+    {Reading::kScalarFirst,
+     "It moves along its axis when the quaternions are read as w x y z, not as x y z w"},
+    {Reading::kScalarLast,
+     "It moves along its axis when the quaternions are read as x y z w, not as w x y z"}};
+
+/// What the rotations may be instead; nullptr where no reading makes the model move along an axis.
+const char* misreading(const Drive& drive) {
+  for (const Misreading& other : kMisreadings) {
+    const bool fits = greatest_share(drive.along_axes(other.reading)) > kSurelyAlongAxis &&
+                      drive.upright(other.reading) > kSurelyAlongAxis;
+    if (fits) return other.sentence;
+  }
+  return nullptr;
+}
+
+bool warn_of_rotations(const Drive& drive, MessageLog& log) {
+  const double share = greatest_share(drive.along_axes());
+  if (share >= kAlongAxis) return false;
+  constexpr double kTurns = 0.97;
+  const char* other = misreading(drive);
+  const bool still = drive.never_turns() && drive.straightness() < kTurns;
+  const std::string why =
+      other != nullptr ? other
+      : still ? "All rotations are the same although the path turns: do the poses lack their "
+                "rotations?"
+              : "Check order, sign and zero direction of the angles, and the frame that the poses "
+                "are of";
+  log.warn("rotations",
+           "the model does not move along one of its own axes: only " + share_text(share) +
+               " of the motion is along the likeliest. " + why,
+           {{"share", share}});
+  return true;
+}
+
+bool warn_of_tilt(const Drive& drive, MessageLog& log) {
+  const double upright = drive.upright();
+  constexpr double kTilted = 0.5;  // 60 degrees on average
+  if (upright >= kTilted) return false;
+  const char* other = misreading(drive);
+  log.warn("tilted",
+           std::string("the model's z axis ") +
+               (upright < -kTilted ? "points down" : "does not point up") +
+               " along the path: the poses seem to be of a frame with other axes, such as a "
+               "camera's, or with z down" +
+               (other != nullptr ? std::string(". ") + other : ""),
+           {{"mean_z", upright}});
+  return true;
+}
+
+void warn_sideways(const Question& question, const Drive& drive, MessageLog& log) {
+  const Vec3 shares = drive.along_axes();
+  if (greatest_share(shares) < kAlongAxis) return;
+  const int axis = shares.x >= shares.y && shares.x >= shares.z ? 0 : shares.y >= shares.z ? 1 : 2;
+  const int longest = longest_side(question.model);
+  constexpr double kLonger = 1.3;
+  const double side = question.model.hi[axis] - question.model.lo[axis];
+  const double other = question.model.hi[longest] - question.model.lo[longest];
+  const bool across = longest != 2 && other > kLonger * side;
+  if (axis != 2 && !across) return;
+  log.warn("sideways",
+           std::string("the model moves along its ") + "xyz"[axis] + " axis, but is " +
+               size_text(question.model, question.unit) +
+               (axis == 2 ? ": z is expected to point up. " : ": it drives sideways. ") +
+               "Turn the model, or the rotations of the poses",
+           {{"share", shares[axis]}});
+}
+
+/// Whether the poses hardly turn the model: then it is no crane that slews on the spot.
+bool hardly_turns(const Question& question) {
+  constexpr double kThirtyDegrees = 0.866;
+  const double* first = question.query.poses.front().rotation;
+  return std::ranges::all_of(question.query.poses, [&](const Pose& pose) {
+    double trace = 0;
+    for (int k = 0; k < 9; ++k) trace += pose.rotation[k] * first[k];
+    return (trace - 1) / 2 > kThirtyDegrees;
+  });
+}
+
+void warn_of_tiny_path(const Question& question, MessageLog& log) {
+  const auto& poses = question.query.poses;
+  constexpr std::size_t kMany = 10;
+  if (poses.size() < kMany) return;
+  const Vec3 first = translation_of(poses.front());
+  Box path{first, first};
+  for (const Pose& pose : poses) {
+    const Vec3 p = translation_of(pose);
+    path = united(path, {p, p});
+  }
+  const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
+  if (!(across < longest / 4) || !hardly_turns(question)) return;
+  log.warn("tiny-path",
+           "all " + format_count(poses.size()) + " poses lie within " +
+               length_text(across, question.unit) + ", and the model is " +
+               length_text(longest, question.unit) +
+               " long: is the path in another unit, such as kilometres or degrees?",
+           {{"path", across}, {"model_longest", longest}});
+}
+
+}  // namespace
+
+void check_heading(const Question& question, MessageLog& log) {
+  warn_of_tiny_path(question, log);
+  const Drive drive(question);
+  if (!drive.is_one()) return;
+  if (warn_of_tilt(drive, log) || warn_of_rotations(drive, log)) return;
+  warn_sideways(question, drive, log);
+}
+
+}  // namespace clearway

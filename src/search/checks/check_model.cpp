@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/util/format.hpp"
+#include "search/checks/checks.hpp"
+#include "search/checks/words.hpp"
+
+namespace clearway {
+namespace {
+
+// Metres. The longest trains and cranes, and what nobody asks a question about.
+constexpr double kLargest = 200;
+constexpr double kSmallest = 0.01;
+/// No vehicle is so wide and so high.
+constexpr double kThickest = 30;
+
+struct ModelUnit {
+  double metres;
+  const char* name;
+};
+constexpr ModelUnit kUnits[] = {
+    {0.001, "millimetres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.3048, "feet"}};
+
+/// The model as large as a vehicle is, in the first unit in which it is one.
+std::string unit_guess(const Question& question) {
+  const double longest = Sides(question.model).longest;
+  for (const ModelUnit& unit : kUnits) {
+    const double metres = longest * unit.metres;
+    if (metres < 0.3 || metres > 60) continue;
+    Box box = question.model;
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] *= unit.metres;
+      box.hi[k] *= unit.metres;
+    }
+    return std::string("In ") + unit.name + " it would be " + size_text(box, LengthUnit::kMetre);
+  }
+  return "Check its unit";
+}
+
+void warn_of_size(const Question& question, MessageLog& log) {
+  const Sides model(question.model), environment(question.environment);
+  const double metre = question.metre;
+  const bool larger = model.longest > environment.longest;
+  const bool huge = model.longest > kLargest * metre || model.shortest > kThickest * metre;
+  if (!larger && !huge && !(model.longest > 0 && model.longest < kSmallest * metre)) return;
+  std::string text = "the model is " + size_text(question.model, question.unit) +
+                     ", the environment " + size_text(question.environment, question.unit) + ". ";
+  if (huge) text += unit_guess(question) + (larger ? ". " : "");
+  if (larger) text += "Are model and environment swapped?";
+  if (!larger && !huge) {
+    text += "So small a model touches hardly anything: check its unit, and that of the scan";
+  }
+  log.warn("model-size", text,
+           {{"model_longest", model.longest}, {"environment_longest", environment.longest}});
+}
+
+/// A pose that leaves the model where it stands: the poses are motions of a model in the scan.
+bool is_rest(const Pose& pose, double metre) {
+  constexpr double kNoise = 1e-3;
+  for (int k = 0; k < 9; ++k) {
+    if (std::abs(pose.rotation[k] - (k % 4 == 0 ? 1 : 0)) > kNoise) return false;
+  }
+  const Vec3 t = translation_of(pose);
+  return std::sqrt(squared_length(t.x, t.y, t.z)) <= kNoise * metre;
+}
+
+void warn_of_origin(const Question& question, MessageLog& log) {
+  const Vec3 centre = centre_of(question.model);
+  const double away = std::sqrt(squared_length(centre.x, centre.y, centre.z));
+  const double longest = Sides(question.model).longest;
+  if (!(away > 10 * longest + 10 * question.metre)) return;
+  const auto rests = [&](const Pose& pose) { return is_rest(pose, question.metre); };
+  if (std::ranges::any_of(question.query.poses, rests)) return;
+  log.warn("model-origin",
+           "the model's points lie " + length_text(away, question.unit) +
+               " from the origin of their frame, at " + extent_text(question.model) +
+               ". A pose turns and moves the model about that origin. Is the model in the "
+               "scan's coordinates? Move its reference point to 0, 0, 0",
+           {{"distance", away}, {"model_longest", longest}});
+}
+
+void warn_of_same(const Question& question, MessageLog& log) {
+  if (question.query.model.size() != question.cloud.point_count()) return;
+  if (question.query.model.size() == 1) return;
+  for (int k = 0; k < 3; ++k) {
+    const double noise =
+        2 * question.cloud.quantisation().scale[k] + 1e-6 * std::abs(question.environment.hi[k]);
+    if (std::abs(question.model.lo[k] - question.environment.lo[k]) > noise) return;
+    if (std::abs(question.model.hi[k] - question.environment.hi[k]) > noise) return;
+  }
+  log.warn("model-is-environment",
+           "the model has " + format_count(question.query.model.size()) +
+               " points, as many as the environment, and the same box: is it the scan itself?",
+           {{"points", static_cast<double>(question.query.model.size())}});
+}
+
+}  // namespace
+
+void check_model(const Question& question, MessageLog& log) {
+  warn_of_size(question, log);
+  warn_of_origin(question, log);
+  warn_of_same(question, log);
+}
+
+}  // namespace clearway

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/util/message_log.hpp"
+#include "search/checks/question.hpp"
+
+/// Each looks for one kind of misunderstanding and warns of it, at most once a code. None changes
+/// the answer. Thresholds and reasons: docs/design/inputs.md, "Checks of a query".
+namespace clearway {
+
+/// The path passes where nothing was scanned: "out-of-reach", "leaves-scan".
+void check_reach(const Question& question, MessageLog& log);
+
+/// Unit and frame of the model: "model-size", "model-origin", "model-is-environment".
+void check_model(const Question& question, MessageLog& log);
+
+/// Holes between the model's points: "model-spacing".
+void check_model_spacing(const Question& question, MessageLog& log);
+
+/// The radius against model and scan: "radius-size", "fine-radius", "coarse-scan".
+void check_radius(const Question& question, MessageLog& log);
+
+/// What lies between two poses: "large-steps".
+void check_steps(const Question& question, MessageLog& log);
+
+/// The way that the model goes, against its own axes: "tilted", "rotations", "sideways",
+/// "tiny-path".
+void check_heading(const Question& question, MessageLog& log);
+
+}  // namespace clearway

@@ -1,0 +1,118 @@
+#include "search/checks/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearway {
+namespace {
+
+/// x, y, z, w of a rotation, of unit length. Source: Shepperd 1978, by the largest of the four.
+std::array<double, 4> quaternion_of(const double* r) {
+  const double squares[4] = {1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8],
+                             1 + r[0] + r[4] + r[8]};
+  const double cross[4][4] = {{0, r[1] + r[3], r[2] + r[6], r[7] - r[5]},
+                              {r[1] + r[3], 0, r[5] + r[7], r[2] - r[6]},
+                              {r[2] + r[6], r[5] + r[7], 0, r[3] - r[1]},
+                              {r[7] - r[5], r[2] - r[6], r[3] - r[1], 0}};
+  const auto largest = static_cast<std::size_t>(std::max_element(squares, squares + 4) - squares);
+  std::array<double, 4> q{};
+  const double root = std::sqrt(std::max(squares[largest], 0.0));
+  for (std::size_t k = 0; k < 4; ++k) {
+    q[k] = k == largest ? root / 2 : cross[largest][k] / (2 * root);
+  }
+  return q;
+}
+
+std::array<double, 9> rotation_of(const std::array<double, 4>& q) {
+  const auto [x, y, z, w] = q;
+  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
+          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
+}
+
+}  // namespace
+
+std::array<double, 9> reread(const double* r, Reading reading) {
+  switch (reading) {
+    case Reading::kTransposed:
+      return {r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]};
+    case Reading::kScalarFirst: {  // w x y z was read as x y z w
+      const auto [x, y, z, w] = quaternion_of(r);
+      return rotation_of({y, z, w, x});
+    }
+    case Reading::kScalarLast: {  // x y z w was read as w x y z
+      const auto [x, y, z, w] = quaternion_of(r);
+      return rotation_of({w, x, y, z});
+    }
+    case Reading::kAsGiven:
+      break;
+  }
+  return {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]};
+}
+
+Drive::Drive(const Question& question) {
+  constexpr double kShortest = 0.5;  // metres: farther than positions wander at rest
+  const double length = std::max(Sides(question.model).longest / 2, kShortest * question.metre);
+  const auto& poses = question.query.poses;
+  std::size_t from = 0;
+  for (std::size_t to = 1; to < poses.size(); ++to) {
+    const Vec3 way = difference(translation_of(poses[to]), translation_of(poses[from]));
+    const double far = std::sqrt(squared_length(way.x, way.y, way.z));
+    if (!(far >= length)) continue;
+    const Pose& middle = poses[from + (to - from) / 2];
+    pieces_.push_back({{way.x / far, way.y / far, way.z / far}, middle.rotation});
+    from = to;
+  }
+}
+
+Vec3 Drive::along_axes(Reading reading) const {
+  Vec3 shares{};
+  double sum = 0;
+  for (const Piece& piece : pieces_) {
+    const auto r = reread(piece.rotation, reading);
+    const Vec3& d = piece.direction;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double along = r[k] * d.x + r[3 + k] * d.y + r[6 + k] * d.z;
+      shares[static_cast<int>(k)] += along * along;
+      sum += along * along;
+    }
+  }
+  return {shares.x / sum, shares.y / sum, shares.z / sum};
+}
+
+double Drive::upright(Reading reading) const {
+  double sum = 0;
+  for (const Piece& piece : pieces_) sum += reread(piece.rotation, reading)[8];
+  return sum / static_cast<double>(pieces_.size());
+}
+
+double Drive::straightness() const {
+  // The sum of d d^T, and its greatest eigenvalue by the power method.
+  double m[3][3] = {};
+  for (const Piece& piece : pieces_) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) m[i][j] += piece.direction[i] * piece.direction[j];
+    }
+  }
+  Vec3 v{1, 0.9, 0.8};
+  double length = 0;
+  for (int step = 0; step < 32; ++step) {
+    Vec3 next{};
+    for (int i = 0; i < 3; ++i) next[i] = m[i][0] * v.x + m[i][1] * v.y + m[i][2] * v.z;
+    length = std::sqrt(squared_length(next.x, next.y, next.z));
+    v = {next.x / length, next.y / length, next.z / length};
+  }
+  return length / static_cast<double>(pieces_.size());
+}
+
+bool Drive::never_turns() const {
+  constexpr double kNoise = 0.02;
+  return std::ranges::all_of(pieces_, [&](const Piece& piece) {
+    for (int k = 0; k < 9; ++k) {
+      if (std::abs(piece.rotation[k] - pieces_[0].rotation[k]) > kNoise) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace clearway

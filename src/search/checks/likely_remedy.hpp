@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "search/checks/path_cover.hpp"
+#include "search/checks/question.hpp"
+
+namespace clearway {
+
+/// How model, path and environment would meet, as a sentence: in another unit, with axes swapped,
+/// with the poses inverted, after a shift. A guess for people; nothing is changed. Where no such
+/// change helps it names what to compare.
+std::string likely_remedy(const Question& question, const PathCover& cover);
+
+}  // namespace clearway

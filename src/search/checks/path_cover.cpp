@@ -1,0 +1,72 @@
+#include "search/checks/path_cover.hpp"
+
+#include <algorithm>
+
+#include "core/geometry/point_box.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kLookedAt = 16'384;  ///< poses
+constexpr std::size_t kMeasured = 64;
+/// Metres.
+constexpr double kFar = 10;
+constexpr double kNear = 3;
+constexpr double kLongestBlock = 5;
+/// A gap is this many times farther from the scan than is usual on this path.
+constexpr double kUnusual = 4;
+
+}  // namespace
+
+std::vector<std::uint32_t> spread_poses(std::size_t poses, std::size_t most) {
+  const std::size_t count = std::min(poses, most);
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.push_back(static_cast<std::uint32_t>(count == 1 ? 0 : i * (poses - 1) / (count - 1)));
+  }
+  return out;
+}
+
+Box body_slice(const Box& model) {
+  Box slice = model;
+  const int axis = longest_side(model);
+  const Vec3 centre = centre_of(model);
+  const double half = Sides(model).middle / 2;
+  slice.lo[axis] = centre[axis] - half;
+  slice.hi[axis] = centre[axis] + half;
+  return slice;
+}
+
+PathCover::PathCover(const Question& question)
+    : scan_(question.cloud, kLongestBlock * question.metre) {
+  const double asked = std::max(question.query.radius, question.query.clearance);
+  const double coarse = std::max(asked, kUnusual * scan_.typical_block());
+  far_ = std::max({kFar * question.metre, Sides(question.model).longest / 2, coarse});
+  measure(question);
+  reach_ = std::max(std::clamp(kUnusual * usual_, kNear * question.metre, far_), coarse);
+  look(question);
+}
+
+void PathCover::measure(const Question& question) {
+  const Box slice = body_slice(question.model);
+  std::vector<double> distances;
+  for (const std::uint32_t i : spread_poses(question.query.poses.size(), kMeasured)) {
+    distances.push_back(scan_.nearest(moved(slice, question.query.poses[i]), far_).distance);
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  usual_ = *middle;
+}
+
+void PathCover::look(const Question& question) {
+  const Box slice = body_slice(question.model);
+  for (const std::uint32_t i : spread_poses(question.query.poses.size(), kLookedAt)) {
+    ++looked_at_;
+    if (scan_.within(moved(slice, question.query.poses[i]), reach_)) continue;
+    if (outside_ == 0) first_outside_ = i;
+    last_outside_ = i;
+    ++outside_;
+  }
+}
+
+}  // namespace clearway

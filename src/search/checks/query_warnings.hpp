@@ -1,0 +1,14 @@
+#pragma once
+
+#include "clearway/query.hpp"
+#include "core/util/message_log.hpp"
+#include "io/store/store_reader.hpp"
+
+namespace clearway {
+
+/// Warns of what makes a query answer something else than was meant: a path in another frame, a
+/// model in another unit, steps that skip things. Reads the store's index, no points. The model is
+/// not empty. Deterministic.
+void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log);
+
+}  // namespace clearway

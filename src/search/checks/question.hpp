@@ -1,0 +1,43 @@
+#pragma once
+
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/box.hpp"
+#include "core/geometry/sweep_bounds.hpp"
+#include "io/formats/point_reader.hpp"
+
+namespace clearway {
+
+/// What the checks of a query look at. Owns nothing.
+struct Question {
+  /// The environment has a point, the model too, the trajectory a pose.
+  Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked);
+
+  const PackedCloud& cloud;
+  LengthUnit unit;
+  const Query& query;
+  Box environment;  ///< of all points
+  Box model;        ///< in its own frame
+  double metre;     ///< in the environment's unit
+};
+
+/// The lengths of a box's sides, the longest first.
+struct Sides {
+  explicit Sides(const Box& box);
+  double longest, middle, shortest;
+};
+
+/// The axis-aligned box of a box of the model's frame at a pose.
+Box moved(const Box& box, const Pose& pose);
+
+/// The smallest box around two.
+Box united(const Box& a, const Box& b);
+
+/// The distance of two boxes; 0 where they meet.
+double gap(const Box& a, const Box& b);
+
+inline Vec3 translation_of(const Pose& pose) {
+  return {pose.translation[0], pose.translation[1], pose.translation[2]};
+}
+
+}  // namespace clearway

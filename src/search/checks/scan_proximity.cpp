@@ -1,0 +1,136 @@
+#include "search/checks/scan_proximity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/geometry/sweep_bounds.hpp"
+#include "search/checks/question.hpp"
+
+namespace clearway {
+namespace {
+
+/// Blocks that are looked at for the typical one.
+constexpr std::uint64_t kSample = 4096;
+/// A block longer than this many typical ones lies across a gap.
+constexpr double kUsual = 4;
+
+std::uint32_t blocks_of(const Cell& cell) {
+  return static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
+}
+
+/// A box and what is within a distance of it, in a cell's steps of block boxes: leaves out most
+/// blocks before they are decoded, and none that is within the distance.
+class StepRange {
+ public:
+  StepRange(const Box& cell, const Box& box, double distance) {
+    for (int k = 0; k < 3; ++k) {
+      const double extent = cell.hi[k] - cell.lo[k];
+      const double steps = extent > 0 ? static_cast<double>(kBlockBoxSteps) / extent : 0;
+      lo_[k] = step((box.lo[k] - distance - cell.lo[k]) * steps - kSlack);
+      hi_[k] = step((box.hi[k] + distance - cell.lo[k]) * steps + kSlack);
+    }
+  }
+
+  bool meets(const BlockBox& block) const {
+    bool meets = true;
+    for (int k = 0; k < 3; ++k) meets = meets & (block.lo[k] <= hi_[k]) & (block.hi[k] >= lo_[k]);
+    return meets;
+  }
+
+ private:
+  static constexpr double kSlack = 2;  // block boxes are rounded by a step
+
+  static std::int32_t step(double steps) {
+    return static_cast<std::int32_t>(std::clamp(steps, -1e9, 1e9));
+  }
+
+  std::int32_t lo_[3], hi_[3];
+};
+
+}  // namespace
+
+ScanProximity::ScanProximity(const PackedCloud& cloud, double longest_block)
+    : cloud_(cloud),
+      typical_block_(median_block()),
+      longest_block_(std::max(longest_block, kUsual * typical_block_)) {}
+
+Box ScanProximity::cell_box(std::uint32_t cell) const {
+  return position_box(cloud_.quantisation(), cloud_.cells()[cell].box);
+}
+
+Box ScanProximity::block_box(std::uint32_t cell, std::uint32_t block) const {
+  const std::uint64_t at = std::uint64_t{cell} * cloud_.blocks_per_cell() + block;
+  return position_box(cloud_.quantisation(),
+                      decode_block_box(cloud_.cells()[cell].box, cloud_.blocks()[at]));
+}
+
+double ScanProximity::median_block() const {
+  const std::uint64_t cells = cloud_.cells().size();
+  const std::uint64_t a_cell = std::max<std::uint64_t>(1, kSample / cells);
+  const std::uint64_t stride = divide_up(cells, kSample);
+  std::vector<double> diagonals;
+  for (std::uint64_t cell = 0; cell < cells; cell += stride) {
+    const std::uint64_t blocks = blocks_of(cloud_.cells()[cell]);
+    for (std::uint64_t i = 0; i < std::min(blocks, a_cell); ++i) {
+      const std::uint64_t block = i * blocks / std::min(blocks, a_cell);
+      diagonals.push_back(2 * half_diagonal(block_box(static_cast<std::uint32_t>(cell),
+                                                      static_cast<std::uint32_t>(block))));
+    }
+  }
+  const auto middle = diagonals.begin() + static_cast<std::ptrdiff_t>(diagonals.size() / 2);
+  std::nth_element(diagonals.begin(), middle, diagonals.end());
+  return *middle;
+}
+
+void ScanProximity::look_into(std::uint32_t cell, const Box& box, bool any, Nearest& best) const {
+  const StepRange range(cell_box(cell), box, best.distance);
+  const std::uint64_t first = std::uint64_t{cell} * cloud_.blocks_per_cell();
+  for (std::uint32_t block = 0; block < blocks_of(cloud_.cells()[cell]); ++block) {
+    if (!range.meets(cloud_.blocks()[first + block])) continue;
+    const Box place = block_box(cell, block);
+    const double distance = gap(place, box);
+    if (distance > best.distance || (best.found && distance == best.distance)) continue;
+    if (2 * half_diagonal(place) > longest_block_) continue;
+    best = {distance, place, true};
+    if (any || distance == 0) return;
+  }
+}
+
+ScanProximity::Nearest ScanProximity::descend(const Box& box, double most, bool any) const {
+  const std::span<const TreeNode> tree = cloud_.tree();
+  const auto distance_of = [&](std::uint32_t node) {
+    return gap(position_box(cloud_.quantisation(), tree[node].box), box);
+  };
+  Nearest best{most};
+  std::vector<std::pair<std::uint32_t, double>> open{{0, distance_of(0)}};
+  while (!open.empty() && !(best.found && (any || best.distance == 0))) {
+    const auto [node, distance] = open.back();
+    open.pop_back();
+    if (distance > best.distance || (best.found && distance == best.distance)) continue;
+    if (tree[node].right == 0) {
+      look_into(tree[node].first_cell, box, any, best);
+      continue;
+    }
+    const std::pair left{node + 1, distance_of(node + 1)};
+    const std::pair right{tree[node].right, distance_of(tree[node].right)};
+    const bool left_first = left.second <= right.second;
+    open.push_back(left_first ? right : left);
+    open.push_back(left_first ? left : right);
+  }
+  return best;
+}
+
+ScanProximity::Nearest ScanProximity::nearest(const Box& box, double most) const {
+  return descend(box, most, false);
+}
+
+bool ScanProximity::within(const Box& box, double reach) const {
+  if (last_.found && gap(last_.block, box) <= reach) return true;
+  const Nearest found = descend(box, reach, true);
+  if (found.found) last_ = found;
+  return found.found;
+}
+
+}  // namespace clearway
