@@ -5,6 +5,7 @@
 #include "core/cloud/packed_chunk.hpp"
 #include "io/journal/journal.hpp"
 #include "support/clouds.hpp"
+#include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
 
 using namespace clearway;
@@ -40,6 +41,35 @@ void write_las_seeds(Seeds seeds) {
           {"LASF_Projection", 2112, "PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"US survey foot\",0.3048]]"}};
     }
     seeds.add(las.build());
+  }
+}
+
+/// Each as a file and as its content: see e57.cpp.
+void write_e57_seeds(Seeds seeds) {
+  E57Bytes file;
+  file.root_xml = "<coordinateMetadata type=\"String\">LOCAL_CS[\"a\"]</coordinateMetadata>";
+  file.scans = {e57_scan({1, 2, 3}, {4, 5, 6}, {7, 8, 9}), e57_scan({}, {}, {})};
+  file.scans[0].xml = E57Bytes::pose({"0", "1", "0", "0"}, {"1", "2", "3"});
+  file.scans[0].packets = {{9, 3, 0}};
+  file.scans[0].index_packets = true;
+  file.scans.emplace_back();
+  file.scans[2].fields = {E57Bytes::float32("sphericalRange", {1, 2}),
+                          E57Bytes::float64("sphericalAzimuth", {0.5, 1}),
+                          E57Bytes::integer("sphericalElevation", -9, 9, {-9, 4}, "scale=\"0.1\""),
+                          E57Bytes::integer("sphericalInvalidState", 0, 2, {0, 2}),
+                          E57Bytes::integer("cartesianX", 4, 4, {4, 4}),
+                          E57Bytes::integer("cartesianY", -1, 1L << 40, {4, 5}),
+                          E57Bytes::integer("cartesianZ", 0, 1, {0, 1}),
+                          E57Bytes::float32("cartesianInvalidState", {1, 0})};
+  seeds.add('\1' + file.build());
+  file.page = 128;
+  seeds.add('\0' + file.build());
+  seeds.add('\2' + file.content().bytes);
+  for (E57Bytes::Scan& scan : file.scans) {
+    E57Bytes one;
+    one.page = 128;
+    one.scans = {scan};
+    seeds.add('\2' + one.content().bytes);
   }
 }
 
@@ -162,6 +192,7 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path folder = argv[1];
   write_las_seeds({folder, "las"});
+  write_e57_seeds({folder, "e57"});
   write_ply_seeds({folder, "ply"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
   write_chunk_seeds({folder, "packed_chunk"});

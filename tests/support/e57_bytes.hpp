@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -12,6 +13,8 @@ namespace clearway::test {
 
 /// Builds E57 files byte by byte, straight from the standard and without the reader's code.
 struct E57Bytes {
+  static constexpr std::size_t kHeaderBytes = 48;
+
   /// One field of the points: its element, and the bits stored for each record.
   struct Field {
     std::string xml;
@@ -107,14 +110,21 @@ struct E57Bytes {
     return logical / (page - 4) * page + logical % (page - 4);
   }
 
-  /// CRC-32C bit by bit.
+  /// CRC-32C byte by byte.
   static std::uint32_t checksum(const char* bytes, std::size_t count) {
+    static const auto kTable = [] {
+      std::array<std::uint32_t, 256> table{};
+      for (std::uint32_t i = 0; i < 256; ++i) {
+        table[i] = i;
+        for (int bit = 0; bit < 8; ++bit) {
+          table[i] = (table[i] >> 1) ^ ((table[i] & 1) != 0 ? 0x82F63B78U : 0U);
+        }
+      }
+      return table;
+    }();
     std::uint32_t remainder = 0xFFFFFFFF;
     for (std::size_t i = 0; i < count; ++i) {
-      remainder ^= static_cast<unsigned char>(bytes[i]);
-      for (int bit = 0; bit < 8; ++bit) {
-        remainder = (remainder >> 1) ^ ((remainder & 1) != 0 ? 0x82F63B78U : 0U);
-      }
+      remainder = remainder >> 8 ^ kTable[(remainder ^ static_cast<unsigned char>(bytes[i])) & 255];
     }
     return ~remainder;
   }

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
@@ -66,6 +67,13 @@ TEST_CASE("a cut LAS file is refused at every byte") {
     las.points.clear();
   }
   check_every_cut("a.las", las.build(), as_stream);
+}
+
+TEST_CASE("a cut E57 file is refused at every byte") {
+  E57Bytes file;
+  file.page = 128;
+  file.scans = {e57_scan({1, 2}, {3, 4}, {5, 6}), e57_scan({}, {}, {})};
+  check_every_cut("a.e57", file.build(), false);
 }
 
 TEST_CASE("a cut binary PLY file is refused at every byte") {

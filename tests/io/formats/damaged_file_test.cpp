@@ -3,6 +3,7 @@
 #include <random>
 
 #include "clearway/trajectory.hpp"
+#include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
@@ -20,6 +21,13 @@ std::string las_sample() {
               {"LASF_Projection", 2112, "PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"metre\",1]]"}};
   las.evlrs = {{"LASF_Projection", 2112, "LOCAL_CS[\"b\"]"}};
   return las.build();
+}
+
+/// Its checksums are right only where nothing was changed: e57_hostile_test.cpp makes them right.
+std::string e57_sample() {
+  E57Bytes file;
+  file.scans = {e57_scan({1, 2}, {3, 4}, {5, 6})};
+  return file.build();
 }
 
 std::string ply_sample(const std::string& format) {
@@ -57,6 +65,7 @@ void read_anything(const std::filesystem::path& path) {
 TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
   const std::pair<const char*, std::string> samples[] = {
       {"a.las", las_sample()},
+      {"a.e57", e57_sample()},
       {"a.ply", ply_sample("binary_little_endian") + std::string(100, '\1')},
       {"b.ply", ply_sample("binary_big_endian") + std::string(100, '\1')},
       {"c.ply", ply_sample("ascii") + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n"},

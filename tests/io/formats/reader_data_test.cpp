@@ -127,13 +127,6 @@ TEST_CASE("the malformed files are refused by name") {
   }
 }
 
-TEST_CASE("formats that are not read yet are refused by name") {
-  for (const char* name : {"bunnyDouble.e57"}) {
-    const auto path = data_folder() / "formats" / name;
-    CHECK_THAT(refusal_of(path), Contains(path.string()) && Contains("is not read"));
-  }
-}
-
 TEST_CASE("the real trajectories load") {
   const auto read = [](const char* name) {
     return read_trajectory(data_folder() / name, TrajectoryOptions{});

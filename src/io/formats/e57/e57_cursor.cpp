@@ -41,7 +41,11 @@ void unpack(const std::byte* bytes, std::uint64_t bit, unsigned width, std::span
 }  // namespace
 
 E57Cursor::E57Cursor(E57Packets& packets, const E57Field& field, std::size_t stream)
-    : packets_(packets), field_(field), stream_(stream), next_packet_(packets.first()) {}
+    : packets_(packets),
+      field_(field),
+      stream_(stream),
+      next_packet_(packets.first()),
+      buffer_(2 * kWordBytes) {}
 
 std::uint64_t E57Cursor::available() const {
   return field_.bits == 0 ? std::numeric_limits<std::uint64_t>::max() : bits_left() / field_.bits;

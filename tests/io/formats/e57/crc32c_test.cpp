@@ -27,7 +27,8 @@ TEST_CASE("CRC-32C gives the values of RFC 3720, by table and by instruction") {
   }
 }
 
-TEST_CASE("CRC-32C is the same bit by bit, by table and by instruction at every length and place") {
+TEST_CASE(
+    "CRC-32C is the same byte by byte, by table and by instruction at every length and place") {
   std::string text;
   for (std::uint32_t i = 0; i < 80; ++i) text += static_cast<char>(i * 0x9E3779B1U >> 24);
   for (std::size_t start = 0; start < 8; ++start) {
