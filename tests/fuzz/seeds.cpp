@@ -7,6 +7,7 @@
 #include "support/clouds.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
+#include "support/pcd_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -87,6 +88,41 @@ void write_ply_seeds(Seeds seeds) {
       "element vertex 2\nproperty uint8 x\nproperty int32 y\nproperty float64 z\nend_header\n";
   seeds.add("ply\nformat ascii 1.0\n" + plain + "1 2 3\n4 -5 6e-1\n");
   seeds.add("ply\nformat binary_little_endian 1.0\n" + plain + std::string(26, '\2'));
+}
+
+void write_pcd_seeds(Seeds seeds) {
+  PcdHeaderText header;
+  const std::string columns = raw(1.F, 1.F, 2.F, 2.F, 3.F, 3.F);
+  seeds.add(header.build("ascii") + "1 2 3\n4,5,6\n");
+  seeds.add(header.build("binary") + columns + std::string(20, '\0'));
+  seeds.add(header.build("binary_compressed") + compressed(columns));
+  header = {"z _ n Y x", "8 1 4 2 4", "F U F I F", "1 2 2 1 1", "1", "2", "1 2 3 0 1 0 0", "2"};
+  seeds.add(header.build("ascii") + "nan 0 0 7 7 2 1.5\n6 0 0 1 1 5 4\n");
+  seeds.add(header.build("binary") + std::string(48, '\2'));
+  seeds.add(header.build("binary_compressed") + compressed(std::string(44, '\3')));
+  header = {"x y z", "8 8 8", "F F F", "1 1 1", "300", "300", "0 0 0 1 0 0 0", "90000"};
+  seeds.add(header.build("binary_compressed") + compressed(std::string(2'160'000, '\1')));
+  seeds.add("COLUMNS x y z\nPOINTS 1\nDATA ascii\n1 2 3");
+}
+
+void write_ptx_seeds(Seeds seeds) {
+  const std::string scan =
+      "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n1 2 3 1\n"
+      "0 0 0 0.5\n1 2 3 0.5 1 2 3\n";
+  seeds.add(std::string(1, '\0') + scan + scan);
+  seeds.add(
+      "\1"
+      "1\n1 2 3 -5\n2\n1 2 3\n4 5 6\n");
+  seeds.add("\2" + scan);
+  seeds.add(
+      "\3"
+      "361 225\n1 2 3 0.5\n4 5 6\n");
+  seeds.add(
+      "\4"
+      "1 2 3\n4 5 6\n");
+  seeds.add(
+      "\5"
+      "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n1 0 0 0 0 0 1 0 0 -1 0 0 1 2 3 1\n");
 }
 
 void write_text_seeds(Seeds xyz, Seeds trajectory) {
@@ -193,7 +229,9 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   write_las_seeds({folder, "las"});
   write_e57_seeds({folder, "e57"});
+  write_pcd_seeds({folder, "pcd"});
   write_ply_seeds({folder, "ply"});
+  write_ptx_seeds({folder, "ptx"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
   write_chunk_seeds({folder, "packed_chunk"});
   write_store_seeds({folder, "store"}, {folder, "store_values"});

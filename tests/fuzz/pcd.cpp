@@ -1,0 +1,12 @@
+// Any bytes, read as PCD.
+#include "io/formats/pcd/pcd_reader.hpp"
+#include "read_points.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile input({data, size});
+  may_refuse([&] { read_twice(*read_pcd(InputBuffer(input.open(), InputBuffer::Access::kSeek))); });
+  return 0;
+}

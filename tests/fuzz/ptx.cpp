@@ -1,0 +1,40 @@
+// Any bytes, read as PTX or PTS text, as a scan of 3DTK, or as a file with its pose: the first byte
+// chooses.
+#include "io/formats/ptx/ptx_reader.hpp"
+#include "io/formats/threedtk/threedtk_frame.hpp"
+#include "io/formats/threedtk/threedtk_reader.hpp"
+#include "read_points.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+void read_as(unsigned what, InputBuffer input) {
+  static const ReaderScratch empty;  // where a scan is alone, and needs no pose
+  switch (what) {
+    case 0:
+      return read_twice(*read_ptx(std::move(input)));
+    case 1:
+      return read_twice(*read_pts(std::move(input)));
+    case 2:
+      return read_twice(*read_scan_text(std::move(input), TextEnding::kXyz));
+    case 3:
+      return read_twice(*read_threedtk(std::move(input), empty.folder() / "scan000.3d"));
+    case 4:
+      read_threedtk_pose(input);
+      return;
+    default:
+      read_threedtk_frames(input);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const MemoryFile input({data + 1, size - 1});
+  may_refuse([&] { read_as(data[0] % 6, InputBuffer(input.open(), InputBuffer::Access::kSeek)); });
+  return 0;
+}
