@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "clearway/box.hpp"
 #include "clearway/progress.hpp"
 
 namespace clearway {
@@ -20,9 +22,12 @@ struct ConvertOptions {
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;          ///< 0: all cores
   bool ignore_crs = false;  ///< coordinates in degrees, or in different units, as they are
-  bool strict = false;      ///< refuses points that are not finite
-  bool overwrite = false;   ///< an existing store
-  bool resume = false;      ///< leaves a store of the same inputs as it is
+  /// Of x, y and z in texts: numbers counted from 1, or names of the header. Empty: as they say.
+  std::vector<std::string> columns = {};
+  bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
+  bool strict = false;           ///< refuses every warning, once all are told, and writes no store
+  bool overwrite = false;        ///< an existing store
+  bool resume = false;           ///< leaves a store of the same inputs as it is
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< notes, and the warnings that the report holds
   StopFlag stop = nullptr;
@@ -32,11 +37,14 @@ struct ConvertReport {
   bool was_finished = false;  ///< the store was there already: nothing was converted
   std::uint64_t points = 0;   ///< stored
   std::uint64_t cells = 0;
-  std::uint64_t non_finite_points = 0;  ///< left out
-  std::uint64_t absent_points = 0;      ///< records without a point: beams without a return
-  double largest_change = 0;            ///< of any coordinate by rounding to the scale, metres
+  std::uint64_t non_finite_points = 0;    ///< left out
+  std::uint64_t absent_points = 0;        ///< records without a point: beams without a return
+  Vec3 scale{}, offset{};                 ///< of the stored integers, metres
+  std::optional<Box> box = std::nullopt;  ///< of the stored points; none where there is none
+  double largest_change = 0;              ///< of any coordinate by rounding to the scale, metres
   std::uint64_t temporary_bytes = 0;
   std::uint64_t output_bytes = 0;
+  /// Wall clock; count_seconds holds all before too.
   double count_seconds = 0, distribute_seconds = 0, partition_seconds = 0, confirm_seconds = 0;
   std::vector<Message> warnings = {};
 };

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "clearway/error.hpp"
@@ -12,7 +13,10 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "cli/support/warnings_json.hpp"
 #include "core/util/format.hpp"
+#include "core/util/stopwatch.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -23,6 +27,7 @@ struct ConvertArguments {
   ConvertOptions conversion;
   std::string layout = "adaptive";
   double scale = 0;
+  bool json = false;
 };
 
 std::optional<double> regular_size_of(const std::string& layout) {
@@ -35,6 +40,33 @@ std::optional<double> regular_size_of(const std::string& layout) {
     throw UsageError("--layout " + layout + ": expected adaptive or regular:SIZE (metres)");
   }
   return size;
+}
+
+nlohmann::ordered_json array_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+nlohmann::ordered_json json_of(const ConvertReport& report, double total_seconds) {
+  nlohmann::ordered_json out{{"was_finished", report.was_finished}};
+  if (!report.was_finished) {
+    out["points"] = report.points;
+    out["cells"] = report.cells;
+    out["non_finite"] = report.non_finite_points;
+    out["absent"] = report.absent_points;
+    out["scale"] = array_of(report.scale);
+    out["offset"] = array_of(report.offset);
+    out["box"] = nullptr;
+    if (report.box)
+      out["box"] = {{"lo", array_of(report.box->lo)}, {"hi", array_of(report.box->hi)}};
+    out["largest_change"] = report.largest_change;
+    out["temporary_bytes"] = report.temporary_bytes;
+    out["output_bytes"] = report.output_bytes;
+  }
+  out["warnings"] = warnings_json(report.warnings);
+  out["seconds"] = {{"total", total_seconds},
+                    {"count", report.count_seconds},
+                    {"distribute", report.distribute_seconds},
+                    {"partition", report.partition_seconds},
+                    {"confirm", report.confirm_seconds}};
+  return out;
 }
 
 void log_report(const ConvertArguments& options, const ConvertReport& report) {
@@ -62,9 +94,12 @@ void run_convert(ConvertArguments& options) {
   ConvertOptions& conversion = options.conversion;
   conversion.regular_size = regular_size_of(options.layout);
   if (options.scale != 0) conversion.scale = options.scale;
+  const Stopwatch total;
   ConsoleProgress progress;
   watch_call(conversion, progress);
-  log_report(options, convert(options.inputs, options.output, conversion));
+  const ConvertReport report = convert(options.inputs, options.output, conversion);
+  log_report(options, report);
+  if (options.json) print(json_of(report, total.seconds()).dump(2) + "\n");
 }
 
 }  // namespace
@@ -99,7 +134,16 @@ void add_convert(CLI::App& program) {
   add_threads_option(*command, conversion.threads);
   command->add_flag("--ignore-crs", conversion.ignore_crs,
                     "Accept coordinates in degrees, and inputs in different units, as they are");
-  command->add_flag("--strict", conversion.strict, "Refuse points that are not finite");
+  command
+      ->add_option("--columns", conversion.columns,
+                   "Columns of x, y and z in texts: numbers from 1, or names of the header")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_flag("--skip-unreadable", conversion.skip_unreadable,
+                    "Leave out files that cannot be read, and list them; reads all once more");
+  command->add_flag("--strict", conversion.strict,
+                    "Refuse every warning with exit code 3, after all are told");
   CLI::Option* force =
       command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
   command
@@ -107,6 +151,7 @@ void add_convert(CLI::App& program) {
           "--resume", conversion.resume,
           "Leave a finished store of these inputs as it is; an interrupted conversion starts again")
       ->excludes(force);
+  command->add_flag("--json", options->json, "Print one JSON object about the conversion");
   command->footer(
       "Needs temporary disk space beside the output: 20 bytes a point, 32 from standard input.\n"
       "For LAZ and other formats, pipe LAS:\n"

@@ -1,23 +1,22 @@
 #include "io/convert/convert.hpp"
 
-#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "clearway/error.hpp"
 #include "core/cloud/kd_order.hpp"
 #include "core/util/format.hpp"
 #include "core/util/message_log.hpp"
 #include "core/util/stopwatch.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/convert/checks/input_warnings.hpp"
 #include "io/convert/count/count.hpp"
 #include "io/convert/distribute.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/pack_unit.hpp"
 #include "io/convert/source_description.hpp"
+#include "io/convert/write_cells.hpp"
 #include "io/store/store_layout.hpp"
 #include "io/store/store_writer.hpp"
 #include "io/system/file.hpp"
@@ -36,6 +35,17 @@ constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk 
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
 constexpr std::uint32_t kLeastCellPoints = 64;
 
+void check_columns(const std::vector<std::string>& columns) {
+  if (columns.empty()) return;
+  const auto is_wrong = [](const std::string& column) {
+    return column.empty() || column.find_first_not_of('0') == std::string::npos;
+  };
+  if (columns.size() != 3 || std::any_of(columns.begin(), columns.end(), is_wrong) ||
+      columns[0] == columns[1] || columns[0] == columns[2] || columns[1] == columns[2]) {
+    throw UsageError("expected three different columns, of x, y and z: numbers from 1, or names");
+  }
+}
+
 void check_options(const ConversionOptions& options) {
   if (options.memory_bytes < kLeastConversionMemory) {
     throw ResourceError(format_size(options.memory_bytes) +
@@ -50,6 +60,7 @@ void check_options(const ConversionOptions& options) {
   if (options.regular_size && !(*options.regular_size > 0)) {
     throw UsageError("a regular layout: expected cubes of a positive length");
   }
+  check_columns(options.columns);
 }
 
 /// Threads that the memory allows, as each has a counting grid of its own.
@@ -89,59 +100,6 @@ void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::
   }
 }
 
-/// A unit on its way to the file: its first cells packed already, the rest to be packed when they
-/// are written.
-struct UnitInFlight {
-  std::vector<PackedCell> packed;
-  std::optional<OrderedUnit> rest;
-};
-
-void write_unit(UnitInFlight& unit, StoreWriter& writer, Progress& progress) {
-  while (!unit.packed.empty()) {
-    for (const PackedCell& cell : unit.packed) {
-      throw_if_stopped(progress);
-      writer.append(cell);
-      progress.advance(cell.cell.count);
-    }
-    unit.packed.clear();
-    if (unit.rest) unit.packed = unit.rest->pack_next();
-  }
-}
-
-/// Partitions and packs the units, several at a time as memory allows, and writes them in order.
-void write_cells(const Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
-                 const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
-                 Progress& progress) {
-  using Flying = std::shared_ptr<UnitInFlight>;
-  std::size_t next = 0;
-  const ParallelScope scope;
-  const SerialStage input, output;
-  const auto number_of_next = piece_of(scope, input, [&](tbb::flow_control& flow) {
-    throw_if_stopped(progress);
-    if (next == tree.units().size()) flow.stop();
-    return next++;
-  });
-  const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
-    auto flying = std::make_shared<UnitInFlight>();
-    flying->rest.emplace(distribution, unit, tree, lattice, metadata.quantisation,
-                         metadata.cell_points);
-    flying->packed = flying->rest->pack_next();
-    if (flying->rest->cells_left() == 0) flying->rest.reset();
-    return flying;
-  });
-  const auto write =
-      piece_of(scope, output, [&](const Flying& unit) { write_unit(*unit, writer, progress); });
-  progress.begin("partition", metadata.point_count, "points");
-  scope.begin();
-  tbb::parallel_pipeline(
-      units_in_flight,
-      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, number_of_next) &
-          tbb::make_filter<std::size_t, Handed<Flying>>(tbb::filter_mode::parallel,
-                                                        order_and_pack) &
-          tbb::make_filter<Handed<Flying>, void>(tbb::filter_mode::serial_in_order, write));
-  progress.end();
-}
-
 class Conversion {
  public:
   Conversion(const ConversionOptions& options, int threads, Progress& progress)
@@ -152,33 +110,46 @@ class Conversion {
         output_(options.output, options.overwrite) {}
 
   ConversionReport run() {
-    EnvironmentSource environment(options_.inputs,
-                                  {options_.scale, options_.ignore_crs, options_.strict, folder_});
+    EnvironmentSource environment(options_.inputs, environment_options(), progress_);
     refuse_overwriting(options_.output, environment.read_files());
     if (environment.declared_points()) {
       check_disk(folder_, *environment.declared_points(), *environment.declared_points());
     }
     SourceDescription sources(environment.read_files(), progress_);
     const Lattice lattice = lattice_for(options_, environment.quantisation());
-    CountedEnvironment counted = count_environment(environment, lattice, threads_, progress_);
-    report_.non_finite_points = environment.non_finite_points();
+    InputSurvey survey;
+    CountedEnvironment counted =
+        count_environment(environment, lattice, survey, threads_, progress_);
     fill_metadata(environment, counted, sources.get());
+    report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
     check_cells(top, counted.points);
     report_.count_seconds = watch_.lap();
 
-    const Distribution distribution = distribute(environment, counted.points_hash, lattice, tree,
-                                                 folder_, kBufferBytes, threads_, progress_);
+    PlaceCounter places(survey.places.candidates());
+    const Distribution distribution =
+        distribute(environment, counted.points_hash, lattice, tree, places, folder_, kBufferBytes,
+                   threads_, progress_);
     environment.refuse_changed();  // the sources' hashes too are of what was converted
     report_.largest_change = environment.largest_change();
     report_.temporary_bytes = counted.points * sizeof(DistributedPoint);
+    warn_of_places(environment, places, counted.points, log_);
+    if (options_.strict) refuse_warnings(report_.warnings);
     report_.distribute_seconds = watch_.lap();
     write_store(distribution, tree, top, lattice);
     return std::move(report_);
   }
 
  private:
+  EnvironmentOptions environment_options() const {
+    return {.scale = options_.scale,
+            .ignore_crs = options_.ignore_crs,
+            .skip_unreadable = options_.skip_unreadable,
+            .columns = options_.columns,
+            .temporary_folder = folder_};
+  }
+
   void fill_metadata(const EnvironmentSource& environment, const CountedEnvironment& counted,
                      std::vector<SourceFile> sources) {
     report_.points = counted.points;
@@ -192,11 +163,10 @@ class Conversion {
                         .points_hash = counted.points_hash,
                         .sources = std::move(sources)};
     report_.absent_points = environment.absent_points();
-    for (Message& remark : environment.remarks()) log_.add(std::move(remark));
-    if (report_.non_finite_points > 0) {
-      log_.warn("non-finite-points", format_count(report_.non_finite_points) +
-                                         " points with NaN or infinite coordinates are left out");
-    }
+    report_.non_finite_points = environment.non_finite_points();
+    const Quantisation& quanta = environment.quantisation();
+    report_.scale = {quanta.scale[0], quanta.scale[1], quanta.scale[2]};
+    report_.offset = {quanta.offset[0], quanta.offset[1], quanta.offset[2]};
   }
 
   /// Of the memory, beside the cells' index: at least a unit.

@@ -110,7 +110,7 @@ class RegionWriter {
 
 /// Reads batches into the hash, groups several at a time, and writes them in their order.
 void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper& group,
-                RegionWriter& writer, int threads, Progress& progress) {
+                PlaceCounter& places, RegionWriter& writer, int threads, Progress& progress) {
   using Batch = std::shared_ptr<QuantaBatch>;
   using Grouped = std::shared_ptr<GroupedBatch>;
   const ParallelScope scope;
@@ -125,8 +125,10 @@ void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper&
     }
     return batch;
   });
-  const auto grouped = piece_of(
-      scope, [&](const Batch& batch) { return std::make_shared<GroupedBatch>(group(*batch)); });
+  const auto grouped = piece_of(scope, [&](const Batch& batch) {
+    places.add(*batch);
+    return std::make_shared<GroupedBatch>(group(*batch));
+  });
   const auto write = piece_of(scope, output, [&](const Grouped& batch) {
     writer.append(*batch);
     progress.advance(batch->points.size());
@@ -143,7 +145,7 @@ void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper&
 }  // namespace
 
 Distribution distribute(EnvironmentSource& environment, std::uint64_t points_hash,
-                        const Lattice& lattice, const SplitTree& tree,
+                        const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                         const std::filesystem::path& temporary_folder, std::uint64_t buffer_bytes,
                         int threads, Progress& progress) {
   Distribution out{File::create_temporary(temporary_folder), {0}};
@@ -161,7 +163,7 @@ Distribution distribute(EnvironmentSource& environment, std::uint64_t points_has
 
   progress.begin("distribute", points, "points");
   environment.rewind();
-  run_stages(environment, hash, group, writer, threads, progress);
+  run_stages(environment, hash, group, places, writer, threads, progress);
   writer.finish();
   if (hash.digest(environment.input_points()) != points_hash) refuse_change(environment);
   progress.end();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/util/progress.hpp"
+#include "io/convert/checks/same_place.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
 #include "io/system/file.hpp"
@@ -27,10 +28,10 @@ struct Distribution {
 };
 
 /// The distribution pass. Throws InputError when the input is not what was counted, ResourceError
-/// when the disk is full. points_hash: of what was counted. buffer_bytes: memory for the units'
-/// write buffers.
+/// when the disk is full. points_hash: of what was counted. places: counts the points it was made
+/// for. buffer_bytes: memory for the units' write buffers.
 Distribution distribute(EnvironmentSource& environment, std::uint64_t points_hash,
-                        const Lattice& lattice, const SplitTree& tree,
+                        const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                         const std::filesystem::path& temporary_folder, std::uint64_t buffer_bytes,
                         int threads, Progress& progress);
 

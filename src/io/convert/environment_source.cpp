@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "io/convert/checks/choose_scale.hpp"
+#include "io/convert/checks/readable_files.hpp"
 #include "io/convert/notes.hpp"
 #include "io/convert/spooled_reader.hpp"
 #include "io/system/input_error.hpp"
@@ -18,8 +20,6 @@ namespace {
 
 constexpr double kLeastQuantum = std::numeric_limits<std::int32_t>::min();
 constexpr double kGreatestQuantum = std::numeric_limits<std::int32_t>::max();
-constexpr double kScales[] = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1e0, 1e1, 1e2, 1e3};
-
 bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
@@ -28,13 +28,6 @@ Vec3 point_of(const PointBatch& batch, const CloudInfo& info, std::size_t i) {
   if (!info.quantisation) return batch.positions[i];
   const auto& q = batch.quanta[i];
   return position(*info.quantisation, q[0], q[1], q[2]);
-}
-
-/// The finest power of ten >= 1e-6 at which `length` fits int32; the coarsest where none does.
-double fitting_scale(double length) {
-  const auto fits = [length](double scale) { return length / scale <= kGreatestQuantum; };
-  const auto* found = std::find_if(std::begin(kScales), std::end(kScales), fits);
-  return found == std::end(kScales) ? *std::prev(found) : *found;
 }
 
 /// A pipe can be read only once.
@@ -46,29 +39,26 @@ void refuse_pipe(const std::filesystem::path& file) {
       "clearway convert -");
 }
 
+/// Calls `read`; where one of several files is refused, the error says that it can be skipped.
+template <typename Read>
+auto reading_one_of(std::size_t files, Read read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    if (files < 2 || error.remedy() != Remedy::kNone) throw;
+    throw InputError(error.what(), Remedy::kSkipUnreadable);
+  }
+}
+
 }  // namespace
 
 EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
-                                     const EnvironmentOptions& options)
-    : options_(options) {
-  const bool streams = std::find(inputs.begin(), inputs.end(), "-") != inputs.end();
-  if (streams && inputs.size() > 1) {
-    throw UsageError("standard input (-) cannot be combined with other inputs");
-  }
+                                     const EnvironmentOptions& options, Progress& progress)
+    : options_(options), how_to_read_{options.columns, true} {
   if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
     throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
   }
-  if (streams) {
-    files_ = read_files_ = {"-"};
-    stream_ = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
-                              options.temporary_folder);
-    if (!stream_->can_rewind()) stream_ = spool(std::move(stream_), options.temporary_folder);
-  } else {
-    files_ = list_point_files(inputs, &folder_remarks_);
-    std::for_each(files_.begin(), files_.end(), refuse_pipe);
-    read_files_ = with_pose_files(files_);
-    std::transform(read_files_.begin(), read_files_.end(), std::back_inserter(states_), state_of);
-  }
+  list_inputs(inputs, progress);
   open_inputs();
   find_crs();
   if (auto kept = common_quanta(files_, infos_, options_.scale)) {
@@ -76,10 +66,34 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
     shifts_ = std::move(kept->shifts);
     return;
   }
-  choose_offset_and_scale();
+  choose_offset_and_scale(progress);
 }
 
 EnvironmentSource::~EnvironmentSource() = default;
+
+void EnvironmentSource::list_inputs(const std::vector<std::filesystem::path>& inputs,
+                                    Progress& progress) {
+  const bool streams = std::find(inputs.begin(), inputs.end(), "-") != inputs.end();
+  if (streams && inputs.size() > 1) {
+    throw UsageError("standard input (-) cannot be combined with other inputs");
+  }
+  if (streams) {
+    files_ = read_files_ = {"-"};
+    stream_ = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
+                              options_.temporary_folder);
+    if (!stream_->can_rewind()) stream_ = spool(std::move(stream_), options_.temporary_folder);
+    return;
+  }
+  files_ = list_point_files(inputs, &folder_remarks_);
+  std::for_each(files_.begin(), files_.end(), refuse_pipe);
+  if (options_.skip_unreadable) {
+    ReadableFiles readable = readable_files(files_, how_to_read_, progress);
+    files_ = std::move(readable.files);
+    skipped_ = std::move(readable.reasons);
+  }
+  read_files_ = with_pose_files(files_);
+  std::transform(read_files_.begin(), read_files_.end(), std::back_inserter(states_), state_of);
+}
 
 void EnvironmentSource::open_inputs() {
   declared_points_ = 0;
@@ -90,6 +104,10 @@ void EnvironmentSource::open_inputs() {
     } else {
       declared_points_.reset();
     }
+  }
+  const auto is_text = [](const CloudInfo& info) { return info.text_table; };
+  if (!options_.columns.empty() && std::none_of(infos_.begin(), infos_.end(), is_text)) {
+    throw UsageError("columns are chosen, but no input is a text; expected one at least");
   }
 }
 
@@ -106,6 +124,7 @@ void EnvironmentSource::find_crs() {
 std::vector<Message> EnvironmentSource::remarks() const {
   std::vector<Message> all = crs_.warnings;
   all.insert(all.end(), folder_remarks_.begin(), folder_remarks_.end());
+  if (auto skipped = warning_on_skipped(skipped_)) all.push_back(std::move(*skipped));
   if (!shifts_.empty()) {
     const auto mixture = remark_on_mixture(files_, infos_, quantisation_);
     if (mixture) all.push_back(*mixture);
@@ -119,41 +138,28 @@ std::vector<Message> EnvironmentSource::remarks() const {
   return all;
 }
 
-void EnvironmentSource::choose_offset_and_scale() {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3 lo{kInfinity, kInfinity, kInfinity};
-  Vec3 hi{-kInfinity, -kInfinity, -kInfinity};
+void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
+  CoordinateRange range;
+  progress.begin("range", declared_points_.value_or(0), "points");
   while (next_batch(raw_)) {
+    throw_if_stopped(progress);
+    const std::uint64_t first = file_points_ - raw_.size();
     for (std::size_t i = 0; i < raw_.size(); ++i) {
       const Vec3 p = point_of(raw_, infos_[file_], i);
-      if (!is_finite(p)) continue;
-      for (int k = 0; k < 3; ++k) {
-        lo[k] = std::min(lo[k], p[k]);
-        hi[k] = std::max(hi[k], p[k]);
-      }
+      if (is_finite(p)) range.add(p, file_, first + i);
     }
+    progress.advance(raw_.size());
   }
+  progress.end();
   rewind();
-  for (int k = 0; k < 3; ++k) {
-    const bool any = lo[k] <= hi[k];
-    const double offset = any ? std::floor(lo[k]) : 0;
-    const double fitting = fitting_scale(any ? hi[k] - offset : 0);
-    quantisation_.offset[k] = offset;
-    quantisation_.scale[k] = options_.scale.value_or(fitting);
-    if (any && (hi[k] - offset) / quantisation_.scale[k] > kGreatestQuantum) {
-      const bool fits = (hi[k] - offset) / fitting <= kGreatestQuantum;
-      throw InputError("coordinates from " + brief(lo[k]) + " to " + brief(hi[k]) +
-                           " do not fit 32-bit integers at a scale of " +
-                           brief(quantisation_.scale[k]),
-                       Remedy::kScale, fits ? fitting : 0);
-    }
-  }
+  quantisation_ = choose_scale(range, options_.scale, files_, how_to_read_);
 }
 
 PointReader& EnvironmentSource::reader(std::size_t file) {
   if (stream_) return *stream_;
   if (!current_ || open_file_ != file) {
-    current_ = open_point_file(files_[file]);
+    current_ =
+        reading_one_of(files_.size(), [&] { return open_point_file(files_[file], how_to_read_); });
     open_file_ = file;
   }
   return *current_;
@@ -164,6 +170,7 @@ void EnvironmentSource::rewind() {
   file_points_ = 0;
   input_points_ = non_finite_points_ = absent_points_ = 0;
   largest_change_ = 0;
+  points_of_files_.clear();
   if (stream_) stream_->rewind();
   current_.reset();
 }
@@ -178,8 +185,10 @@ void EnvironmentSource::refuse_changed() const {
 
 bool EnvironmentSource::next_batch(PointBatch& batch) {
   for (; file_ < files_.size(); ++file_, file_points_ = 0) {
-    if (!reader(file_).read(batch)) {
-      infos_[file_].remarks = reader(file_).info().remarks;
+    PointReader& from = reader(file_);
+    if (!reading_one_of(files_.size(), [&] { return from.read(batch); })) {
+      infos_[file_].remarks = from.info().remarks;
+      points_of_files_.push_back(file_points_);
       continue;
     }
     file_points_ += batch.size();
@@ -197,6 +206,7 @@ bool EnvironmentSource::read(QuantaBatch& batch) {
   batch.quanta.clear();
   batch.offsets.clear();
   if (!next_batch(raw_)) return false;
+  batch.file = file_;
   batch.first_source = input_points_;
   if (shifts_.empty() || !infos_[file_].quantisation) {
     append_rounded(raw_, batch);
@@ -238,7 +248,7 @@ void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out
         ++absent_points_;
         ++absent;
       } else {
-        drop_non_finite(file_points_ - batch.size() + i);
+        if (non_finite_points_++ == 0) first_non_finite_ = input_points_ + i;
       }
       if (out.offsets.empty()) {
         for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
@@ -271,12 +281,25 @@ void EnvironmentSource::refuse_beyond_quanta() const {
          Remedy::kScale);
 }
 
-void EnvironmentSource::drop_non_finite(std::uint64_t point) {
-  ++non_finite_points_;
-  if (options_.strict) {
-    throw InputError(files_[file_].string() + ": point " + std::to_string(point) +
-                     " is not finite, expected finite coordinates in a strict conversion");
+EnvironmentSource::Place EnvironmentSource::place_of(std::uint64_t source) const {
+  Place place{0, source};
+  while (place.file + 1 < points_of_files_.size() && place.point >= points_of_files_[place.file]) {
+    place.point -= points_of_files_[place.file++];
   }
+  return place;
+}
+
+std::optional<std::array<std::int32_t, 3>> EnvironmentSource::origin_of(std::size_t file) const {
+  const auto& own = infos_[file].quantisation;
+  std::array<std::int32_t, 3> out{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double origin = own ? own->offset[k] : 0;
+    const double quantum =
+        std::nearbyint((origin - quantisation_.offset[k]) / quantisation_.scale[k]);
+    if (!(quantum >= kLeastQuantum && quantum <= kGreatestQuantum)) return std::nullopt;
+    out[k] = static_cast<std::int32_t>(quantum);
+  }
+  return out;
 }
 
 }  // namespace clearway

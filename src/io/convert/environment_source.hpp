@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/util/progress.hpp"
 #include "io/convert/file_state.hpp"
 #include "io/convert/input_agreement.hpp"
 #include "io/convert/quanta_batch.hpp"
@@ -14,9 +15,10 @@
 namespace clearway {
 
 struct EnvironmentOptions {
-  std::optional<double> scale{};  ///< metres; wanted on all axes
-  bool ignore_crs = false;        ///< accept degrees and inputs of different units
-  bool strict = false;            ///< refuse non-finite points
+  std::optional<double> scale{};       ///< metres; wanted on all axes
+  bool ignore_crs = false;             ///< accept degrees and inputs of different units
+  bool skip_unreadable = false;        ///< leave out files that cannot be read to their end
+  std::vector<std::string> columns{};  ///< of texts, see PointReadOptions
   std::filesystem::path temporary_folder = ".";
 };
 
@@ -26,10 +28,11 @@ struct EnvironmentOptions {
 /// those files where there are any, otherwise of a chosen scale.
 class EnvironmentSource {
  public:
-  /// inputs: files and folders, or "-" alone for LAS on standard input. Reads headers, and all
-  /// points once where a scale has to be chosen. Throws InputError and UsageError.
+  /// inputs: files and folders, or "-" alone for LAS on standard input. Reads headers, all points
+  /// once where files may be skipped, and once where a scale has to be chosen. Throws InputError,
+  /// UsageError and Interrupted.
   EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
-                    const EnvironmentOptions& options);
+                    const EnvironmentOptions& options, Progress& progress);
   ~EnvironmentSource();
 
   const Quantisation& quantisation() const { return quantisation_; }
@@ -47,32 +50,46 @@ class EnvironmentSource {
   bool read(QuantaBatch& batch);
   void rewind();
 
+  /// A record of an input; known once read() has returned false.
+  struct Place {
+    std::size_t file;
+    std::uint64_t point;  ///< from 0, in the file
+  };
+  Place place_of(std::uint64_t source) const;
+  /// What zeros in a file are in the store: its integers 0, or the position (0, 0, 0). None where
+  /// the store cannot hold that.
+  std::optional<std::array<std::int32_t, 3>> origin_of(std::size_t file) const;
+
   /// Throws InputError, naming it, where a file is not as it was before the first of it was read.
   void refuse_changed() const;
 
   // Of what has been read since the last rewind:
   std::uint64_t input_points() const { return input_points_; }
   std::uint64_t non_finite_points() const { return non_finite_points_; }
+  /// The source index of the first of them.
+  std::uint64_t first_non_finite() const { return first_non_finite_; }
   /// Records of the files that hold no point, by their format's rules.
   std::uint64_t absent_points() const { return absent_points_; }
   /// Largest |stored - read| of any coordinate, metres.
   double largest_change() const { return largest_change_; }
 
  private:
+  void list_inputs(const std::vector<std::filesystem::path>& inputs, Progress& progress);
   void open_inputs();
   void find_crs();
-  void choose_offset_and_scale();
+  void choose_offset_and_scale(Progress& progress);
   bool next_batch(PointBatch& batch);
   PointReader& reader(std::size_t file);
   void append_kept(const PointBatch& batch, QuantaBatch& out);
   void append_rounded(const PointBatch& batch, QuantaBatch& out);
-  void drop_non_finite(std::uint64_t source);
   [[noreturn]] void refuse_beyond_quanta() const;
 
   EnvironmentOptions options_;
+  PointReadOptions how_to_read_;
   std::vector<std::filesystem::path> files_;
   std::vector<std::filesystem::path> read_files_;
-  std::vector<FileState> states_;  // of the files read, at first; none of a stream
+  std::vector<std::string> skipped_;  // why, of the files left out
+  std::vector<FileState> states_;     // of the files read, at first; none of a stream
   std::vector<Message> folder_remarks_;
   std::vector<CloudInfo> infos_;  // of the files
   Quantisation quantisation_{};
@@ -85,9 +102,11 @@ class EnvironmentSource {
   std::size_t open_file_ = 0;
   std::size_t file_ = 0;
   std::uint64_t file_points_ = 0;
+  std::vector<std::uint64_t> points_of_files_;  // of those that were read to their end
   PointBatch raw_;
   std::uint64_t input_points_ = 0;
   std::uint64_t non_finite_points_ = 0;
+  std::uint64_t first_non_finite_ = 0;
   std::uint64_t absent_points_ = 0;
   double largest_change_ = 0;
 };

@@ -54,7 +54,12 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<con
       common.wkt = info.crs_wkt;
       continue;
     }
-    if (info.unit != common.unit && !ignore) {
+    // Where nothing is said, lengths count as metres.
+    if (common.unit == LengthUnit::kUnknown && info.unit == LengthUnit::kMetre) {
+      common.unit = info.unit;
+    }
+    const bool metre = info.unit == LengthUnit::kUnknown && common.unit == LengthUnit::kMetre;
+    if (info.unit != common.unit && !metre && !ignore) {
       refuse(name,
              "its unit of length is " + to_string(info.unit) + ", expected " +
                  to_string(common.unit) + " as in " + files[0].string(),

@@ -23,7 +23,8 @@ struct CommonCrs {
   std::vector<Message> warnings;  ///< different CRS, feet
 };
 
-/// The first input's. Degrees, and other units than the first one's, are refused unless `ignore`.
+/// The first input's; its unit where it has none is metres if any says so. Degrees, and other units
+/// than the first one's, are refused unless `ignore`.
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                      bool ignore);
 

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "clearway/error.hpp"
+#include "io/convert/checks/readable_files.hpp"
 #include "io/convert/convert.hpp"
 #include "io/convert/source_description.hpp"
 #include "io/formats/point_reader.hpp"
@@ -36,10 +37,15 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
 }  // namespace
 
 bool is_converted(const ConversionOptions& options, Progress& progress) {
-  if (options.inputs == std::vector<std::filesystem::path>{"-"}) return false;
+  // A store does not tell by which columns it was made.
+  if (options.inputs == std::vector<std::filesystem::path>{"-"} || !options.columns.empty()) {
+    return false;
+  }
   const std::optional<StoreReader> store = store_at(options.output);
   if (!store || !would_make(options, store->metadata())) return false;
-  SourceDescription sources(with_pose_files(list_point_files(options.inputs)), progress);
+  std::vector<std::filesystem::path> files = list_point_files(options.inputs);
+  if (options.skip_unreadable) files = readable_files(files, {}, progress).files;
+  SourceDescription sources(with_pose_files(files), progress);
   if (sources.get() != store->metadata().sources) return false;
   const std::vector<std::string> faults = verify_store(*store, progress, 1);
   if (faults.empty()) return true;

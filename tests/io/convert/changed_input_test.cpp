@@ -93,13 +93,15 @@ TEST_CASE("an input that changes before its last pass is refused by name") {
 TEST_CASE("points are distributed only where they are those that were counted") {
   Scans scans;
   NoProgress progress;
-  EnvironmentSource environment({scans.first, scans.second}, {});
+  EnvironmentSource environment({scans.first, scans.second}, {}, progress);
   const Lattice lattice;
-  CountedEnvironment counted = count_environment(environment, lattice, 1, progress);
+  InputSurvey survey;
+  PlaceCounter places({});
+  CountedEnvironment counted = count_environment(environment, lattice, survey, 1, progress);
   const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
   const auto distribute_again = [&] {
-    return distribute(environment, counted.points_hash, lattice, tree, scans.folder / "", 1 << 20,
-                      2, progress);
+    return distribute(environment, counted.points_hash, lattice, tree, places, scans.folder / "",
+                      1 << 20, 2, progress);
   };
   CHECK(distribute_again().first == std::vector<std::uint64_t>{0, 2000});
   put_bytes(scans.second, bytes_of(scans.other));

@@ -122,7 +122,7 @@ TEST_CASE("positions take the finest power of ten that fits, the offset a whole 
                {-3, 2144.483647, -3, 1e-6},
                {-3, 2144.483649, -3, 1e-5},
                {5e6 + 0.5, 5e6 + 30000.5, 5e6, 1e-4},
-               {-1e9, 1e9, -1e9, 1},
+               {-1e6, 1e6, -1e6, 1e-3},
                {7, 7, 7, 1e-6}};
   for (const auto& c : cases) {
     CAPTURE(c.lo, c.hi);
@@ -154,4 +154,45 @@ TEST_CASE("a scale too fine for the extent is refused with one that fits") {
   CHECK(advised_scale({folder / "b.xyz"}) == 0);
   write_ply(folder / "a.ply", std::vector<Vec3>{{0, 0, 0}, {1e300, 0, 0}});
   CHECK_THAT(refusal({folder / "a.ply"}), Contains("do not fit"));
+}
+
+TEST_CASE("steps coarser than a millimetre are taken only where they are asked for") {
+  const ScratchFolder folder;
+  std::string rows = "# a scan\nx,y,z\n";
+  for (int i = 0; i < 1000; ++i) rows += std::to_string(0.25 * i) + ",2,3\n";
+  put_bytes(folder / "a.csv", rows + "1e9,7,8\n" + rows.substr(15) + "1,2,-4e8\n");
+  const auto error = refused({folder / "a.csv"});
+  REQUIRE(error);
+  CHECK_THAT(error->what(), Contains("need steps of 1 m") && Contains("at most 0.001 m") &&
+                                Contains("line 1003: 1e+09 7 8") &&
+                                Contains("line 2004: 1 2 -400000000") &&
+                                Contains("Without them steps of 1e-06 m do"));
+  CHECK(error->remedy() == Remedy::kAcceptScale);
+  CHECK(error->amount() == 1);
+  CHECK(read_environment({folder / "a.csv"}, with_scale(1)).points.size() == 2002);
+}
+
+TEST_CASE("points that force a coarse step are named by line, or by number in binary files") {
+  const ScratchFolder folder;
+  std::vector<Vec3> points(5000, {10, 20, 30});
+  points[4321].y = -3e7;
+  write_ply(folder / "a.ply", points);
+  CHECK_THAT(refusal({folder / "a.ply"}), Contains("point 4,321 (counted from 0): 10 -30000000"));
+  put_bytes(folder / "b.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nend_header\n1 2 3\n1 2 4\n1e8 2 3\n");
+  CHECK_THAT(refusal({folder / "b.ply"}), Contains("line 10: 100000000 2 3"));
+  CHECK_THAT(refusal({folder / "a.ply", folder / "b.ply"}),
+             Contains("a.ply point 4,321") && Contains("b.ply line 10"));
+  for (std::size_t i = 0; i < 40; ++i) points[i * 100].x = 1e9;
+  write_ply(folder / "a.ply", points);
+  CHECK_THAT(refusal({folder / "a.ply"}), Contains("and more") && !Contains("Without them"));
+}
+
+TEST_CASE("files in different frames are named where they force a coarse step") {
+  const ScratchFolder folder;
+  write_ply(folder / "local.ply", std::vector<Vec3>(100, {1, 2, 3}));
+  write_ply(folder / "utm.ply", std::vector<Vec3>(100, {512345, 5412345, 3}));
+  CHECK_THAT(refusal({folder / "local.ply", folder / "utm.ply"}),
+             Contains("local.ply and ") && Contains("utm.ply: coordinates y"));
 }

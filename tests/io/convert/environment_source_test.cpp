@@ -64,7 +64,6 @@ TEST_CASE("points that are not finite are counted and keep their index") {
   std::vector<std::uint64_t> sources;
   for (const StoredPoint& p : environment.points) sources.push_back(p.source);
   CHECK(sources == std::vector<std::uint64_t>{1, 3, 5, 11, 13, 15});
-  CHECK_THAT(refusal({folder / "a.ply"}, {.strict = true}), Contains("point 0 is not finite"));
 }
 
 TEST_CASE("points of batches that start, end and consist of non-finite ones keep their index") {
@@ -118,6 +117,23 @@ TEST_CASE("feet are reported, other units than the first file's refused") {
             .points.size() == 6);
 }
 
+TEST_CASE("lengths without a unit go with metres, but not with feet") {
+  const ScratchFolder folder;
+  put_bytes(folder / "none.xyz", "1 2 3\n");
+  put_bytes(folder / "metres.xyz", "X [m],Y [m],Z [m]\n1,2,3\n");
+  put_bytes(folder / "feet.xyz", "X [ft],Y [ft],Z [ft]\n1,2,3\n");
+  for (const auto& inputs : {std::vector{folder / "none.xyz", folder / "metres.xyz"},
+                             std::vector{folder / "metres.xyz", folder / "none.xyz"}}) {
+    const Environment environment = read_environment(inputs);
+    CHECK(environment.unit == LengthUnit::kMetre);
+    CHECK(environment.warnings.empty());
+  }
+  CHECK_THAT(refusal({folder / "none.xyz", folder / "feet.xyz"}), Contains("unit of length"));
+  const Environment feet = read_environment({folder / "feet.xyz"});
+  REQUIRE(feet.warnings.size() == 1);
+  CHECK(feet.warnings[0].code == "feet");
+}
+
 TEST_CASE("a pipe given as a file is refused with advice") {
   const ScratchFolder folder;
   const auto pipe = folder / "pipe.las";
@@ -126,5 +142,6 @@ TEST_CASE("a pipe given as a file is refused with advice") {
 }
 
 TEST_CASE("standard input goes with nothing else") {
-  CHECK_THROWS_AS(EnvironmentSource({"-", "a.las"}, {}), UsageError);
+  NoProgress progress;
+  CHECK_THROWS_AS(EnvironmentSource({"-", "a.las"}, {}, progress), UsageError);
 }

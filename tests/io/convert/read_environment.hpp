@@ -24,7 +24,8 @@ struct Environment {
 
 inline Environment read_environment(const std::vector<std::filesystem::path>& inputs,
                                     const EnvironmentOptions& options = {}) {
-  EnvironmentSource source(inputs, options);
+  NoProgress progress;
+  EnvironmentSource source(inputs, options, progress);
   Environment out{};
   QuantaBatch batch;
   while (source.read(batch)) {

@@ -20,16 +20,19 @@ constexpr std::size_t kMostSubBins = 1 << 10;  // of one overfull bin
 constexpr unsigned kSourceShift = 20;          // coinciding points: ranges of 2^20 source indices
 
 std::vector<Bin> count_bins(EnvironmentSource& environment, const Lattice& lattice, int threads,
-                            PointsHash& hash, std::uint64_t& points, Progress& progress) {
+                            PointsHash& hash, InputSurvey& survey, std::uint64_t& points,
+                            Progress& progress) {
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
   for_each_batch(
       environment, threads, progress,
       [&](const QuantaBatch& batch) {
         hash.add(batch);
+        survey.places.add(batch);
         points += batch.quanta.size();
       },
       [&](const QuantaBatch& batch) {
+        survey.boxes.add(batch);
         BinCounter& counter = counters.local();
         for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
         progress.advance(batch.quanta.size());
@@ -146,12 +149,12 @@ void for_each_batch(EnvironmentSource& environment, int threads, const Progress&
 }
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
-                                     int threads, Progress& progress) {
+                                     InputSurvey& survey, int threads, Progress& progress) {
   CountedEnvironment counted;
   PointsHash hash(environment.quantisation());
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  counted.bins = count_bins(environment, lattice, threads, hash, counted.points, progress);
+  counted.bins = count_bins(environment, lattice, threads, hash, survey, counted.points, progress);
   counted.input_points = environment.input_points();
   counted.points_hash = hash.digest(counted.input_points);
   progress.end();

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "core/util/progress.hpp"
+#include "io/convert/checks/file_boxes.hpp"
+#include "io/convert/checks/same_place.hpp"
 #include "io/convert/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
 
@@ -17,6 +19,12 @@ void for_each_batch(EnvironmentSource& environment, int threads, const Progress&
                     const std::function<void(const QuantaBatch&)>& in_order,
                     const std::function<void(const QuantaBatch&)>& work);
 
+/// What the counting pass notices besides, for warnings.
+struct InputSurvey {
+  PlaceSample places;
+  FileBoxes boxes;
+};
+
 struct CountedEnvironment {
   std::uint64_t points = 0;        ///< finite ones
   std::uint64_t input_points = 0;  ///< all
@@ -26,6 +34,6 @@ struct CountedEnvironment {
 
 /// The counting pass, and further ones while a bin is too full (docs/design/conversion.md).
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
-                                     int threads, Progress& progress);
+                                     InputSurvey& survey, int threads, Progress& progress);
 
 }  // namespace clearway

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "clearway/progress.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/convert/quanta_batch.hpp"
+
+namespace clearway {
+
+/// The points of an input as they are stored.
+struct FileBox {
+  std::uint64_t points = 0;
+  std::int32_t lo[3]{}, hi[3]{};  ///< where there is a point
+};
+
+/// The box of each input. add() may be called from several threads.
+class FileBoxes {
+ public:
+  void add(const QuantaBatch& batch);
+  /// Of `files` inputs.
+  std::vector<FileBox> boxes(std::size_t files) const;
+
+ private:
+  std::vector<FileBox> boxes_;
+  std::mutex mutex_;
+};
+
+/// Of all inputs, metres; none where there is no point.
+std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation);
+
+/// Warnings on inputs that hold no point, lie far from all others, or are far larger than others.
+std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
+                                       const Quantisation& quantisation,
+                                       std::span<const std::filesystem::path> files);
+
+}  // namespace clearway
