@@ -32,6 +32,28 @@ void refuse_shared_sections(const std::string& name, const std::vector<E57Scan>&
   }
 }
 
+/// A few bytes of XML could stand for any number of such points. As many as a batch are accepted.
+void refuse_points_from_nothing(const std::string& name, const std::vector<E57Scan>& scans) {
+  std::uint64_t records = 0;
+  for (const E57Scan& scan : scans) {
+    if (!scan.takes_no_bytes()) continue;
+    if (scan.records > PointReader::kBatchPoints - records) {
+      refuse_byte(name, scan.file_offset,
+                  scan.name() + " has " + std::to_string(scan.records) +
+                      " records that take no byte; expected at most " +
+                      std::to_string(PointReader::kBatchPoints) + " of them in a file");
+    }
+    records += scan.records;
+  }
+}
+
+Message foot_warning(const std::string& name) {
+  return {Message::Severity::kWarning, "e57-unit",
+          name +
+              ": its coordinate reference system is in feet, but lengths in E57 are metres by the "
+              "standard. They are taken for feet: check them"};
+}
+
 class E57Reader final : public PointReader {
  public:
   explicit E57Reader(E57Container file) : pages_(std::move(file.pages)) {}
@@ -44,6 +66,7 @@ class E57Reader final : public PointReader {
       if (scan.has_coordinates()) points += scan.records;
     }
     refuse_shared_sections(pages_.name(), scans_, extents_);
+    refuse_points_from_nothing(pages_.name(), scans_);
     info_.declared_points = points;
     info_.crs_wkt = std::move(document.crs);
     info_.unit = horizontal_unit(info_.crs_wkt);
@@ -67,6 +90,9 @@ class E57Reader final : public PointReader {
       remarks_.add(scans_[scan_], reader_->findings());
     }
     info_.remarks = remarks_.messages(pages_.name());
+    if (info_.unit == LengthUnit::kFoot || info_.unit == LengthUnit::kUsSurveyFoot) {
+      info_.remarks.push_back(foot_warning(pages_.name()));
+    }
     return false;
   }
 

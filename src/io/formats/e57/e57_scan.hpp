@@ -58,6 +58,13 @@ struct E57Scan {
   bool has(E57Place place) const { return places[place] != kNoE57Stream; }
   bool is_cartesian() const { return has(kE57X); }
   bool is_spherical() const { return has(kE57Range); }
+  /// Whether its packets need no byte, because every field has one value only.
+  bool takes_no_bytes() const {
+    for (const E57Field& field : fields) {
+      if (field.bits > 0) return false;
+    }
+    return true;
+  }
   bool has_coordinates() const { return is_cartesian() || is_spherical(); }
   std::string name() const { return "scan " + std::to_string(number); }
 };

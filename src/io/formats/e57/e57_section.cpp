@@ -10,8 +10,6 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kSectionHeaderBytes = 32;
-/// As many as a batch: points without a single byte in the file are accepted up to here.
-constexpr std::uint64_t kMostRecordsWithoutBytes = 65536;
 
 /// The packets must hold every record's bits.
 void check_room(const E57Pages& pages, const E57Scan& scan, const E57Extent& extent) {
@@ -25,12 +23,6 @@ void check_room(const E57Pages& pages, const E57Scan& scan, const E57Extent& ext
     refuse_byte(pages.name(), pages.physical(extent.start),
                 scan.name() + " has packets of " + std::to_string(room) +
                     " bytes; expected more for its " + std::to_string(scan.records) + " records");
-  }
-  if (needed == 0 && scan.records > kMostRecordsWithoutBytes) {
-    refuse_byte(pages.name(), pages.physical(extent.start),
-                scan.name() + " has " + std::to_string(scan.records) +
-                    " records that take no byte; expected at most " +
-                    std::to_string(kMostRecordsWithoutBytes) + " of them");
   }
 }
 

@@ -28,7 +28,7 @@ E57Bytes sample() {
 }
 
 std::string refusal(const std::string& bytes) {
-  const ReaderScratch scratch;
+  static const ReaderScratch scratch;
   const auto path = scratch.write("a.e57", bytes);
   const std::string message = refusal_of(path);
   if (!message.empty()) CHECK_THAT(message, Contains(path.string()));
@@ -155,6 +155,9 @@ TEST_CASE("a scan's count that lies is refused, in either direction") {
   }
   CHECK(with_count(nothing, "65536").empty());
   CHECK_THAT(with_count(nothing, "65537"), Contains("take no byte"));
+  nothing.scans.push_back(nothing.scans[0]);
+  CHECK(with_count(nothing, "65534").empty());
+  CHECK_THAT(with_count(nothing, "65535"), Contains("scan 2 has 2 records that take no byte"));
 }
 
 TEST_CASE("a bytestream that has less or more than the records need is refused") {

@@ -194,6 +194,8 @@ TEST_CASE("the coordinate reference system is kept, and its unit; E57's own is t
       "<coordinateMetadata type=\"String\"><![CDATA[" + wkt + "]]></coordinateMetadata>";
   CHECK(read(file).info.unit == LengthUnit::kUsSurveyFoot);
   CHECK(read(file).info.crs_wkt == wkt);
+  REQUIRE(read(file).info.remarks.size() == 1);
+  CHECK(read(file).info.remarks[0].code == "e57-unit");
   file.root_xml = "<coordinateMetadata type=\"String\">a &lt; b</coordinateMetadata>";
   CHECK(read(file).info.unit == LengthUnit::kMetre);
   CHECK(read(file).info.crs_wkt == "a < b");

@@ -18,7 +18,7 @@ E57Bytes one_scan() {
 }
 
 std::string refusal(const E57Bytes& file) {
-  const ReaderScratch scratch;
+  static const ReaderScratch scratch;
   return refusal_of(scratch.write("a.e57", file.build()));
 }
 
@@ -29,7 +29,7 @@ std::string refusal_with(const std::string& what, const std::string& with) {
   REQUIRE(at != std::string::npos);
   content.bytes.replace(at, what.size(), with);
   E57Bytes::put<std::uint64_t>(content.bytes, 32, content.bytes.size() - content.xml);
-  const ReaderScratch scratch;
+  static const ReaderScratch scratch;
   return refusal_of(scratch.write("a.e57", E57Bytes::paged(content.bytes)));
 }
 
@@ -38,7 +38,7 @@ std::string refusal_of_xml(const std::string& xml) {
   E57Bytes::Content content = one_scan().content();
   content.bytes.replace(content.xml, std::string::npos, xml);
   E57Bytes::put<std::uint64_t>(content.bytes, 32, xml.size());
-  const ReaderScratch scratch;
+  static const ReaderScratch scratch;
   return refusal_of(scratch.write("a.e57", E57Bytes::paged(content.bytes)));
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("entities are not expanded, so a small section cannot grow") {
   }
   file.declaration = bomb + "<!ENTITY file SYSTEM \"file:///etc/passwd\">]>";
   file.root_xml = "<coordinateMetadata type=\"String\">&z;&file;</coordinateMetadata>";
-  const ReaderScratch scratch;
+  static const ReaderScratch scratch;
   CHECK(read_all(scratch.write("a.e57", file.build())).info.crs_wkt == "&z;&file;");
 }
 
