@@ -81,7 +81,7 @@ struct LasBytes {
     return bytes;
   }
 
- private:
+  /// header: 54 bytes of a variable length record, 60 of an extended one.
   static void append(std::string& bytes, const Record& record, unsigned header) {
     std::string head(header, '\0');
     head.replace(2, record.user.size(), record.user);

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "io/formats/input_buffer.hpp"
-#include "io/formats/laz/byte_window.hpp"
+#include "io/formats/laz/coding/byte_window.hpp"
 #include "io/formats/laz/laz_scheme.hpp"
 
 namespace clearway::laz {

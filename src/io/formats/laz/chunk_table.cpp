@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "io/formats/byte_load.hpp"
-#include "io/formats/laz/integer_model.hpp"
+#include "io/formats/laz/coding/integer_model.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway::laz {

@@ -2,7 +2,7 @@
 // those of the coordinates are read.
 #include "io/formats/byte_load.hpp"
 #include "io/formats/laz/chunk_decoder.hpp"
-#include "io/formats/laz/point14.hpp"
+#include "io/formats/laz/items/point14.hpp"
 
 namespace clearway::laz {
 namespace {
@@ -38,8 +38,8 @@ class LayeredDecoder final : public ChunkDecoder {
     std::copy_n(record.begin(), kPointBytes, point.begin());
     const auto points = take_number(cursor);
     if (points != chunk.points) {
-      throw DamagedChunk{"holds " + std::to_string(points) + " points by its own count, not " +
-                         std::to_string(chunk.points)};
+      throw DamagedChunk{"holds " + std::to_string(points) + " points by its own count, but " +
+                         std::to_string(chunk.points) + " by the header and the chunk table"};
     }
     const std::array<std::uint64_t, 2> sizes = take_sizes(cursor);
     const std::uint64_t layers = plane_.window.position(cursor);

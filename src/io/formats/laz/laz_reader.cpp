@@ -1,8 +1,10 @@
 #include "io/formats/laz/laz_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
+#include "io/formats/byte_load.hpp"
 #include "io/formats/laz/chunk_group.hpp"
 #include "io/system/input_error.hpp"
 
@@ -20,8 +22,8 @@ class TabledReader final : public PointReader {
       : input_(std::move(input)),
         chunks_(std::move(chunks)),
         info_(std::move(info)),
-        groups_(scheme),
-        stream_(laz::make_chunk_decoder(scheme)) {}
+        scheme_(scheme),
+        groups_(scheme) {}
 
   const CloudInfo& info() const override { return info_; }
 
@@ -57,6 +59,7 @@ class TabledReader final : public PointReader {
     try {
       const Chunk& chunk = chunks_[next_];
       if (left_ == 0) {
+        if (!stream_) stream_ = laz::make_chunk_decoder(scheme_);
         stream_->begin(input_, chunk);
         left_ = chunk.points;
       }
@@ -76,11 +79,12 @@ class TabledReader final : public PointReader {
   InputBuffer input_;
   std::vector<Chunk> chunks_;
   CloudInfo info_;
+  Scheme scheme_;
   laz::ChunkGroups groups_;
-  std::span<const Quanta> ready_;  ///< of the group decoded last
-  std::size_t next_ = 0;           ///< chunk to decode next
-  std::unique_ptr<laz::ChunkDecoder> stream_;
-  std::uint64_t left_ = 0;  ///< points of the chunk that stream_ is in
+  std::span<const Quanta> ready_;              ///< of the group decoded last
+  std::size_t next_ = 0;                       ///< chunk to decode next
+  std::unique_ptr<laz::ChunkDecoder> stream_;  ///< none before it is first needed
+  std::uint64_t left_ = 0;                     ///< points of the chunk that it is in
 };
 
 /// Of a file without a chunk table: where a chunk begins is known once the one before was decoded.
@@ -141,10 +145,21 @@ class UntabledReader final : public PointReader {
     return points;
   }
 
-  /// Refuses what could be another chunk. Less may be left: a table, or padding.
+  /// Refuses what may be more points: a whole record, and not a chunk table that nobody points at.
   void check_end() const {
     const std::uint64_t left = bytes_.end - std::min(bytes_.end, position_);
-    (void)left;
+    if (left < scheme_.record_bytes) return;
+    std::array<std::byte, 8> head{};
+    if (left >= head.size()) input_.read_at(position_, head);
+    const bool is_table = load<std::uint32_t>(head.data()) == 0 &&
+                          load<std::uint32_t>(head.data() + 4) == chunk_ &&
+                          scheme_.chunks != Scheme::Chunks::kNone;
+    if (is_table) return;
+    refuse(input_.name(),
+           "has " + std::to_string(left) + " bytes behind the " + std::to_string(bytes_.points) +
+               " points that its header declares, from byte " + std::to_string(position_) +
+               "; expected no more points. Its writer was interrupted, or wrote "
+               "into a pipe: write the file again");
   }
 
   InputBuffer input_;
@@ -173,6 +188,12 @@ std::unique_ptr<PointReader> read_laz_points(InputBuffer input, const Scheme& sc
              "has no chunk table, and its chunks differ in size; expected a table. Its writer was "
              "interrupted: write the file again");
     }
+    info.remarks.push_back({Message::Severity::kNote,
+                            "",
+                            input.name() + ": has no chunk table; its " +
+                                std::to_string(bytes.points) +
+                                " points are read one chunk after the other",
+                            {}});
   }
   return std::make_unique<UntabledReader>(std::move(input), scheme, bytes, std::move(info));
 }

@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "io/formats/laz/chunk_decoder.hpp"
-#include "io/formats/laz/gps_time11.hpp"
-#include "io/formats/laz/other_items.hpp"
-#include "io/formats/laz/point10.hpp"
+#include "io/formats/laz/items/gps_time11.hpp"
+#include "io/formats/laz/items/other_items.hpp"
+#include "io/formats/laz/items/point10.hpp"
 
 namespace clearway::laz {
 namespace {

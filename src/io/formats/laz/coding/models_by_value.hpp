@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "io/formats/laz/arithmetic_decoder.hpp"
+#include "io/formats/laz/coding/arithmetic_decoder.hpp"
 
 namespace clearway::laz {
 

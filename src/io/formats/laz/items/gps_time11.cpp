@@ -1,4 +1,4 @@
-#include "io/formats/laz/gps_time11.hpp"
+#include "io/formats/laz/items/gps_time11.hpp"
 
 namespace clearway::laz {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "io/formats/laz/coordinate_models.hpp"
-#include "io/formats/laz/median_of_five.hpp"
-#include "io/formats/laz/return_contexts.hpp"
+#include "io/formats/laz/items/coordinate_models.hpp"
+#include "io/formats/laz/items/median_of_five.hpp"
+#include "io/formats/laz/items/return_contexts.hpp"
 
 namespace clearway::laz {
 

@@ -1,4 +1,4 @@
-#include "io/formats/laz/point10.hpp"
+#include "io/formats/laz/items/point10.hpp"
 
 #include "io/formats/byte_load.hpp"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "io/formats/laz/integer_model.hpp"
+#include "io/formats/laz/coding/integer_model.hpp"
 
 /// Items of point formats 0 to 5 of which no coordinate depends. They are decoded as far as the
 /// stream's next symbols need it.

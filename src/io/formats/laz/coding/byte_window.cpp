@@ -1,4 +1,4 @@
-#include "io/formats/laz/byte_window.hpp"
+#include "io/formats/laz/coding/byte_window.hpp"
 
 #include <algorithm>
 #include <cstring>

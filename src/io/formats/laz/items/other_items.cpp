@@ -1,4 +1,4 @@
-#include "io/formats/laz/other_items.hpp"
+#include "io/formats/laz/items/other_items.hpp"
 
 namespace clearway::laz {
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 
-#include "io/formats/laz/coordinate_models.hpp"
-#include "io/formats/laz/median_of_five.hpp"
-#include "io/formats/laz/models_by_value.hpp"
-#include "io/formats/laz/return_contexts.hpp"
+#include "io/formats/laz/coding/models_by_value.hpp"
+#include "io/formats/laz/items/coordinate_models.hpp"
+#include "io/formats/laz/items/median_of_five.hpp"
+#include "io/formats/laz/items/return_contexts.hpp"
 
 namespace clearway::laz {
 

@@ -1,4 +1,4 @@
-#include "io/formats/laz/point14.hpp"
+#include "io/formats/laz/items/point14.hpp"
 
 #include "io/formats/byte_load.hpp"
 

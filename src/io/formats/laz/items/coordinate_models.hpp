@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "io/formats/laz/integer_model.hpp"
+#include "io/formats/laz/coding/integer_model.hpp"
 
 namespace clearway::laz {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "io/formats/laz/integer_model.hpp"
+#include "io/formats/laz/coding/integer_model.hpp"
 
 namespace clearway::laz {
 

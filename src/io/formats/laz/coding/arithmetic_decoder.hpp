@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "io/formats/byte_load.hpp"
-#include "io/formats/laz/entropy_models.hpp"
+#include "io/formats/laz/coding/entropy_models.hpp"
 
 namespace clearway::laz {
 
