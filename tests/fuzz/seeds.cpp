@@ -6,6 +6,7 @@
 #include "io/journal/journal.hpp"
 #include "support/clouds.hpp"
 #include "support/las_bytes.hpp"
+#include "support/mesh_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -73,6 +74,23 @@ void write_text_seeds(Seeds xyz, Seeds trajectory) {
   trajectory.add("\3#timestamp [ns], p_x\n1403636579758555392,1,2,3,1,0,0,0\n");
   trajectory.add("\4t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n");
   trajectory.add("\4x;y;z;r00;r01;r02;r10;r11;r12;r20;r21;r22\n1;2;3;1;0;0;0;1;0;0;0;1\n");
+}
+
+void write_mesh_seeds(Seeds seeds) {
+  const TriangleMesh cube = unit_cube();
+  const auto add = [&](char format, const std::string& bytes) {
+    seeds.add(std::string(1, format) + bytes);
+  };
+  add('\0', ascii_stl(cube));
+  add('\0', binary_stl(cube, "solid"));
+  add('\1', obj_text(cube));
+  add('\1',
+      "v 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0.5 .2 0\nv 0 1 0\nf -5/1/1 2//2 -3 \\\n4/4 5\nl 1 2\n");
+  add('\2', off_text(cube));
+  add('\2',
+      "COFF 4 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1 # c\n0 1 0 1 1 1 1\n4 0 1 2 3 9\n");
+  add('\3', ply_mesh(cube, "ascii"));
+  add('\3', ply_mesh(cube, "binary_little_endian"));
 }
 
 template <typename Value>
@@ -164,6 +182,7 @@ int main(int argc, char** argv) {
   write_las_seeds({folder, "las"});
   write_ply_seeds({folder, "ply"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
+  write_mesh_seeds({folder, "mesh"});
   write_chunk_seeds({folder, "packed_chunk"});
   write_store_seeds({folder, "store"}, {folder, "store_values"});
   write_result_seeds({folder, "result"});

@@ -78,8 +78,8 @@ void refuse_unless_read(PointFormat format, const std::string& name) {
       refuse_format(name, "a 3DTK scan");
     case PointFormat::kMesh:
       refuse(name,
-             "a mesh is not read; expected points in LAS, PLY or XYZ text. Sample its surface to "
-             "points, for example with CloudCompare, and save them as PLY");
+             "a mesh is read as a model alone; expected points in LAS, PLY or XYZ text. `clearway "
+             "model` samples its surface to points in PLY");
     case PointFormat::kLas:
     case PointFormat::kPly:
     case PointFormat::kXyz:

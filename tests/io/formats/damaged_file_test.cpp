@@ -2,8 +2,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "support/las_bytes.hpp"
+#include "support/mesh_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -36,6 +38,7 @@ void read_anything(const std::filesystem::path& path) {
     }
   };
   attempt([&] { read_all(path); });
+  attempt([&] { read_model(path, {.spacing = 0.5}); });
   attempt([&] { read_all(*open_las_stream(File::open_for_reading(path))); });
   for (const auto format : {TrajectoryFormat::kAuto, TrajectoryFormat::kCsv}) {
     attempt([&] { read_trajectory(path, {format, true}); });
@@ -50,6 +53,12 @@ TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
       {"a.ply", ply_sample("binary_little_endian") + std::string(100, '\1')},
       {"b.ply", ply_sample("binary_big_endian") + std::string(100, '\1')},
       {"c.ply", ply_sample("ascii") + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n"},
+      {"a.stl", binary_stl(unit_cube())},
+      {"b.stl", ascii_stl(unit_cube())},
+      {"a.obj", obj_text(unit_cube())},
+      {"a.off", off_text(unit_cube())},
+      {"d.ply", ply_mesh(unit_cube(), "ascii")},
+      {"e.ply", ply_mesh(unit_cube(), "binary_little_endian")},
       {"a.pts", "2\n1 2 3 4\n5 6 7 8\n"},
       {"a.csv", "t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n"},
       {"a.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"}};
