@@ -17,7 +17,8 @@ struct ModelOptions {
   /// that the search finds touches the surface, and one that it misses is between
   /// radius - spacing and radius away. 0: none given, and a mesh is refused.
   double spacing = 0;
-  /// Metres of a unit of the file. Coordinates are multiplied by it.
+  /// Metres of a unit of the file. Coordinates are multiplied by it, or divided where it is one
+  /// part of a whole number.
   double unit = 1;
   /// Takes the vertices of a mesh alone, and not its surface.
   bool vertices_only = false;

@@ -7,6 +7,7 @@
 #include "support/clouds.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
+#include "support/mesh_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 
 using namespace clearway;
@@ -141,6 +142,23 @@ void write_text_seeds(Seeds xyz, Seeds trajectory) {
   trajectory.add("\4x;y;z;r00;r01;r02;r10;r11;r12;r20;r21;r22\n1;2;3;1;0;0;0;1;0;0;0;1\n");
 }
 
+void write_mesh_seeds(Seeds seeds) {
+  const TriangleMesh cube = unit_cube();
+  const auto add = [&](char format, const std::string& bytes) {
+    seeds.add(std::string(1, format) + bytes);
+  };
+  add('\0', ascii_stl(cube));
+  add('\0', binary_stl(cube, "solid"));
+  add('\1', obj_text(cube));
+  add('\1',
+      "v 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0.5 .2 0\nv 0 1 0\nf -5/1/1 2//2 -3 \\\n4/4 5\nl 1 2\n");
+  add('\2', off_text(cube));
+  add('\2',
+      "COFF 4 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1 # c\n0 1 0 1 1 1 1\n4 0 1 2 3 9\n");
+  add('\3', ply_mesh(cube, "ascii"));
+  add('\3', ply_mesh(cube, "binary_little_endian"));
+}
+
 template <typename Value>
 void add_chunk(Seeds& seeds, const std::vector<Value>& values) {
   std::vector<std::byte> bytes;
@@ -233,6 +251,7 @@ int main(int argc, char** argv) {
   write_ply_seeds({folder, "ply"});
   write_ptx_seeds({folder, "ptx"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
+  write_mesh_seeds({folder, "mesh"});
   write_chunk_seeds({folder, "packed_chunk"});
   write_store_seeds({folder, "store"}, {folder, "store_values"});
   write_result_seeds({folder, "result"});

@@ -77,8 +77,8 @@ void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
     case PointFormat::kMesh:
       refuse(name,
-             "a mesh is not read; expected points in LAS, PLY or XYZ text. Sample its surface to "
-             "points, for example with CloudCompare, and save them as PLY");
+             "a mesh is read as a model alone; expected points. `clearway model` samples its "
+             "surface to points in PLY");
     case PointFormat::kE57:
     case PointFormat::kLas:
     case PointFormat::kPly:

@@ -14,7 +14,14 @@ namespace {
 
 constexpr double kBendToTell = 0.1;  // of the spacing
 
-/// The number of a record in its file, which counts those without a point too.
+void tell(std::vector<Message>& messages, const ModelInput& input, std::string text,
+          std::vector<std::pair<std::string, double>> numbers = {}, std::string code = {}) {
+  const auto severity = code.empty() ? Message::Severity::kNote : Message::Severity::kWarning;
+  messages.push_back(
+      {severity, std::move(code), input.path.string() + ": " + text, std::move(numbers)});
+}
+
+/// first: the number of the batch's first record, which counts those without a point too.
 void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
             const std::string& name, std::vector<Vec3>& points) {
   for (const auto& q : batch.quanta) {
@@ -43,6 +50,10 @@ void read_points(ModelInput& input) {
     append(batch, reader->info(), first, input.path.string(), input.mesh.vertices);
   }
   input.messages = reader->info().remarks;
+  if (reader->info().faces > 0) {
+    tell(input.messages, input,
+         "its " + format_count(reader->info().faces) + " faces are left out");
+  }
 }
 
 /// Whether the file was read as a mesh; one without faces may be.
@@ -60,8 +71,11 @@ bool read_as_mesh(ModelInput& input, bool with_faces) {
 
 void scale(ModelInput& input, double unit) {
   if (unit == 1) return;
+  const double parts = std::round(1 / unit);  // 1000 of a millimetre: rounded once, not twice
+  const bool divided = 1 / parts == unit;
   for (Vec3& p : input.mesh.vertices) {
-    const Vec3 metres{p.x * unit, p.y * unit, p.z * unit};
+    const Vec3 metres = divided ? Vec3{p.x / parts, p.y / parts, p.z / parts}
+                                : Vec3{p.x * unit, p.y * unit, p.z * unit};
     if (!std::isfinite(metres.x) || !std::isfinite(metres.y) || !std::isfinite(metres.z)) {
       refuse(input.path.string(), "(" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) +
                                       ") is too large in metres; expected finite coordinates");
@@ -69,13 +83,6 @@ void scale(ModelInput& input, double unit) {
     p = metres;
   }
   input.remarks.largest_bend *= unit;
-}
-
-void tell(std::vector<Message>& messages, const ModelInput& input, std::string text,
-          std::vector<std::pair<std::string, double>> numbers = {}, std::string code = {}) {
-  const auto severity = code.empty() ? Message::Severity::kNote : Message::Severity::kWarning;
-  messages.push_back(
-      {severity, std::move(code), input.path.string() + ": " + text, std::move(numbers)});
 }
 
 /// Of a mesh and of vertices that stand alone in a mesh's file.
@@ -156,8 +163,8 @@ ModelInput read_model_input(const std::filesystem::path& path, double unit, bool
   tell_remarks(input);
   if (mesh && !input.is_mesh()) {
     tell(input.messages, input,
-         std::string(with_faces ? "has no faces: " : "faces are left out: ") + "the model is its " +
-             format_count(input.mesh.vertices.size()) + " vertices");
+         std::string(with_faces ? "has no faces: " : "faces are left out: ") +
+             "the model is its vertices, " + format_count(input.mesh.vertices.size()));
   }
   return input;
 }

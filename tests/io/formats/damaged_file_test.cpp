@@ -2,9 +2,11 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
+#include "support/mesh_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
@@ -50,6 +52,7 @@ void read_anything(const std::filesystem::path& path) {
     }
   };
   attempt([&] { read_all(path); });
+  attempt([&] { read_model(path, {.spacing = 0.5}); });
   if (path.stem() == "scan000") attempt([&] { read_all(path.parent_path() / "scan000.3d"); });
   attempt([&] {
     read_all(
@@ -69,6 +72,12 @@ TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
       {"a.ply", ply_sample("binary_little_endian") + std::string(100, '\1')},
       {"b.ply", ply_sample("binary_big_endian") + std::string(100, '\1')},
       {"c.ply", ply_sample("ascii") + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n"},
+      {"a.stl", binary_stl(unit_cube())},
+      {"b.stl", ascii_stl(unit_cube())},
+      {"a.obj", obj_text(unit_cube())},
+      {"a.off", off_text(unit_cube())},
+      {"d.ply", ply_mesh(unit_cube(), "ascii")},
+      {"e.ply", ply_mesh(unit_cube(), "binary_little_endian")},
       {"a.pts", "2\n1 2 3 4\n5 6 7 8\n"},
       {"a.ptx", ptx_sample()},
       {"a.pcd", PcdHeaderText().build("ascii") + "1 2 3\n4 5 6\n"},

@@ -209,7 +209,7 @@ TEST_CASE("options that do not go together are refused before an input is looked
   CHECK(site.run("scene hall --seed -1 -o " + site.path("s")).exit_code == 2);
 }
 
-TEST_CASE("faces of a mesh are not read, which is said") {
+TEST_CASE("faces of a mesh are read for a model, not for an environment, which is said") {
   const Site site;
   put_bytes(site.folder / "mesh.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -219,7 +219,8 @@ TEST_CASE("faces of a mesh are not read, which is said") {
       site.run("run --env " + site.path("site.h5") + " --model " + site.path("mesh.ply") +
                " --trajectory " + site.path("path.txt") + " --radius 0.1 -o " + site.path("m.h5"));
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("its 1 faces are not read: the model is its 3 points"));
+  CHECK_THAT(outcome.err,
+             Contains("a mesh of 1 triangles, sampled to") && Contains("than 0.025 m"));
   const Outcome convert =
       site.run("convert " + site.path("mesh.ply") + " -o " + site.path("m2.h5"));
   CHECK_THAT(convert.err, Contains("its 1 faces are not read, its vertices are"));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/predicate.hpp"
+
 namespace clearway {
 namespace {
 
@@ -10,16 +12,27 @@ struct Place {
   double x, y;
 };
 
-Vec3 newell_normal(std::span<const Vec3> corners) {
-  Vec3 normal{0, 0, 0};
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec3& a = corners[i];
-    const Vec3& b = corners[(i + 1) % corners.size()];
-    normal.x += (a.y - b.y) * (a.z + b.z);
-    normal.y += (a.z - b.z) * (a.x + b.x);
-    normal.z += (a.x - b.x) * (a.y + b.y);
+/// Twice the area of the triangle (0, i, i + 1), as a vector.
+Vec3 fan_normal(std::span<const Vec3> corners, std::size_t i) {
+  const Vec3 u = difference(corners[i], corners[0]), v = difference(corners[i + 1], corners[0]);
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+double length_of(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
+
+/// The sum of the fan's normals, which no order of the corners changes. Where a crossing outline
+/// makes them cancel, the largest of them.
+Vec3 polygon_normal(std::span<const Vec3> corners) {
+  constexpr double kCancelled = 1e-9;
+  Vec3 sum{0, 0, 0}, largest{0, 0, 0};
+  double lengths = 0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Vec3 normal = fan_normal(corners, i);
+    for (int k = 0; k < 3; ++k) sum[k] += normal[k];
+    lengths += length_of(normal);
+    if (length_of(normal) > length_of(largest)) largest = normal;
   }
-  return normal;
+  return length_of(sum) > kCancelled * lengths ? sum : largest;
 }
 
 /// The corners as seen along the normal's largest axis, counter-clockwise, about the first corner.
@@ -51,8 +64,21 @@ bool is_fan(const std::vector<Place>& places) {
   return true;
 }
 
+/// Whether two sides cross within both. Takes the square of the number of corners.
+bool crosses_itself(const std::vector<Place>& places) {
+  const std::size_t count = places.size();
+  for (std::size_t i = 0; i + 2 < count; ++i) {
+    const Place &a = places[i], &b = places[i + 1];
+    for (std::size_t k = i + 2; k < count; ++k) {
+      const Place &c = places[k], &d = places[(k + 1) % count];
+      if (turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0) return true;
+    }
+  }
+  return false;
+}
+
 double bend_of(std::span<const Vec3> corners, const Vec3& normal) {
-  const double length = std::hypot(normal.x, normal.y, normal.z);
+  const double length = length_of(normal);
   if (!(length > 0) || !std::isfinite(length)) return 0;
   Vec3 mean{0, 0, 0};
   const auto count = static_cast<double>(corners.size());
@@ -140,7 +166,7 @@ class EarCutter {
 }  // namespace
 
 bool is_fan(std::span<const Vec3> corners) {
-  return is_fan(projected(corners, newell_normal(corners)));
+  return is_fan(projected(corners, polygon_normal(corners)));
 }
 
 CutPolygon cut_polygon(std::span<const Vec3> corners) {
@@ -149,12 +175,15 @@ CutPolygon cut_polygon(std::span<const Vec3> corners) {
     cut.triangles = {{0, 1, 2}};
     return cut;
   }
-  const Vec3 normal = newell_normal(corners);
+  const Vec3 normal = polygon_normal(corners);
   cut.bend = bend_of(corners, normal);
   const std::vector<Place> places = projected(corners, normal);
   if (is_fan(places)) {
     cut_fan(corners.size(), cut);
-  } else if (!EarCutter(places).cut(cut)) {
+    return cut;
+  }
+  cut.crossing = crosses_itself(places);
+  if (!EarCutter(places).cut(cut)) {
     cut.crossing = true;
     cut_fan(corners.size(), cut);
   }

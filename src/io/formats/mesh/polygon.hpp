@@ -13,7 +13,7 @@ namespace clearway {
 struct CutPolygon {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positions within the polygon
   double bend = 0;        ///< the farthest corner from the plane through the corners' mean
-  bool crossing = false;  ///< the outline crosses itself: cut as a fan
+  bool crossing = false;  ///< the outline crosses itself: how it is cut is arbitrary
 };
 
 /// Corners of a polygon that is not convex; more would take too long.
@@ -24,7 +24,7 @@ bool is_fan(std::span<const Vec3> corners);
 
 /// Cuts a polygon with three corners or more: a fan where is_fan(), otherwise ears, in the
 /// projection along the axis in which its normal is largest. Ears need at most kMostCornersToCut.
-/// Source: G. Meisters, Polygons have ears, 1975; the normal is Newell's.
+/// Source: G. Meisters, Polygons have ears, 1975.
 CutPolygon cut_polygon(std::span<const Vec3> corners);
 
 }  // namespace clearway

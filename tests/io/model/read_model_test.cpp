@@ -1,7 +1,6 @@
-#include "clearway/model.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "clearway/model.hpp"
 #include "support/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 

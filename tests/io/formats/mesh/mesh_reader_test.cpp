@@ -1,0 +1,216 @@
+#include "io/formats/mesh/mesh_reader.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "support/mesh_bytes.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+MeshFile read(const std::filesystem::path& path) {
+  File file = File::open_for_reading(path);
+  const auto format = mesh_format_of(file, path);
+  REQUIRE(format);
+  return read_mesh(InputBuffer(std::move(file), InputBuffer::Access::kSeek), *format);
+}
+
+/// The message with which the file is refused; empty where it is read.
+std::string refusal(const std::string& name, const std::string& bytes) {
+  const ReaderScratch scratch;
+  const auto path = scratch.write(name, bytes);
+  try {
+    read(path);
+  } catch (const InputError& error) {
+    CHECK_THAT(error.what(), Contains(path.string()));
+    return error.what();
+  }
+  return {};
+}
+
+MeshFile read(const std::string& name, const std::string& bytes) {
+  const ReaderScratch scratch;
+  return read(scratch.write(name, bytes));
+}
+
+/// Whether triangles lie at the same places in the same order.
+bool same_places(const TriangleMesh& a, const TriangleMesh& b) {
+  if (a.triangles.size() != b.triangles.size()) return false;
+  for (std::size_t i = 0; i < a.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (a.vertices[a.triangles[i][k]] != b.vertices[b.triangles[i][k]]) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("every mesh format gives the same triangles") {
+  const TriangleMesh cube = unit_cube();
+  const std::pair<const char*, std::string> files[] = {
+      {"a.stl", ascii_stl(cube)},
+      {"a.stl", binary_stl(cube)},
+      {"A.STL", binary_stl(cube, "solid made by a program")},
+      {"a.obj", obj_text(cube)},
+      {"a.off", off_text(cube)},
+      {"a.dat", off_text(cube)},
+      {"a.ply", ply_mesh(cube, "ascii")},
+      {"a.bin", ply_mesh(cube, "binary_little_endian")}};
+  for (const auto& [name, bytes] : files) {
+    INFO(name << " " << bytes.substr(0, 20));
+    const MeshFile file = read(name, bytes);
+    CHECK(same_places(file.mesh, cube));
+    CHECK(file.mesh.vertices.size() == 8);
+    CHECK(file.remarks.polygons == 0);
+    CHECK_FALSE(file.remarks.last_line_open);
+  }
+}
+
+TEST_CASE("STL text may differ in case, name several solids and lack names") {
+  const std::string facet =
+      "FACET NORMAL nan nan nan\nOuter Loop\nVERTEX 0 0 0\nvertex 1e0 0 -0\r\nvertex 0 1 0\n"
+      "ENDLOOP\nendfacet\n";
+  const MeshFile file =
+      read("a.stl", "\n solid\n" + facet + "endsolid\n\nSOLID b\n" + facet + "end solid b");
+  CHECK(file.mesh.triangles.size() == 2);
+  CHECK(file.mesh.vertices.size() == 3);
+}
+
+TEST_CASE("STL that is cut, lies or holds what it cannot is refused") {
+  const std::string binary = binary_stl(unit_cube());
+  CHECK_THAT(refusal("a.stl", binary.substr(0, 600)),
+             Contains("byte 80") && Contains("12 triangles") && Contains("684 bytes"));
+  CHECK_THAT(refusal("a.stl", binary + "more"), Contains("byte 80"));
+  CHECK_THAT(refusal("a.stl", "short"), Contains("84 or more"));
+  CHECK_THAT(refusal("a.stl", ""), Contains("84 or more"));
+  std::string nan = binary;
+  nan.replace(84 + 50 + 12, 4, std::string("\0\0\xC0\x7F", 4));
+  CHECK_THAT(refusal("a.stl", nan), Contains("byte 134") && Contains("finite"));
+  const std::string text = ascii_stl(unit_cube());
+  CHECK_THAT(refusal("a.stl", text.substr(0, text.size() - 14)), Contains("may be cut"));
+  CHECK_THAT(refusal("a.stl", "solid\nfacet\nouter loop\nvertex 0 0\n"),
+             Contains("line 4") && Contains("vertex X Y Z"));
+  CHECK_THAT(refusal("a.stl",
+                     "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 "
+                     "0\nvertex 0 1 0\n"),
+             Contains("line 7") && Contains("three vertices"));
+}
+
+TEST_CASE("OBJ counts forwards, backwards and with textures and normals") {
+  const MeshFile file = read("a.obj",
+                             "# made\nmtllib a.mtl\no one\ng\ns off\nv 0 0 0\nv 1 0 0 0.5\n"
+                             "v 1 1 0 0.1 0.2 0.3\nvt 0 0\nvn 0 0 1\nusemtl red # f 1 2 3\n"
+                             "f 1/1/1 2//1 \\\n  3/1\nv 0 1 0\nf -4 -2 -1\nl 1 2\np 1\n"
+                             "f 1 2 3 4");
+  CHECK(file.mesh.vertices.size() == 4);
+  REQUIRE(file.mesh.triangles.size() == 4);
+  CHECK(file.mesh.triangles[0] == std::array<std::uint32_t, 3>{0, 1, 2});
+  CHECK(file.mesh.triangles[1] == std::array<std::uint32_t, 3>{0, 2, 3});
+  CHECK(file.remarks.polygons == 1);
+  CHECK(file.remarks.not_faces == 2);
+  CHECK(file.remarks.last_line_open);
+}
+
+TEST_CASE("OBJ that cannot be a mesh is refused with its line") {
+  const std::string start = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+  const std::pair<std::string, std::string> wrong[] = {
+      {"f 1 2 4", "names vertex 4; expected 1 to 3"},
+      {"f 1 2 0", "names vertex 0"},
+      {"f 1 2 -4", "names vertex -4"},
+      {"f 1 2", "2 corners"},
+      {"f 1 2 3x", "corner \"3x\""},
+      {"f 1 2 99999999999999999999", "corner"},
+      {"v 1 2", "expected `v X Y Z`"},
+      {"v 1 2 nan", "finite"},
+      {"v 1 2 1e999", "expected `v X Y Z`"},
+      {"surf 0 1 0 1 1 2 3", "is not read"},
+      {"call other.obj", "is not read"},
+      {"hello", "expected an OBJ statement"}};
+  for (const auto& [line, message] : wrong) {
+    INFO(line);
+    CHECK_THAT(refusal("a.obj", start + line + "\n"), Contains("line 4") && Contains(message));
+  }
+  CHECK_THAT(refusal("a.obj", start + "f 1 2 \\"), Contains("line 4") && Contains("file's end"));
+  CHECK_THAT(refusal("a.obj", ""), Contains("empty"));
+}
+
+TEST_CASE("OFF may have comments, colours, normals and its counts beside its name") {
+  const std::string cube =
+      "4 1 9 # counts\n\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 9 9 9 9 # third\n"
+      "0 1 0 1 1 1 1\n4 0 1 2 3 255 0 0";
+  for (const std::string start : {"COFF\n# c\n", "NOFF ", "OFF", "\n  OFF\n", "STCNOFF\n", ""}) {
+    INFO(start);
+    const MeshFile file = read("a.off", start + cube);
+    CHECK(file.mesh.vertices.size() == 4);
+    CHECK(file.mesh.triangles.size() == 2);
+    CHECK(file.remarks.last_line_open);
+  }
+}
+
+TEST_CASE("OFF that lies or is of another kind is refused") {
+  CHECK_THAT(refusal("a.off", "OFF BINARY\n"), Contains("binary OFF"));
+  CHECK_THAT(refusal("a.off", "4OFF\n1 0 0\n0 0 0 1\n"), Contains("line 1"));
+  CHECK_THAT(refusal("a.off", "OFF\n2 0 0\n0 0 0\n"), Contains("vertex 1 of 2"));
+  CHECK_THAT(refusal("a.off", "OFF\n1 0 0\n0 0 0\n1 1 1\n"), Contains("line 4: more than"));
+  CHECK_THAT(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 3\n"),
+             Contains("line 6") && Contains("vertex 3"));
+  CHECK_THAT(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1\n"), Contains("line 6"));
+  CHECK_THAT(refusal("a.off", "OFF\n18446744073709551615 1 0\n0 0 0\n"), Contains("ends after"));
+  CHECK_THAT(refusal("a.off", "OFF\n-1 1 0\n"), Contains("line 2"));
+}
+
+TEST_CASE("PLY faces need their list, vertices before them and indices that exist") {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  const std::string vertex = "element vertex 3\n" + xyz;
+  const std::string list = "property list uchar int vertex_index\n";
+  const std::string points = "0 0 0\n1 0 0\n1 1 0\n";
+  const auto ply = [](const std::string& rest) { return "ply\nformat ascii 1.0\n" + rest; };
+  const MeshFile file =
+      read("a.ply", ply(vertex + "element face 1\nproperty uchar red\n" + list +
+                        "property list uchar float uv\nelement edge 1\nproperty int a\n"
+                        "end_header\n" +
+                        points + "7 3 0 1 2 2 0.5 0.5\n9"));
+  CHECK(file.mesh.triangles.size() == 1);
+  CHECK(file.remarks.last_line_open);
+  CHECK_THAT(refusal("a.ply", ply(vertex + "element face 1\nproperty int a\nend_header\n")),
+             Contains("vertex_indices"));
+  CHECK_THAT(refusal("a.ply", ply("element face 1\n" + list + vertex + "end_header\n")),
+             Contains("faces before the vertices"));
+  CHECK_THAT(refusal("a.ply", ply(vertex + "element tristrips 1\n" + list + "end_header\n")),
+             Contains("triangle strips"));
+  const std::string whole = vertex + "element face 1\n" + list + "end_header\n" + points;
+  for (const std::string face : {"3 0 1 3\n", "3 0 1 -1\n", "3 0 1 1.5\n", "2 0 1\n"}) {
+    CHECK_THAT(refusal("a.ply", ply(whole + face)), Contains("line 13"));
+  }
+  CHECK_THAT(refusal("a.ply", ply(whole + "3 0 1 2\n1 2 3\n")), Contains("more than the header"));
+}
+
+TEST_CASE("meshes and drawings of other formats are refused by name") {
+  for (const std::string name : {"a.gltf", "a.glb", "a.dae", "a.ifc", "a.STEP", "a.fbx", "a.dxf"}) {
+    CHECK_THAT(refusal(name, "any text"), Contains("Export the model as STL, OBJ or PLY"));
+  }
+  CHECK_THAT(refusal("a.dat", "ISO-10303-21;\n"), Contains("STEP"));
+}
+
+TEST_CASE("a cut mesh that declares its size is refused at every byte") {
+  const TriangleMesh cube = unit_cube();
+  const auto every_cut = [](const std::string& name, const std::string& bytes, std::size_t least) {
+    const ReaderScratch scratch;
+    const auto path = scratch.write(name, bytes);
+    for (std::size_t size = bytes.size() - 1; size > least; --size) {
+      std::filesystem::resize_file(path, size);
+      INFO(name << " cut to " << size);
+      CHECK_THROWS_AS(read(path), InputError);
+    }
+  };
+  every_cut("a.stl", binary_stl(cube), 0);
+  every_cut("a.stl", ascii_stl(cube).substr(0, ascii_stl(cube).size() - 6), 6);
+  every_cut("a.ply", ply_mesh(cube, "binary_little_endian"), 3);
+  // The last line may lack its break, so the last digit is all that a cut can hide.
+  const std::string off = off_text(cube);
+  every_cut("a.off", off.substr(0, off.size() - 1), 3);
+}

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+#include "io/formats/mesh/triangle_mesh.hpp"
+
+namespace clearway::test {
+
+/// The cube from 0 to 1: 8 vertices, 12 triangles, outsides counter-clockwise.
+inline TriangleMesh unit_cube() {
+  return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+          {{0, 3, 2},
+           {0, 2, 1},
+           {4, 5, 6},
+           {4, 6, 7},
+           {0, 1, 5},
+           {0, 5, 4},
+           {1, 2, 6},
+           {1, 6, 5},
+           {2, 3, 7},
+           {2, 7, 6},
+           {3, 0, 4},
+           {3, 4, 7}}};
+}
+
+inline std::string words(const Vec3& v) {
+  return std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z);
+}
+
+/// Text STL.
+inline std::string ascii_stl(const TriangleMesh& mesh) {
+  std::string text = "solid made\n";
+  for (const auto& triangle : mesh.triangles) {
+    text += " facet normal 0 0 0\n  outer loop\n";
+    for (const std::uint32_t v : triangle) text += "   vertex " + words(mesh.vertices[v]) + "\n";
+    text += "  endloop\n endfacet\n";
+  }
+  return text + "endsolid made\n";
+}
+
+template <typename Value>
+void put(std::string& bytes, Value value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+/// Binary STL with the start of its header given.
+inline std::string binary_stl(const TriangleMesh& mesh, std::string header = "made") {
+  std::string bytes = std::move(header);
+  bytes.resize(80, ' ');
+  put(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles) {
+    bytes.append(12, '\0');
+    for (const std::uint32_t v : triangle) {
+      for (int k = 0; k < 3; ++k) put(bytes, static_cast<float>(mesh.vertices[v][k]));
+    }
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+inline std::string obj_text(const TriangleMesh& mesh) {
+  std::string text;
+  for (const Vec3& v : mesh.vertices) text += "v " + words(v) + "\n";
+  for (const auto& [a, b, c] : mesh.triangles) {
+    text += "f " + std::to_string(a + 1) + " " + std::to_string(b + 1) + " " +
+            std::to_string(c + 1) + "\n";
+  }
+  return text;
+}
+
+inline std::string off_text(const TriangleMesh& mesh) {
+  std::string text = "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
+                     std::to_string(mesh.triangles.size()) + " 0\n";
+  for (const Vec3& v : mesh.vertices) text += words(v) + "\n";
+  for (const auto& [a, b, c] : mesh.triangles) {
+    text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+  }
+  return text;
+}
+
+/// PLY with faces: "ascii" or "binary_little_endian".
+inline std::string ply_mesh(const TriangleMesh& mesh, const std::string& format) {
+  std::string bytes = "ply\nformat " + format + " 1.0\nelement vertex " +
+                      std::to_string(mesh.vertices.size()) +
+                      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                      std::to_string(mesh.triangles.size()) +
+                      "\nproperty list uchar int vertex_indices\nend_header\n";
+  const bool text = format == "ascii";
+  for (const Vec3& v : mesh.vertices) {
+    if (text) bytes += words(v) + "\n";
+    for (int k = 0; k < 3 && !text; ++k) put(bytes, v[k]);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    if (text) {
+      bytes += "3 " + std::to_string(triangle[0]) + " " + std::to_string(triangle[1]) + " " +
+               std::to_string(triangle[2]) + "\n";
+    } else {
+      bytes += '\3';
+      for (const std::uint32_t v : triangle) put(bytes, v);
+    }
+  }
+  return bytes;
+}
+
+}  // namespace clearway::test
