@@ -18,9 +18,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("--model", options.model, "The model's points: LAS, PLY or XYZ text, metres")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--trajectory", options.trajectory,
-                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
+  command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();
   command.add_option("--radius", options.query.radius, "Search radius in metres, for example 0.1")
