@@ -157,9 +157,11 @@ std::optional<Message> other_rotation(std::span<const Pose> poses, double length
                                                        {"repaired_alignment", repaired.direction}};
   };
   const auto inverse = inverse_of(poses);
-  const auto inverse_chords = pieces_of(inverse, summarize_trajectory(inverse).length);
-  const Alignment inverted = alignment(inverse, inverse_chords, rotation_of);
-  if (given.repaired_by(inverted)) {
+  const double inverse_length = summarize_trajectory(inverse).length;
+  const Alignment inverted = alignment(inverse, pieces_of(inverse, inverse_length), rotation_of);
+  // Inverting swings positions about the world's origin: of poses that are right, the way gets
+  // longer, and far from the origin it always keeps to one line.
+  if (inverse_length < length && given.repaired_by(inverted)) {
     return warning("poses-inverse",
                    begin +
                        "with inverse poses it would move straight ahead. Poses map from the "
