@@ -23,7 +23,7 @@ check_headers() {
     done
   done
   foreign=$(g++ -std=c++20 -M -I "$prefix/include" -x c++ "$prefix/include/clearway/clearway.hpp" |
-    tr ' ' '\n' | grep -vF "$prefix/" | grep -iE 'hdf5|H5|tbb|CLI/|cuda|eigen|spdlog|fmt/|nlohmann|xxhash|pugi|omp\.h') || true
+    tr ' ' '\n' | grep -vF "$prefix/" | grep -iE 'hdf5|H5|/proj|tbb|CLI/|cuda|eigen|spdlog|fmt/|nlohmann|xxhash|pugi|omp\.h') || true
   [ -z "$foreign" ] || fail "a public header includes $foreign"
   ! grep -E -- '-W|-f|-O' "$prefix"/lib*/cmake/Clearway/ClearwayTargets*.cmake ||
     fail "a flag reaches the consumer"

@@ -20,9 +20,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
                   "The model: a mesh in STL, OBJ, PLY or OFF, or points in LAS, PLY or XYZ text")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--trajectory", options.trajectory,
-                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
+  command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();
   options.lengths

@@ -64,8 +64,8 @@ std::optional<Message> jump(const TrajectorySummary& summary, const std::string&
 std::optional<Message> missing_rotation(std::span<const Pose> poses, double path_turn,
                                         RotationSource source, const std::string& name) {
   constexpr double kPathTurn = 20 * kDegree;
-  constexpr double kClearPathTurn = 60 * kDegree;
-  constexpr double kRadiansAsDegrees = 6.4 * kDegree;  // half a turn to either side, misread
+  constexpr double kClearPathTurn = 30 * kDegree;
+  constexpr double kRadiansAsDegrees = 6.5 * kDegree;  // of a whole turn, misread
   constexpr double kNoTurn = 1e-9;
   const Pose identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}};
   double from_identity = 0;
@@ -93,31 +93,45 @@ std::optional<Message> missing_rotation(std::span<const Pose> poses, double path
   return std::nullopt;
 }
 
-/// How well the motion keeps one direction of the model, forwards or backwards: 1 where it always
-/// does, 1/3 where it is all over. direction_of(chord): the motion in the model's frame.
-template <typename DirectionOf>
-double alignment(std::span<const Chord> chords, const DirectionOf& direction_of) {
+/// How well the motion keeps one direction of the model: 1 where it always does.
+struct Alignment {
+  double line = 1;       ///< forwards or backwards; 1/3 where it is all over
+  double direction = 1;  ///< forwards alone; 0 where it is all over
+
+  /// Whether a mistake is almost certain: its repair makes order of disorder.
+  bool repaired_by(const Alignment& other) const {
+    constexpr double kOrder = 0.97;
+    constexpr double kDisorder = 0.8;
+    return (line < kDisorder && other.line > kOrder) ||
+           (direction < kDisorder && other.direction > kOrder);
+  }
+};
+
+/// rotation_of(pose): the rotation to judge.
+template <typename RotationOf>
+Alignment alignment(std::span<const Pose> poses, std::span<const Chord> chords,
+                    const RotationOf& rotation_at) {
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  Vector sum = Vector::Zero();
   double weight = 0;
   for (const Chord& chord : chords) {
-    const Vector direction = direction_of(chord);
+    const Vector way(chord.direction.x, chord.direction.y, chord.direction.z);
+    const Vector direction = (rotation_at(poses[chord.middle]).transpose() * way).normalized();
     moments += chord.length * direction * direction.transpose();
+    sum += chord.length * direction;
     weight += chord.length;
   }
-  if (!(weight > 0)) return 1;
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments / weight, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .maxCoeff();
+  if (!(weight > 0)) return {};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments / weight,
+                                                              Eigen::EigenvaluesOnly);
+  return {solver.eigenvalues().maxCoeff(), sum.norm() / weight};
 }
 
 Matrix rotation_of(const Pose& pose) { return Eigen::Map<const Matrix>(pose.rotation); }
 
-/// The rotation of a quaternion that was read as x y z w but is w x y z, or the other way about.
-Matrix reordered(const Pose& pose, bool w_came_first) {
-  const Eigen::Quaterniond q(Eigen::Matrix3d(rotation_of(pose)));
-  const Eigen::Quaterniond other = w_came_first ? Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w())
-                                                : Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y());
-  return other.normalized().toRotationMatrix();
+std::vector<Chord> pieces_of(std::span<const Pose> poses, double length) {
+  constexpr double kPieces = 500;
+  return chords_of(poses, length / kPieces);
 }
 
 /// The poses that map from the world to the model instead.
@@ -132,64 +146,71 @@ std::vector<Pose> inverse_of(std::span<const Pose> poses) {
   return inverse;
 }
 
-double alignment_of(std::span<const Pose> poses, std::span<const Chord> chords) {
-  return alignment(chords, [poses](const Chord& c) -> Vector {
-    return rotation_of(poses[c.middle]).transpose() *
-           Vector(c.direction.x, c.direction.y, c.direction.z);
-  });
-}
-
-constexpr double kPieces = 500;
-constexpr double kAligned = 0.97;
-constexpr double kNotAligned = 0.8;
-
-double alignment_of_inverse(std::span<const Pose> poses) {
-  const auto inverse = inverse_of(poses);
-  const double length = summarize_trajectory(inverse).length;
-  return alignment_of(inverse, chords_of(inverse, length / kPieces));
-}
-
 /// A mistake after whose repair the motion would keep to one direction of the model.
 std::optional<Message> other_rotation(std::span<const Pose> poses, double length,
-                                      RotationSource source, const std::string& name) {
-  const auto chords = chords_of(poses, length / kPieces);
-  const double given = alignment_of(poses, chords);
-  if (given > kNotAligned) return std::nullopt;
-  const auto turned_by = [&](const auto& rotation) {
-    return alignment(chords, [&](const Chord& c) -> Vector {
-      return rotation(poses[c.middle]).transpose() *
-             Vector(c.direction.x, c.direction.y, c.direction.z);
-    });
+                                      const std::string& name) {
+  const auto chords = pieces_of(poses, length);
+  const Alignment given = alignment(poses, chords, rotation_of);
+  const std::string begin = name + ": the model moves in changing directions of its own frame; ";
+  const auto numbers = [&given](const Alignment& repaired) {
+    return std::vector<std::pair<std::string, double>>{{"alignment", given.direction},
+                                                       {"repaired_alignment", repaired.direction}};
   };
-  const auto say = [&](const char* code, const char* what, double repaired) {
-    return warning(code,
-                   name + ": the model moves in changing directions of its own frame; " + what,
-                   {{"alignment", given}, {"repaired_alignment", repaired}});
-  };
-  if (source == RotationSource::kQuaternions) {
-    for (const bool first : {false, true}) {
-      const double repaired = turned_by([first](const Pose& p) { return reordered(p, first); });
-      if (repaired > kAligned) {
-        return say("quaternion-order",
-                   "with its quaternions in the order of w x y z instead of x y z w, "
-                   "or the other way about, it would move straight ahead",
-                   repaired);
-      }
-    }
+  const auto inverse = inverse_of(poses);
+  const double inverse_length = summarize_trajectory(inverse).length;
+  const Alignment inverted = alignment(inverse, pieces_of(inverse, inverse_length), rotation_of);
+  // Inverting swings positions about the world's origin: of poses that are right, the way gets
+  // longer, and far from the origin it always keeps to one line.
+  if (inverse_length < length && given.repaired_by(inverted)) {
+    return warning("poses-inverse",
+                   begin +
+                       "with inverse poses it would move straight ahead. Poses map from the "
+                       "model to the environment",
+                   numbers(inverted));
   }
-  if (const double repaired = alignment_of_inverse(poses); repaired > kAligned) {
-    return say("poses-inverse",
-               "with inverse poses it would move straight ahead. Poses map from the model to the "
-               "environment",
-               repaired);
+  const Alignment transposed = alignment(
+      poses, chords, [](const Pose& pose) -> Matrix { return rotation_of(pose).transpose(); });
+  if (given.repaired_by(transposed)) {
+    return warning("turns-against-path",
+                   begin +
+                       "it turns left where the path turns right. The columns x and y may be "
+                       "swapped, angles may be counted the other way, or matrices may be "
+                       "column by column",
+                   numbers(transposed));
   }
-  const double repaired =
-      turned_by([](const Pose& p) -> Matrix { return rotation_of(p).transpose(); });
-  if (repaired > kAligned) {
-    return say("turns-against-path",
-               "it turns left where the path turns right. The columns x and y may be swapped, "
-               "angles may be counted the other way, or matrices may be column by column",
-               repaired);
+  return std::nullopt;
+}
+
+/// The rotation of a quaternion that was read as x y z w but is w x y z, or the other way about.
+Matrix reordered(const Pose& pose, bool w_came_first) {
+  const Eigen::Quaterniond q(Eigen::Matrix3d(rotation_of(pose)));
+  const Eigen::Quaterniond other = w_came_first ? Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w())
+                                                : Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y());
+  return other.normalized().toRotationMatrix();
+}
+
+template <typename RotationOf>
+double worst_tilt(std::span<const Pose> poses, const RotationOf& rotation_at) {
+  double least = 1;
+  for (const Pose& pose : poses) least = std::min(least, rotation_at(pose)(2, 2));
+  return std::acos(std::max(-1.0, least));
+}
+
+/// Vehicles stay nearly level. In the other order of their quaternions they tumble.
+std::optional<Message> quaternion_order(std::span<const Pose> poses, const std::string& name) {
+  constexpr double kTumbles = 15 * kDegree;
+  constexpr double kTimesLess = 3;
+  const double given = worst_tilt(poses, rotation_of);
+  if (given < kTumbles) return std::nullopt;
+  for (const bool w_came_first : {true, false}) {
+    const double other = worst_tilt(
+        poses, [w_came_first](const Pose& pose) { return reordered(pose, w_came_first); });
+    if (kTimesLess * other > given) continue;
+    return warning("quaternion-order",
+                   name + ": the model tilts by up to " + number(given / kDegree) +
+                       " degrees, but by " + number(other / kDegree) + " with its quaternions as " +
+                       (w_came_first ? "w x y z" : "x y z w") + "; their order may be another",
+                   {{"tilt_degrees", given / kDegree}, {"other_tilt_degrees", other / kDegree}});
   }
   return std::nullopt;
 }
@@ -213,19 +234,19 @@ std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource so
   std::vector<Message> doubts;
   const auto add = [&doubts](std::optional<Message> doubt) {
     if (doubt) doubts.push_back(std::move(*doubt));
-    return doubts.size();
   };
   const TrajectorySummary summary = summarize_trajectory(poses);
-  if (!std::isfinite(summary.length) || summary.length == 0) return doubts;
-  add(jump(summary, name));
-  const std::size_t before = doubts.size();
-  const double path_turn = turn_of_path(poses, summary.length);
+  if (poses.empty() || !std::isfinite(summary.length)) return doubts;
+  if (source == RotationSource::kQuaternions) add(quaternion_order(poses, name));
+  if (doubts.empty()) add(upside_down(summary, name));
+  if (summary.length == 0) return doubts;
   constexpr double kTurnThatTells = 20 * kDegree;
-  if (add(missing_rotation(poses, path_turn, source, name)) == before &&
-      path_turn > kTurnThatTells) {
-    add(other_rotation(poses, summary.length, source, name));
+  const double path_turn = turn_of_path(poses, summary.length);
+  if (doubts.empty()) add(missing_rotation(poses, path_turn, source, name));
+  if (doubts.empty() && path_turn > kTurnThatTells) {
+    add(other_rotation(poses, summary.length, name));
   }
-  add(upside_down(summary, name));
+  add(jump(summary, name));
   return doubts;
 }
 

@@ -149,7 +149,7 @@ void append_poses_of_angles(std::vector<AttitudeRow> rows, const PoseColumns& co
                             const TrajectoryOptions& options, const std::string& name,
                             TrajectoryFile& out) {
   if (rows.empty()) return;
-  out.has_angles = true;
+  out.rotations = RotationSource::kAngles;
   const Largest most = largest_of(rows);
   const AngleFrame frame = frame_of(columns, options, name);
   const double to_radians = attitude_factor(most, columns, options, out, name);

@@ -1,6 +1,7 @@
 #include "io/trajectory/geographic_poses.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <numbers>
 
 #include "io/system/input_error.hpp"
@@ -21,7 +22,11 @@ struct Range {
     empty = false;
   }
   std::string text() const {
-    return least == greatest ? brief(least) : brief(least) + " to " + brief(greatest);
+    char digits[80];
+    std::snprintf(digits, sizeof digits, "%.6g", least);
+    const std::string from = digits;
+    std::snprintf(digits, sizeof digits, "%.6g", greatest);
+    return from == digits ? from : from + " to " + digits;
   }
 };
 
@@ -154,6 +159,7 @@ void append_geographic_poses(std::span<const AttitudeRow> rows, AngleFrame frame
     ranges.height.add(place->position.z);
   }
   out.crs = map.name();
+  out.metres_per_unit = map.metres_per_unit();
   remark_map(map, options, ranges, name, out);
   remark_heights(map, options, ranges, name, out);
   remark_datum(map, options, name, out);

@@ -190,6 +190,9 @@ Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<d
 void PoseRows::finish(TrajectoryFile& out) {
   out.format = format_;
   out.poses = std::move(poses_);
+  const bool quaternions =
+      columns_ ? columns_->rotation.size() == 4 : format_ != TrajectoryFormat::kMatrix;
+  if (quaternions) out.rotations = RotationSource::kQuaternions;
   const bool angles = columns_ && columns_->rotation.size() == 3;
   if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
   if (times_.size() == out.poses.size()) out.times = std::move(times_);

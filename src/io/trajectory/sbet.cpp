@@ -77,6 +77,7 @@ bool may_be_sbet(std::span<const std::byte> record) {
 }
 
 void read_sbet(InputBuffer& input, const TrajectoryOptions& options, TrajectoryFile& out) {
+  out.rotations = RotationSource::kAngles;
   std::vector<AttitudeRow> rows;
   for (;;) {
     const std::uint64_t start = input.position();

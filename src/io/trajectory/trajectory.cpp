@@ -82,8 +82,10 @@ void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& 
                     const TrajectoryFile& found) {
   const std::string name = path.string();
   if (found.poses.empty()) return;
-  if (!found.has_angles && (options.angle_unit != AngleUnit::kDeclared ||
-                            options.angle_frame != AngleFrame::kDeclared)) {
+  const bool declarable =
+      found.rotations == RotationSource::kAngles && found.format == TrajectoryFormat::kCsv;
+  if (!declarable && (options.angle_unit != AngleUnit::kDeclared ||
+                      options.angle_frame != AngleFrame::kDeclared)) {
     throw UsageError(name +
                      ": has no angles whose unit or frame could be declared; its format is " +
                      name_of(found.format));
@@ -160,6 +162,8 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
   refuse_useless(path, options, found);
   apply_lever_arm(options.lever_arm, found.poses);
   remark_times(path, found);
+  auto doubts = doubts_about(found.poses, found.rotations, path.string());
+  std::move(doubts.begin(), doubts.end(), std::back_inserter(found.remarks));
   return found;
 }
 

@@ -7,6 +7,7 @@
 
 #include "clearway/pose.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/trajectory/trajectory_doubts.hpp"
 
 namespace clearway {
 
@@ -15,8 +16,9 @@ struct TrajectoryFile {
   std::vector<Pose> poses;
   std::vector<double> times;  ///< seconds, one a pose; empty where the file has none
   TrajectoryFormat format = TrajectoryFormat::kAuto;
-  std::string crs;               ///< that latitudes and longitudes were turned into, or empty
-  bool has_angles = false;       ///< of a table, whose unit and frame options can declare
+  std::string crs;             ///< that latitudes and longitudes were turned into, or empty
+  double metres_per_unit = 1;  ///< of the positions, 1 but for a CRS in another unit
+  RotationSource rotations = RotationSource::kMatrices;
   std::vector<Message> remarks;  ///< notes and warnings
 
   void note(const char* code, std::string text,

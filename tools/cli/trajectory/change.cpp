@@ -1,5 +1,3 @@
-#include "clearway/trajectory.hpp"
-
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -12,12 +10,13 @@
 
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
-#include "cli/commands.hpp"
+#include "clearway/trajectory.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "cli/trajectory/commands.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
 #include "core/trajectory/thin_trajectory.hpp"
@@ -64,7 +63,9 @@ std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
 void write_changed(const ChangeOptions& options, const Change& change) {
   refuse_overwriting(options.output, {options.input, options.model});
   PendingFile output(options.output, options.force);
-  const std::vector<Pose> before = read_trajectory(options.input, options.trajectory);
+  std::vector<Message> remarks;
+  const std::vector<Pose> before = read_trajectory(options.input, options.trajectory, &remarks);
+  for (const Message& remark : remarks) log_message(remark);
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   // No other place of a mesh is farther out than its vertices.
   const Box model =
@@ -96,11 +97,7 @@ void write_changed(const ChangeOptions& options, const Change& change) {
 
 void add_change(CLI::App& command, const char* max_motion_help, const Change& change) {
   const auto options = std::make_shared<ChangeOptions>();
-  command
-      .add_option("IN", options->input,
-                  "The poses: 12 or 16 numbers a line, TUM, EuRoC or CSV with a header")
-      ->type_name("FILE")
-      ->required();
+  command.add_option("IN", options->input, kTrajectoryHelp)->type_name("FILE")->required();
   command
       .add_option("-o,--output", options->output,
                   "The new trajectory: 16 numbers a line, a row-major 4x4 matrix")
@@ -126,10 +123,8 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
 
 }  // namespace
 
-void add_trajectory(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("trajectory", "Make a trajectory denser or sparser");
-  command->require_subcommand(1);
-  CLI::App* resampling = command->add_subcommand(
+void add_trajectory_changes(CLI::App& trajectory) {
+  CLI::App* resampling = trajectory.add_subcommand(
       "resample", "Add poses on a smooth curve until all steps are small; the given poses stay");
   add_change(*resampling, "The most that a model point may move from one pose to the next",
              resample);
@@ -137,7 +132,7 @@ void add_trajectory(CLI::App& program) {
       "Example: clearway trajectory resample path.txt -o dense.txt --max-motion 0.05 --model "
       "car.ply");
   CLI::App* thinning =
-      command->add_subcommand("thin", "Leave out poses; each one left out is near a kept one");
+      trajectory.add_subcommand("thin", "Leave out poses; each one left out is near a kept one");
   add_change(
       *thinning,
       "The most that a model point may move between a dropped pose and the last kept pose before "

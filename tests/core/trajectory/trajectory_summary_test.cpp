@@ -1,0 +1,89 @@
+#include "core/trajectory/trajectory_summary.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "support/attitudes.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+Pose pose_at(const Rotation& rotation, double x, double y, double z) {
+  Pose pose{{}, {x, y, z}};
+  for (std::size_t k = 0; k < 9; ++k) pose.rotation[k] = rotation[k];
+  return pose;
+}
+
+}  // namespace
+
+TEST_CASE("a summary of no pose and of one") {
+  CHECK(summarize_trajectory({}).poses == 0);
+  const std::vector<Pose> one{pose_at(about_z(1), 1, 2, 3)};
+  const TrajectorySummary summary = summarize_trajectory(one);
+  CHECK(summary.poses == 1);
+  CHECK(summary.length == 0);
+  CHECK(summary.box.lo == Vec3{1, 2, 3});
+  CHECK(summary.forward.cosine == 0);
+  CHECK(summary.up.cosine == Approx(1));
+}
+
+TEST_CASE("a summary counts steps, turns and the box") {
+  const std::vector<Pose> poses{pose_at(about_z(0), 0, 0, 0), pose_at(about_z(0.5), 3, 4, 0),
+                                pose_at(about_z(0.5), 3, 4, 0), pose_at(about_z(0.25), 3, 5, -2),
+                                pose_at(about_x(0.25) * about_z(0.25), 3, 5, 10)};
+  const TrajectorySummary summary = summarize_trajectory(poses);
+  CHECK(summary.length == Approx(5 + std::sqrt(5) + 12));
+  CHECK(summary.median_step == Approx(5));
+  CHECK(summary.largest_step == Approx(12));
+  CHECK(summary.largest_step_pose == 3);
+  CHECK(summary.still_steps == 1);
+  CHECK(summary.largest_turn == Approx(0.5));
+  CHECK(summary.largest_turn_pose == 0);
+  CHECK(summary.total_turn == Approx(1));
+  CHECK(summary.box.lo == Vec3{0, 0, -2});
+  CHECK(summary.box.hi == Vec3{3, 5, 10});
+  CHECK(summary.skew < 1e-15);
+}
+
+TEST_CASE("turns are exact when they are small, and up to a half turn") {
+  const Pose identity = pose_at(about_z(0), 0, 0, 0);
+  for (const double angle : {1e-9, 1e-3, 1.0, 3.0, std::numbers::pi}) {
+    CHECK(turn_between(identity, pose_at(about_y(angle), 5, 5, 5)) == Approx(angle).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a summary names the axes that point up and ahead") {
+  std::vector<Pose> car;
+  std::vector<Pose> camera;  // x right, y down, z ahead
+  const Rotation optical{0, 0, 1, -1, 0, 0, 0, -1, 0};
+  for (int i = 0; i < 200; ++i) {
+    const double a = 0.02 * i;
+    const double x = 30 * std::sin(a);
+    const double y = -30 * std::cos(a);
+    car.push_back(pose_at(about_z(a), x, y, 0));
+    camera.push_back(pose_at(about_z(a) * optical, x, y, 0));
+  }
+  const TrajectorySummary of_car = summarize_trajectory(car);
+  CHECK(of_car.up.axis == 2);
+  CHECK_FALSE(of_car.up.negative);
+  CHECK(of_car.forward.axis == 0);
+  CHECK_FALSE(of_car.forward.negative);
+  CHECK(of_car.forward.cosine > 0.999);
+  const TrajectorySummary of_camera = summarize_trajectory(camera);
+  CHECK(of_camera.up.axis == 1);
+  CHECK(of_camera.up.negative);
+  CHECK(of_camera.forward.axis == 2);
+  for (Pose& pose : car) {
+    pose.rotation[0] *= -1;
+    pose.rotation[3] *= -1;
+  }
+  CHECK(summarize_trajectory(car).forward.negative);
+}
+
+TEST_CASE("skew is the distance from a rotation") {
+  const std::vector<Pose> poses{{{1, 0, 0, 0, 1.01, 0, 0, 0, 1}, {0, 0, 0}}};
+  CHECK(summarize_trajectory(poses).skew == Approx(1.01 * 1.01 - 1));
+}

@@ -1,0 +1,147 @@
+// Forms of poses beside the plain text formats: unit, lever arm, quaternions without time, 3DTK.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "clearway/trajectory.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+std::vector<Pose> poses_of(const std::string& text, const TrajectoryOptions& options = {},
+                           const std::string& name = "path.txt") {
+  const ReaderScratch scratch;
+  return read_trajectory(scratch.write(name, text), options);
+}
+
+std::string refusal(const std::string& text, const TrajectoryOptions& options = {},
+                    const std::string& name = "path.txt") {
+  try {
+    poses_of(text, options, name);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  FAIL("read");
+  return {};
+}
+
+const std::string kTurn = "0 -1 0 7 1 0 0 8 0 0 1 9\n";  // a quarter turn about z, to (7, 8, 9)
+
+}  // namespace
+
+TEST_CASE("lines that start with // are comments") {
+  CHECK(poses_of("// made by hand\n" + kTurn + "  // again\n" + kTurn).size() == 2);
+}
+
+TEST_CASE("a position and a quaternion without time: the order is to be named") {
+  const std::string row = "7 8 9 0.8 0 0 0.6\n";
+  CHECK_THAT(refusal(row), Contains("pose-xyzw") && Contains("pose-wxyz"));
+  const Pose xyzw = poses_of(row, {.format = TrajectoryFormat::kPoseXyzw}).at(0);
+  CHECK(xyzw.rotation[8] == Approx(1 - 2 * 0.64));  // about x
+  CHECK(xyzw.rotation[0] == Approx(1));
+  const Pose wxyz = poses_of(row, {.format = TrajectoryFormat::kPoseWxyz}).at(0);
+  CHECK(wxyz.rotation[8] == Approx(1));  // about z
+  CHECK(wxyz.rotation[0] == Approx(1 - 2 * 0.36));
+  CHECK(wxyz.translation[2] == 9);
+  CHECK_THAT(refusal("1 2 3\n", {.format = TrajectoryFormat::kPoseXyzw}),
+             Contains("7: x y z qx qy qz qw"));
+  CHECK_THAT(refusal("1 2 3 0 0 0\n"), Contains("6 numbers") && Contains("heading_deg"));
+}
+
+TEST_CASE("a unit scales positions alone") {
+  const Pose pose =
+      poses_of("0 -1 0 7000 1 0 0 8000 0 0 1 9000\n", {.metres_per_unit = 0.001}).at(0);
+  CHECK(pose.translation[0] == 7);
+  CHECK(pose.translation[2] == 9);
+  CHECK(pose.rotation[1] == -1);
+  const std::string quaternion = ",qx,qy,qz,qw\n7000,8000,9000,0,0,0,1\n";
+  CHECK(poses_of("x[mm],y[mm],z[mm]" + quaternion).at(0).translation[1] == 8);
+  CHECK(poses_of("x_cm,y_cm,z_cm" + quaternion).at(0).translation[1] == 80);
+  CHECK(poses_of("x (ft),y (ft),z (ft)" + quaternion).at(0).translation[0] == 7000 * 0.3048);
+  CHECK_THAT(refusal("x[mm],y[m],z[mm]" + quaternion), Contains("several units"));
+  CHECK_THAT(refusal("x[px],y[px],z[px]" + quaternion), Contains("px"));
+  CHECK_THAT(refusal("x[mm],y[mm],z[mm]" + quaternion, {.metres_per_unit = 1}),
+             Contains("was declared"));
+}
+
+TEST_CASE("a lever arm leads from the trajectory's point back to the model's origin") {
+  // The antenna is 2 m ahead of the origin and 1 m above; the model looks along y.
+  const Pose pose = poses_of(kTurn, {.lever_arm = {2, 0, 1}}).at(0);
+  CHECK(pose.translation[0] == 7);
+  CHECK(pose.translation[1] == 6);
+  CHECK(pose.translation[2] == 8);
+  const Vec3 arm{0.3, -1.2, 0.7};
+  const Pose moved = poses_of(kTurn, {.lever_arm = arm}).at(0);
+  for (int row = 0; row < 3; ++row) {  // the antenna is where the file has it
+    const double* r = moved.rotation + 3 * row;
+    const double antenna = r[0] * arm.x + r[1] * arm.y + r[2] * arm.z + moved.translation[row];
+    CHECK(antenna == Approx(7 + row));
+  }
+}
+
+TEST_CASE("3DTK: a .pose is one pose, in our frame") {
+  // 3DTK: 100 to the right, 200 up, 300 ahead, a quarter turn about its y axis.
+  const Pose pose = poses_of("100 200 300\n0 90 0\n", {}, "scan000.pose").at(0);
+  CHECK(pose.translation[0] == Approx(3));
+  CHECK(pose.translation[1] == Approx(-1));
+  CHECK(pose.translation[2] == Approx(2));
+  // Left-handed about up: the front turns to the right, which is -y.
+  CHECK(pose.rotation[3] == Approx(-1));
+  CHECK(pose.rotation[8] == Approx(1));
+  CHECK_THAT(refusal("1 2 3\n", {}, "scan000.pose"), Contains("expected six"));
+  CHECK_THROWS_AS(poses_of("1 2 3 0 0 0\n", {.metres_per_unit = 0.01}, "a.pose"), UsageError);
+}
+
+TEST_CASE("3DTK: the last line of a .frames counts") {
+  const std::string first = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1\n";
+  const std::string last = "1 0 0 0 0 1 0 0 0 0 1 0 100 200 300 1 2\n";
+  const auto poses = poses_of(first + last, {}, "scan000.frames");
+  REQUIRE(poses.size() == 1);
+  CHECK(poses[0].translation[0] == 3);
+  CHECK(poses[0].translation[1] == -1);
+}
+
+TEST_CASE("3DTK: a folder is a trajectory in the order of its numbers") {
+  const ReaderScratch scratch;
+  scratch.write("scan002.pose", "0 0 200\n0 0 0\n");
+  scratch.write("scan010.pose", "0 0 1000\n0 0 0\n");
+  scratch.write("scan000.pose", "0 0 0\n0 0 0\n");
+  scratch.write("scan000.3d", "1 2 3\n");
+  scratch.write("readme.pose", "hello\n");
+  std::vector<Message> remarks;
+  const auto poses = read_trajectory(scratch.folder(), {}, &remarks);
+  REQUIRE(poses.size() == 3);
+  CHECK(poses[1].translation[0] == 2);
+  CHECK(poses[2].translation[0] == 10);
+  CHECK(remarks.at(0).code == "model-frame");
+
+  const std::string frame = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 500 1 2\n";
+  scratch.write("scan000.frames", frame);
+  CHECK_THROWS_WITH(read_trajectory(scratch.folder()), Contains("scan002.pose has no .frames"));
+  CHECK(read_trajectory(scratch.folder(), {.format = TrajectoryFormat::kThreedtkPose}).size() == 3);
+  scratch.write("scan002.frames", frame);
+  scratch.write("scan010.frames", frame);
+  CHECK(read_trajectory(scratch.folder()).at(0).translation[0] == 5);
+  scratch.write("scan10.pose", "0 0 0\n0 0 0\n");
+  CHECK_THROWS_WITH(read_trajectory(scratch.folder()), Contains("the same number"));
+  const ReaderScratch empty;
+  CHECK_THROWS_WITH(read_trajectory(empty.folder()), Contains("scan000.pose"));
+}
+
+TEST_CASE("doubts reach the remarks") {
+  const ReaderScratch scratch;
+  std::string text;
+  for (int i = 0; i < 100; ++i) {
+    const double a = 0.01 * i;
+    text += "1 0 0 " + std::to_string(50 * std::cos(a)) + " 0 1 0 " +
+            std::to_string(50 * std::sin(a)) + " 0 0 1 0\n";
+  }
+  std::vector<Message> remarks;
+  read_trajectory(scratch.write("path.txt", text), {}, &remarks);
+  REQUIRE(remarks.size() == 1);
+  CHECK(remarks[0].code == "rotation-missing");
+}

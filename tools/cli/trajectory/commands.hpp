@@ -1,0 +1,14 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+/// The subcommands of `clearway trajectory`.
+namespace clearway::tool {
+
+/// resample and thin.
+void add_trajectory_changes(CLI::App& trajectory);
+void add_trajectory_info(CLI::App& trajectory);
+
+}  // namespace clearway::tool

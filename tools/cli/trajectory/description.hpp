@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "clearway/box.hpp"
+#include "cli/trajectory/scan_overlap.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
+#include "io/trajectory/trajectory_file.hpp"
+
+namespace clearway::tool {
+
+/// Cosine from which on an axis is said to point somewhere.
+inline constexpr double kClearAxis = 0.9;
+
+/// How far the model moves from pose to pose.
+struct StepMotion {
+  double largest = 0;
+  std::optional<std::size_t> above_radius;  ///< steps, where a radius was given
+};
+
+/// All that `clearway trajectory info` prints.
+struct Description {
+  TrajectoryFile file;
+  TrajectorySummary summary;
+  std::optional<Box> scan;
+  ScanOverlap overlap;
+  std::optional<StepMotion> motion;
+};
+
+/// "x", "-x", ...
+std::string axis_name(const BodyAxis& axis);
+
+nlohmann::ordered_json json_of(const Description& what);
+/// A line a fact.
+std::string text_of(const Description& what);
+
+}  // namespace clearway::tool

@@ -1,0 +1,16 @@
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/trajectory/commands.hpp"
+
+namespace clearway::tool {
+
+void add_trajectory(CLI::App& program) {
+  CLI::App* command = program.add_subcommand(
+      "trajectory", "Say what is in a trajectory, make it denser or sparser");
+  command->require_subcommand(1);
+  add_trajectory_info(*command);
+  add_trajectory_changes(*command);
+}
+
+}  // namespace clearway::tool
