@@ -70,8 +70,10 @@ class Neighbours {
     for (std::uint32_t i = 0; i < sample_.size(); ++i) {
       const Vec3& p = sample_[i];
       for (int n = 0; n < 27; ++n) {
-        auto& cube_of =
-            cubes_[key(cube(p.x) + n % 3 - 1, cube(p.y) + n / 3 % 3 - 1, cube(p.z) + n / 9 - 1)];
+        const std::uint64_t place =
+            key(cube(p.x) + n % 3 - 1, cube(p.y) + n / 3 % 3 - 1, cube(p.z) + n / 9 - 1);
+        marked_[place % marked_.size()] = true;
+        auto& cube_of = cubes_[place];
         if (cube_of.empty() || cube_of.back() != i) cube_of.push_back(i);
       }
     }
