@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "io/convert/notes.hpp"
+#include "core/util/shorten_notes.hpp"
 #include "io/convert/spooled_reader.hpp"
 #include "io/system/input_error.hpp"
 
