@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/util/shorten_notes.hpp"
 #include "io/convert/checks/choose_scale.hpp"
 #include "io/convert/checks/readable_files.hpp"
-#include "io/convert/notes.hpp"
 #include "io/convert/spooled_reader.hpp"
 #include "io/system/input_error.hpp"
 

@@ -35,42 +35,69 @@ void warn(CommonCrs& common, const char* code, const std::string& text) {
   common.warnings.push_back({Message::Severity::kWarning, code, text});
 }
 
+bool has_unit(const CloudInfo& info) { return info.unit != LengthUnit::kUnknown; }
+
+void refuse_degrees(const std::filesystem::path& file, const CloudInfo& info) {
+  if (info.unit != LengthUnit::kDegree) return;
+  refuse(file.string(),
+         "its coordinate reference system is in degrees, expected lengths; project the scan first",
+         Remedy::kIgnoreCrs);
+}
+
+[[noreturn]] void refuse_unit(const std::filesystem::path& file, LengthUnit found,
+                              const std::filesystem::path& other, LengthUnit expected) {
+  refuse(file.string(),
+         "its unit of length is " + to_string(found) + ", expected " + to_string(expected) +
+             " as in " + other.string(),
+         Remedy::kIgnoreCrs);
+}
+
+/// The first that any input has. Others are warned of, and none at all is noted.
+void choose_wkt(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                CommonCrs& common) {
+  const auto named = [](const CloudInfo& info) { return !info.crs_wkt.empty(); };
+  const auto first = std::find_if(infos.begin(), infos.end(), named);
+  if (first == infos.end()) return;
+  common.wkt = first->crs_wkt;
+  const std::string source = files[static_cast<std::size_t>(first - infos.begin())].string();
+  std::size_t unnamed = 0;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    if (!named(infos[i])) {
+      ++unnamed;
+    } else if (infos[i].crs_wkt != common.wkt) {
+      warn(common, "other-crs",
+           files[i].string() + ": another coordinate reference system than " + source +
+               "; the first one's is kept");
+    }
+  }
+  if (unnamed == 0) return;
+  common.warnings.push_back({Message::Severity::kNote,
+                             "no-crs",
+                             std::to_string(unnamed) + " of " + std::to_string(infos.size()) +
+                                 " files name no coordinate reference system. They are taken to "
+                                 "be in that of " +
+                                 source,
+                             {{"files", static_cast<double>(unnamed)}}});
+}
+
 }  // namespace
 
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                      bool ignore) {
   CommonCrs common;
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    const CloudInfo& info = infos[i];
-    const std::string name = files[i].string();
-    if (info.unit == LengthUnit::kDegree && !ignore) {
-      refuse(name,
-             "its coordinate reference system is in degrees, expected lengths; project the scan "
-             "first",
-             Remedy::kIgnoreCrs);
-    }
-    if (i == 0) {
-      common.unit = info.unit;
-      common.wkt = info.crs_wkt;
-      continue;
-    }
-    // Where nothing is said, lengths count as metres.
-    if (common.unit == LengthUnit::kUnknown && info.unit == LengthUnit::kMetre) {
-      common.unit = info.unit;
-    }
-    const bool metre = info.unit == LengthUnit::kUnknown && common.unit == LengthUnit::kMetre;
-    if (info.unit != common.unit && !metre && !ignore) {
-      refuse(name,
-             "its unit of length is " + to_string(info.unit) + ", expected " +
-                 to_string(common.unit) + " as in " + files[0].string(),
-             Remedy::kIgnoreCrs);
-    }
-    if (info.crs_wkt != common.wkt) {
-      warn(common, "other-crs",
-           name + ": another coordinate reference system than " + files[0].string() +
-               "; the first one's is kept");
+  for (std::size_t i = 0; i < infos.size() && !ignore; ++i) refuse_degrees(files[i], infos[i]);
+  const auto known = std::find_if(infos.begin(), infos.end(), has_unit);
+  if (known != infos.end()) {
+    common.unit = known->unit;
+    const auto& first = files[static_cast<std::size_t>(known - infos.begin())];
+    for (std::size_t i = 0; i < infos.size() && !ignore; ++i) {
+      // What says nothing is taken for metres.
+      const bool agrees = infos[i].unit == common.unit ||
+                          (!has_unit(infos[i]) && common.unit == LengthUnit::kMetre);
+      if (!agrees) refuse_unit(files[i], infos[i].unit, first, common.unit);
     }
   }
+  choose_wkt(files, infos, common);
   if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
     warn(common, "feet",
          "the coordinates are in feet (" + to_string(common.unit) +

@@ -20,11 +20,11 @@ namespace clearway {
 struct CommonCrs {
   LengthUnit unit = LengthUnit::kUnknown;
   std::string wkt;
-  std::vector<Message> warnings;  ///< different CRS, feet
+  std::vector<Message> warnings;  ///< different CRS, feet; a note: none in some
 };
 
-/// The first input's; its unit where it has none is metres if any says so. Degrees, and other units
-/// than the first one's, are refused unless `ignore`.
+/// Of the first input that says so. Degrees, and other units than that one's, are refused unless
+/// `ignore`. Inputs that say nothing go with metres.
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                      bool ignore);
 

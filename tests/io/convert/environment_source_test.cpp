@@ -134,6 +134,29 @@ TEST_CASE("lengths without a unit go with metres, but not with feet") {
   CHECK(feet.warnings[0].code == "feet");
 }
 
+TEST_CASE("files that say nothing of their unit and system go with metres, not with feet") {
+  const ScratchFolder folder;
+  put_bytes(folder / "feet.las", las_with_wkt(kFootWkt));
+  put_bytes(folder / "metres.las", las_with_wkt(kMetreWkt));
+  put_bytes(folder / "none.xyz", "100 -200 0\n");
+  for (const bool last : {false, true}) {
+    const auto first = folder / (last ? "none.xyz" : "metres.las");
+    const Environment mixed =
+        read_environment({first, folder / (last ? "metres.las" : "none.xyz")});
+    CHECK(mixed.unit == LengthUnit::kMetre);
+    CHECK(mixed.points.size() == 4);
+    const auto& notes = mixed.warnings;
+    const auto noted = std::find_if(notes.begin(), notes.end(),
+                                    [](const Message& m) { return m.code == "no-crs"; });
+    REQUIRE(noted != notes.end());
+    CHECK(noted->severity == Message::Severity::kNote);
+    CHECK_THAT(noted->text, Contains("1 of 2 files") && Contains("metres.las"));
+  }
+  CHECK_THAT(refusal({folder / "feet.las", folder / "none.xyz"}),
+             Contains("none.xyz") && Contains("unknown") && Contains("feet.las"));
+  CHECK_THAT(refusal({folder / "none.xyz", folder / "feet.las"}), Contains("none.xyz"));
+}
+
 TEST_CASE("a pipe given as a file is refused with advice") {
   const ScratchFolder folder;
   const auto pipe = folder / "pipe.las";

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "io/convert/notes.hpp"
+#include "core/util/shorten_notes.hpp"
 #include "read_environment.hpp"
 
 using namespace clearway;

@@ -78,6 +78,7 @@ class ThreedtkReader final : public PointReader {
  public:
   ThreedtkReader(InputBuffer input, const fs::path& path) : input_(std::move(input)) {
     pose_ = find_pose(path, info_.remarks);
+    info_.unit = LengthUnit::kMetre;
     skip_header();
     first_point_ = input_.mark();
   }

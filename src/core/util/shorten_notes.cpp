@@ -1,4 +1,4 @@
-#include "io/convert/notes.hpp"
+#include "core/util/shorten_notes.hpp"
 
 #include <cstdint>
 #include <map>
