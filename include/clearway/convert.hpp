@@ -14,7 +14,7 @@ namespace clearway {
 /// Every member has a value, so that {.memory_bytes = ...} compiles without a warning.
 struct ConvertOptions {
   /// Metres, of the stored integers; none: as the input has it, else the finest power of ten from
-  /// 1e-6 that fits.
+  /// 1e-6 to 1e-3 that fits.
   std::optional<double> scale = std::nullopt;
   std::uint32_t cell_points = 65536;  ///< 64 to 2^20
   std::optional<double> regular_size =

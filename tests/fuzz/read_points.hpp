@@ -22,4 +22,14 @@ inline void read_twice(PointReader& reader) {
   if (counts[0] != counts[1]) std::abort();
 }
 
+/// Lines ascend, one for each point asked for at the most.
+inline void tell_lines(PointReader& reader) {
+  const std::uint64_t points[] = {0, 1, 5};
+  const auto lines = reader.lines_of(points);
+  if (lines.size() > 3) std::abort();
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (lines[i] <= lines[i - 1]) std::abort();
+  }
+}
+
 }  // namespace clearway::test

@@ -131,6 +131,10 @@ void write_text_seeds(Seeds xyz, Seeds trajectory) {
   xyz.add("# c\n1.5;-2e3;+3\n4;5;6;7\n");
   xyz.add("\xEF\xBB\xBF//X Z Y\n1 2 3\nnan inf 1\n");
   xyz.add("a,z,y,x\n1,2,3,4\r\n5,6,7,8");
+  xyz.add("# id Easting [m] Northing [ft] H (mm)\nP1 1 2 3\nP2 4 5 6\n");
+  xyz.add("Lat;Lon;E_m;N;Elevation\n1;2;3;4;5\n1,5;2;3;4;5.");
+  xyz.add("0.1 1 2 3 0 0 0.6 0.8\n0.2 1 2 3 0 0 0.8 0.6\n");
+  xyz.add("1 0 0 5 0 1 0 6 0 0 1 7\n0 5.5 3.25 1\n1 5.5 3.25 1\n2 5.25 3.5 1\n");
   const std::string matrix = "1 0 0 5 0 1 0 6 0 0 1 7";
   trajectory.add(std::string(1, '\0') + "# c\n" + matrix + "\n" + matrix + "\n");
   trajectory.add("\1" + matrix + " 0 0 0 1\n");

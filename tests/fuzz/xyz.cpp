@@ -1,4 +1,4 @@
-// Any bytes, read as XYZ or PTS text.
+// Any bytes, read as XYZ or PTS text: by what they say, and by columns that the caller chose.
 #include "io/formats/text/xyz_reader.hpp"
 #include "read_points.hpp"
 
@@ -7,7 +7,14 @@ using namespace clearway::test;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile input({data, size});
-  may_refuse([&] { read_twice(*read_xyz(InputBuffer(input.open(), InputBuffer::Access::kSeek))); });
-
+  const PointReadOptions ways[] = {
+      {}, {{"2", "3", "4"}, true}, {{"x", "z", "y"}, true}, {{"e", "2", "h"}, false}};
+  for (const PointReadOptions& options : ways) {
+    may_refuse([&] {
+      const auto reader = read_xyz(InputBuffer(input.open(), InputBuffer::Access::kSeek), options);
+      read_twice(*reader);
+      tell_lines(*reader);
+    });
+  }
   return 0;
 }

@@ -119,8 +119,7 @@ void add_convert(CLI::App& program) {
   command
       ->add_option("--scale", options->scale,
                    "Step of the stored integers in metres (default: that of the input, else the "
-                   "finest power "
-                   "of ten >= 1e-6 that fits)")
+                   "finest power of ten from 1e-6 to 1e-3 that fits)")
       ->type_name("METRES")
       ->transform(positive_length());
   command->add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")

@@ -31,8 +31,8 @@ class CoordinateRange {
   void add(const Vec3& p, std::size_t file, std::uint64_t point);
 
   bool empty() const { return count_ == 0; }
-  double lo(int axis) const { return extremes_[side(axis, 0)].front().at[axis]; }
-  double hi(int axis) const { return extremes_[side(axis, 1)].front().at[axis]; }
+  double lo(int axis) const { return extremes_[side(axis, false)].front().at[axis]; }
+  double hi(int axis) const { return extremes_[side(axis, true)].front().at[axis]; }
   /// The point with the least or greatest coordinate.
   const InputPoint& extreme(int axis, bool greatest) const {
     return extremes_[side(axis, greatest)].front();

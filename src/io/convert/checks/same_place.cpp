@@ -59,7 +59,7 @@ std::vector<PlaceQuanta> PlaceSample::candidates() const {
   // Half of what the share asks for, as a sample varies.
   const double least =
       std::max(kSamePlaceShare / 2 * static_cast<double>(sorted.size()),
-               static_cast<double>(kSamePlacePoints / 2) / static_cast<double>(1ULL << level_));
+               0.5 * static_cast<double>(kSamePlacePoints) / static_cast<double>(1ULL << level_));
   for (auto begin = sorted.begin(); begin != sorted.end();) {
     const auto end = std::upper_bound(begin, sorted.end(), *begin);
     if (static_cast<double>(end - begin) >= least) found.push_back(*begin);

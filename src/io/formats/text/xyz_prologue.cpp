@@ -68,8 +68,9 @@ class PrologueReader {
   }
 
   void note_comment(std::string_view line) {
-    const bool kept = comments_.size() < kMostCommentHeaders;
-    if (kept && !line.empty()) comments_.push_back({parse_table_header(line), input_.line()});
+    if (line.empty()) return;
+    comments_.insert(comments_.begin(), {parse_table_header(line), input_.line()});
+    if (comments_.size() > kMostCommentHeaders) comments_.pop_back();
   }
 
   void read_count(std::string_view line) {
@@ -173,12 +174,12 @@ class PrologueReader {
   void choose_columns(std::string_view line) {
     const char separator = separator_of(line);
     if (!options_.columns.empty()) return use_chosen(separator);
-    for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
-      const TableHeader& header = comment->header;
+    for (const Comment& comment : comments_) {
+      const TableHeader& header = comment.header;
       if (header.names.size() == out_.fields) {
         const std::string other = other_table(header);
         if (!other.empty()) {
-          fail("looks like " + other + ", by the comment in line " + std::to_string(comment->line) +
+          fail("looks like " + other + ", by the comment in line " + std::to_string(comment.line) +
                "; expected points with columns x, y and z");
         }
       }
@@ -189,7 +190,7 @@ class PrologueReader {
         return use(header, *columns, separator);
       }
       const bool one_way = out_.fields == 3 && std::is_sorted(columns->begin(), columns->end());
-      if (*columns != kFirstThree && !one_way) warn_of_misfit(*comment);
+      if (*columns != kFirstThree && !one_way) warn_of_misfit(comment);
     }
   }
 
@@ -201,6 +202,7 @@ class PrologueReader {
       if (!by_names || header.names.size() != out_.fields) continue;
       columns = by_names;
       named_by = &header;
+      break;
     }
     if (!columns) fail("no header names each of the columns " + wanted_columns() + " once", false);
     use(named_by ? *named_by : TableHeader{}, *columns, separator);
@@ -256,7 +258,7 @@ class PrologueReader {
   InputBuffer& input_;
   const PointReadOptions& options_;
   XyzPrologue out_;
-  std::vector<Comment> comments_;
+  std::vector<Comment> comments_;      ///< the last first
   std::optional<TableHeader> header_;  ///< the line of its own that names the columns
   bool all_named_ = false;             ///< every column has a name, or the caller chose three
 };

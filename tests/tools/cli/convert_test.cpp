@@ -1,0 +1,123 @@
+// The options of `convert` on inputs that are not as they should be.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/support/hall.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string rows(int count, const std::string& in_front = "") {
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    text += in_front + std::to_string(0.25 * (i % 40)) + " " + std::to_string(0.5 * i) + " 1.5\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("convert --json tells what was made") {
+  const Work work;
+  put_bytes(work.folder / "a.xyz", rows(100) + "nan 0 0\n");
+  const Outcome outcome =
+      work.run("convert --json " + work.path("a.xyz") + " -o " + work.path("a.h5"));
+  REQUIRE(outcome.exit_code == 0);
+  const json report = json::parse(outcome.out);
+  CHECK(report["was_finished"] == false);
+  CHECK(report["points"] == 100);
+  CHECK(report["cells"] == 1);
+  CHECK(report["non_finite"] == 1);
+  CHECK(report["absent"] == 0);
+  CHECK(report["scale"] == json{1e-6, 1e-6, 1e-6});
+  CHECK(report["offset"] == json{0.0, 0.0, 1.0});
+  CHECK(report["box"]["lo"] == json{0.0, 0.0, 1.5});
+  CHECK(report["box"]["hi"] == json{9.75, 49.5, 1.5});
+  CHECK(report["largest_change"] < 1e-6);
+  CHECK(report["output_bytes"] == fs::file_size(work.folder / "a.h5"));
+  CHECK(report["seconds"]["total"] >= report["seconds"]["count"]);
+  REQUIRE(report["warnings"].size() == 1);
+  CHECK(report["warnings"][0]["code"] == "non-finite-points");
+  CHECK(report["warnings"][0]["numbers"]["points"] == 1);
+  CHECK_THAT(outcome.err, Contains(report["warnings"][0]["message"].get<std::string>()));
+}
+
+TEST_CASE("convert --strict refuses warnings, and is silent where nothing is wrong") {
+  const Work work;
+  put_bytes(work.folder / "a.xyz", rows(100));
+  const std::string convert = "convert --strict " + work.path("a.xyz") + " ";
+  CHECK(work.run(convert + "-o " + work.path("a.h5")).exit_code == 0);
+  const Outcome twice = work.run(convert + work.path("a.xyz") + " -o " + work.path("b.h5"));
+  check_refused(twice, 3, "strict: 1 warning (same-scan)");
+  CHECK_THAT(twice.err, Contains("a.xyz is the same file as"));
+  CHECK_FALSE(fs::exists(work.folder / "b.h5"));
+  CHECK_FALSE(fs::exists(work.folder / "b.h5.partial"));
+}
+
+TEST_CASE("a table with numbers in front is refused, and read with --columns") {
+  const Work work;
+  std::string table, named = "point,north,east,up\n";
+  for (int i = 0; i < 20; ++i) {
+    const std::string line = std::to_string(i + 1) + ",5." + std::to_string(i) + ",6.5,7.5\n";
+    table += line;
+    named += line;
+  }
+  put_bytes(work.folder / "a.csv", table);
+  put_bytes(work.folder / "b.csv", named);
+  const std::string to = " -o " + work.path("a.h5") + " ";
+  const Outcome refused = work.run("convert " + work.path("a.csv") + to);
+  check_refused(refused, 3, "a.csv: line 1: looks like a table whose first column is the point's");
+  CHECK_THAT(refused.err, Contains("--columns 2,3,4"));
+  CHECK(work.run("convert --columns 3,2,4 " + work.path("a.csv") + to).exit_code == 0);
+  CHECK(work.run("convert --force --columns east,north,UP " + work.path("b.csv") + to).exit_code ==
+        0);
+  check_refused(work.run("convert --columns 3,2 " + work.path("a.csv") + to), 2, "columns");
+  check_refused(work.run("convert --columns 1,2,3 " + work.hall / "environment.las" + " -o " +
+                         work.path("b.h5")),
+                2, "no input is a text");
+}
+
+TEST_CASE("a trajectory as a scan, and as a model, is refused as what it is") {
+  const Work work;
+  fs::copy_file(work.hall.path("trajectory.txt"), work.folder / "path.txt");
+  check_refused(work.run("convert " + work.path("path.txt") + " -o " + work.path("a.h5")), 3,
+                "looks like a trajectory");
+  const Outcome run = work.run("run --env " + work.hall / "site.h5" + " --model " +
+                               work.path("path.txt") + " --trajectory " + work.path("path.txt") +
+                               " --radius 0.1 -o " + work.path("out.h5"));
+  check_refused(run, 3, "looks like a trajectory");
+  CHECK_THAT(run.err, !Contains("--columns"));
+}
+
+TEST_CASE("one bad file in a folder is refused with the remedy, which leaves it out") {
+  const Work work;
+  fs::create_directory(work.folder / "scans");
+  put_bytes(work.folder / "scans/a.xyz", rows(50));
+  put_bytes(work.folder / "scans/b.xyz", rows(70) + "1 2 what\n");
+  put_bytes(work.folder / "scans/c.xyz", rows(60));
+  const std::string convert = "convert " + work.path("scans") + " -o " + work.path("a.h5");
+  check_refused(work.run(convert), 3, "b.xyz: line 71");
+  CHECK_THAT(work.run(convert).err, Contains("--skip-unreadable"));
+  const Outcome outcome = work.run(convert + " --skip-unreadable --json");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("1 file is left out") && Contains("b.xyz: line 71"));
+  CHECK(json::parse(outcome.out)["points"] == 110);
+  CHECK(json::parse(outcome.out)["warnings"][0]["code"] == "skipped-files");
+  const Outcome again = work.run(convert + " --skip-unreadable --resume --json");
+  CHECK(json::parse(again.out)["was_finished"] == true);
+}
+
+TEST_CASE("one point far away is named with its line, and --scale accepts the steps") {
+  const Work work;
+  put_bytes(work.folder / "a.xyz", rows(100) + "1e9 2 3\n" + rows(10));
+  const std::string convert = "convert " + work.path("a.xyz") + " -o " + work.path("a.h5");
+  const Outcome refused = work.run(convert);
+  check_refused(refused, 3, "line 101: 1e+09 2 3");
+  CHECK_THAT(refused.err, Contains("--scale 1 accepts that step"));
+  CHECK(work.run(convert + " --scale 1").exit_code == 0);
+}
