@@ -38,7 +38,7 @@ void read_anything(const std::filesystem::path& path) {
     }
   };
   attempt([&] { read_all(path); });
-  attempt([&] { read_model(path, {.spacing = 0.5}); });
+  attempt([&] { read_model(path); });
   attempt([&] { read_all(*open_las_stream(File::open_for_reading(path))); });
   for (const auto format : {TrajectoryFormat::kAuto, TrajectoryFormat::kCsv}) {
     attempt([&] { read_trajectory(path, {format, true}); });
