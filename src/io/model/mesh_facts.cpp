@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "core/geometry/predicate.hpp"
@@ -18,7 +19,9 @@ struct Edge {
   std::uint32_t low, high;  ///< vertices
   bool upwards;             ///< runs from low to high
 
-  friend auto operator<=>(const Edge&, const Edge&) = default;
+  friend bool operator<(const Edge& a, const Edge& b) {
+    return std::tie(a.low, a.high, a.upwards) < std::tie(b.low, b.high, b.upwards);
+  }
 };
 
 /// The triangles over vertices of which no two are at the same place.

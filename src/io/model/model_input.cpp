@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBendToTell = 0.1;  // of the spacing
 
-void tell(std::vector<Message>& messages, const ModelInput& input, std::string text,
+void tell(std::vector<Message>& messages, const ModelInput& input, const std::string& text,
           std::vector<std::pair<std::string, double>> numbers = {}, std::string code = {}) {
   const auto severity = code.empty() ? Message::Severity::kNote : Message::Severity::kWarning;
   messages.push_back(
@@ -117,10 +117,10 @@ std::uint64_t unused_vertices(const TriangleMesh& mesh) {
 void tell_bend(const ModelInput& input, double spacing, std::vector<Message>& messages) {
   const double bend = input.remarks.largest_bend;
   if (!(bend > kBendToTell * spacing)) return;
-  std::string text = "a face with more than three corners is bent by " + format_brief(bend) +
-                     " m (" + input.remarks.largest_bend_at +
-                     "); how it is cut into triangles changes the surface by about as much";
-  if (bend <= spacing) return tell(messages, input, std::move(text));
+  const std::string text = "a face with more than three corners is bent by " + format_brief(bend) +
+                           " m (" + input.remarks.largest_bend_at +
+                           "); how it is cut into triangles changes the surface by about as much";
+  if (bend <= spacing) return tell(messages, input, text);
   tell(messages, input, text + ", which is more than the spacing. Export the mesh as triangles",
        {{"bend", bend}, {"spacing", spacing}}, "mesh-bent-faces");
 }

@@ -88,7 +88,7 @@ std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const st
   const std::vector<Vec3> vertices = used_vertices(mesh);
   check_spacing(vertices, spacing, name);
   const double expected = estimate(mesh, spacing);
-  if (expected > 4.0 * kMostSamples) refuse_spacing(mesh, spacing, expected, vertices, name);
+  if (expected > kMostSamples) refuse_spacing(mesh, spacing, expected, vertices, name);
   SurfaceCover cover(spacing, kMostSamples);
   for (const Vec3& vertex : vertices) cover.add(vertex);
   for (const auto& [a, b, c] : mesh.triangles) {
