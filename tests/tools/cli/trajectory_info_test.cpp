@@ -1,7 +1,8 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "clearway/trajectory.hpp"
 #include "support/sbet_bytes.hpp"
@@ -32,11 +33,21 @@ struct Files {
     put_bytes(folder / "model.xyz", "-1 -1 0\n3 1 1\n");
   }
 
-  Outcome info(const std::string& more) const {
-    return run_program(folder, "trajectory info " + more);
+  /// Words with a dot and a letter behind it are names of files in the folder.
+  Outcome run(const std::string& words) const {
+    std::istringstream in(words);
+    std::string all;
+    for (std::string word; in >> word;) {
+      const auto dot = word.find('.');
+      const bool name = dot != std::string::npos && dot + 1 < word.size() &&
+                        std::isalpha(static_cast<unsigned char>(word[dot + 1])) != 0;
+      all += (name ? quoted(folder / word) : word) + " ";
+    }
+    return run_program(folder, all);
   }
+  Outcome info(const std::string& more) const { return run("trajectory info " + more); }
   void convert(const std::string& scan, const std::string& store) const {
-    REQUIRE(run_program(folder, "convert " + scan + " -o " + store).exit_code == 0);
+    REQUIRE(run("convert " + scan + " -o " + store).exit_code == 0);
   }
 
   ScratchFolder folder;
@@ -140,8 +151,8 @@ TEST_CASE("run takes a trajectory's latitudes in the CRS of the store") {
   const std::string command =
       "run --env site.h5 --model model.xyz --trajectory path.sbet -o o.h5 "
       "--radius 0.1 ";
-  CHECK(run_program(files.folder, command).exit_code == 3);  // the store has none
-  const Outcome named = run_program(files.folder, command + "--trajectory-crs EPSG:32632");
+  CHECK(files.run(command).exit_code == 3);  // the store has none
+  const Outcome named = files.run(command + "--trajectory-crs EPSG:32632");
   CHECK(named.exit_code == 0);
   CHECK_THAT(named.err, Contains("heights are ellipsoidal"));
 }
