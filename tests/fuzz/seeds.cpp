@@ -9,6 +9,7 @@
 #include "support/las_bytes.hpp"
 #include "support/mesh_bytes.hpp"
 #include "support/pcd_bytes.hpp"
+#include "support/sbet_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -136,14 +137,23 @@ void write_text_seeds(Seeds xyz, Seeds trajectory) {
   xyz.add("0.1 1 2 3 0 0 0.6 0.8\n0.2 1 2 3 0 0 0.8 0.6\n");
   xyz.add("1 0 0 5 0 1 0 6 0 0 1 7\n0 5.5 3.25 1\n1 5.5 3.25 1\n2 5.25 3.5 1\n");
   const std::string matrix = "1 0 0 5 0 1 0 6 0 0 1 7";
-  trajectory.add(std::string(1, '\0') + "# c\n" + matrix + "\n" + matrix + "\n");
-  trajectory.add("\1" + matrix + " 0 0 0 1\n");
-  trajectory.add(
-      "\2"
-      "1.5 1 2 3 0 0 0 1\n");
-  trajectory.add("\3#timestamp [ns], p_x\n1403636579758555392,1,2,3,1,0,0,0\n");
-  trajectory.add("\4t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n");
-  trajectory.add("\4x;y;z;r00;r01;r02;r10;r11;r12;r20;r21;r22\n1;2;3;1;0;0;0;1;0;0;0;1\n");
+  const auto add = [&trajectory](char format, char options, const std::string& text) {
+    trajectory.add(std::string{format, options} + text);
+  };
+  add(0, 0, "# c\n" + matrix + "\n" + matrix + "\n");
+  add(1, 108, matrix + " 0 0 0 1\n// c\n");
+  add(2, 54, "1.5 1 2 3 0 0 0 1\n");
+  add(3, 0, "#timestamp [ns], p_x\n1403636579758555392,1,2,3,1,0,0,0\n");
+  add(4, 0, "t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n");
+  add(4, 0, "x;y;z;r00;r01;r02;r10;r11;r12;r20;r21;r22\n1;2;3;1;0;0;0;1;0;0;0;1\n");
+  add(0, 0, "x[mm],y[mm],z[mm],roll_deg,pitch_deg,heading_deg\n1,2,3,4,5,6\n7,8,9,1,2,300\n");
+  add(0, 8, "x y z roll pitch yaw\n1 2 3 0.4 0.5 6\n7 8 9 1 2 3\n");
+  add(0, 18, "lat,lon,height,roll_rad,pitch_rad,heading_rad\n48,9,300,0,0.1,2\n");
+  add(5, 0, "1 2 3 0 0 0 1\n");
+  add(6, 0, "1 2 3 1 0 0 0\n");
+  add(7, 18, SbetRecord().bytes() + SbetRecord{.heading = 1, .wander = 0.1}.bytes());
+  add(8, 0, "1 2 3\n10 20 30\n");
+  add(9, 0, "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n");
 }
 
 void write_mesh_seeds(Seeds seeds) {

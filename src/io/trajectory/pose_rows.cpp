@@ -59,8 +59,11 @@ Objection objection_to_count(std::string_view line, std::optional<std::size_t> c
 }
 
 PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
-                   const TrajectoryOptions& options, std::string name)
-    : format_(format), columns_(std::move(columns)), options_(options), name_(std::move(name)) {
+                   TrajectoryOptions options, std::string name)
+    : format_(format),
+      columns_(std::move(columns)),
+      options_(std::move(options)),
+      name_(std::move(name)) {
   std::span<const std::string> units;
   if (columns_) units = columns_->position_units;
   if (columns_ && columns_->geographic) units = units.subspan(2);

@@ -23,8 +23,8 @@ Objection objection_to_count(std::string_view line, std::optional<std::size_t> c
 class PoseRows {
  public:
   /// columns: of kCsv and kEuroc. name: of the file, for messages.
-  PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
-           const TrajectoryOptions& options, std::string name);
+  PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns, TrajectoryOptions options,
+           std::string name);
 
   /// Why the line is no pose; without text where it is one.
   Objection add(std::string_view line);

@@ -1,6 +1,7 @@
 #include "clearway/trajectory.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <span>
 #include <string>
@@ -102,12 +103,19 @@ void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& 
 }
 
 /// The model's origin, where the file has the positions of another point of the model.
-void apply_lever_arm(const Vec3& lever, std::vector<Pose>& poses) {
+void apply_lever_arm(const std::filesystem::path& path, const Vec3& lever,
+                     std::vector<Pose>& poses) {
   if (lever == Vec3{0, 0, 0}) return;
-  for (Pose& pose : poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
     for (int row = 0; row < 3; ++row) {
-      const double* r = pose.rotation + 3 * row;
-      pose.translation[row] -= r[0] * lever.x + r[1] * lever.y + r[2] * lever.z;
+      const double* r = poses[i].rotation + 3 * row;
+      double& coordinate = poses[i].translation[row];
+      coordinate -= r[0] * lever.x + r[1] * lever.y + r[2] * lever.z;
+      if (!std::isfinite(coordinate)) {
+        refuse(path.string(), "pose " + std::to_string(i) +
+                                  " and the lever arm give no finite "
+                                  "position");
+      }
     }
   }
 }
@@ -160,7 +168,7 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
     read_file(path, options, found);
   }
   refuse_useless(path, options, found);
-  apply_lever_arm(options.lever_arm, found.poses);
+  apply_lever_arm(path, options.lever_arm, found.poses);
   remark_times(path, found);
   auto doubts = doubts_about(found.poses, found.rotations, path.string());
   std::move(doubts.begin(), doubts.end(), std::back_inserter(found.remarks));

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "io/formats/text/column_names.hpp"
+#include "io/formats/text/text_number.hpp"
 #include "io/trajectory/trajectory_file.hpp"
 
 namespace clearway::tool {
@@ -34,32 +37,58 @@ void add_format(CLI::App& command, TrajectoryOptions& options) {
       ->check(CLI::IsMember(names));
 }
 
-void set_angles(TrajectoryOptions& options, const std::vector<std::string>& words) {
-  const auto declare = [](auto& what, auto value, const std::string& word) {
-    if (what != decltype(value)::kDeclared && what != value) {
-      throw CLI::ValidationError("--angles", word + " contradicts what stands before it");
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string_view> fields;
+  split_fields(text, ',', fields);
+  return {fields.begin(), fields.end()};
+}
+
+template <typename Value>
+void declare(Value& what, Value value, const std::string& word) {
+  if (what != Value::kDeclared && what != value) {
+    throw CLI::ValidationError("--angles", word + " contradicts what stands before it");
+  }
+  what = value;
+}
+
+void set_angles(TrajectoryOptions& options, const std::string& text) {
+  for (const std::string& word : parts_of(text)) {
+    if (word == "deg") {
+      declare(options.angle_unit, AngleUnit::kDegrees, word);
+    } else if (word == "rad") {
+      declare(options.angle_unit, AngleUnit::kRadians, word);
+    } else if (word == "ned") {
+      declare(options.angle_frame, AngleFrame::kNed, word);
+    } else if (word == "enu") {
+      declare(options.angle_frame, AngleFrame::kEnu, word);
+    } else {
+      throw CLI::ValidationError(
+          "--angles", word + ": expected deg or rad, and ned or enu, for example deg,ned");
     }
-    what = value;
-  };
-  for (const std::string& word : words) {
-    if (word == "deg") declare(options.angle_unit, AngleUnit::kDegrees, word);
-    if (word == "rad") declare(options.angle_unit, AngleUnit::kRadians, word);
-    if (word == "ned") declare(options.angle_frame, AngleFrame::kNed, word);
-    if (word == "enu") declare(options.angle_frame, AngleFrame::kEnu, word);
+  }
+}
+
+void set_lever_arm(Vec3& lever, const std::string& text) {
+  const auto parts = parts_of(text);
+  bool good = parts.size() == 3;
+  for (int k = 0; good && k < 3; ++k) {
+    const auto number = parse_whole_number(parts[k]);
+    good = number && std::isfinite(*number);
+    if (good) lever[k] = *number;
+  }
+  if (!good) {
+    throw CLI::ValidationError("--lever-arm",
+                               text + ": expected three numbers of metres, for example 1.2,0,1.5");
   }
 }
 
 void add_angles(CLI::App& command, TrajectoryOptions& options) {
   command
-      .add_option_function<std::vector<std::string>>(
-          "--angles",
-          [&options](const std::vector<std::string>& words) { set_angles(options, words); },
+      .add_option_function<std::string>(
+          "--angles", [&options](const std::string& text) { set_angles(options, text); },
           "Roll, pitch and yaw of the trajectory: deg or rad, and ned (heading clockwise from "
           "north) or enu (yaw counter-clockwise from east), for example deg,ned")
-      ->delimiter(',')
-      ->expected(1)
-      ->type_name("NAME,...")
-      ->check(CLI::IsMember({"deg", "rad", "ned", "enu"}));
+      ->type_name("NAME,...");
 }
 
 void add_map(CLI::App& command, TrajectoryOptions& options) {
@@ -86,19 +115,11 @@ void add_lengths(CLI::App& command, TrajectoryOptions& options) {
       ->type_name("UNIT")
       ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
   command
-      .add_option_function<std::vector<double>>(
+      .add_option_function<std::string>(
           "--lever-arm",
-          [&lever = options.lever_arm](const std::vector<double>& arm) {
-            if (arm.size() != 3 || !std::isfinite(arm[0] + arm[1] + arm[2])) {
-              throw CLI::ValidationError("--lever-arm",
-                                         "expected three numbers of metres, for example 1.2,0,1.5");
-            }
-            lever = {arm[0], arm[1], arm[2]};
-          },
+          [&lever = options.lever_arm](const std::string& text) { set_lever_arm(lever, text); },
           "Where the point that the trajectory gives, such as an antenna, lies in the model's "
           "frame, in metres")
-      ->delimiter(',')
-      ->expected(1)
       ->type_name("X,Y,Z");
 }
 
