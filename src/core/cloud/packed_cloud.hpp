@@ -33,6 +33,11 @@ class PackedCloud {
   /// safe. Throws InputError naming file and cell when the bytes are not those that were written.
   virtual std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const = 0;
 
+  /// The same for a look that is no part of a search: it does not count as a touch.
+  virtual std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const {
+    return coordinates(cell);
+  }
+
   /// Bytes of the packed x, y and z of a cell together.
   virtual std::uint64_t packed_bytes(std::uint32_t cell) const = 0;
 

@@ -70,6 +70,15 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates(std::uint32_t 
   return chunks;
 }
 
+std::array<PackedChunk<std::int32_t>, 3> StoreReader::peek(std::uint32_t cell) const {
+  std::array<PackedChunk<std::int32_t>, 3> chunks;
+  for (int axis = 0; axis < 3; ++axis) {
+    chunks[static_cast<std::size_t>(axis)] =
+        chunk<std::int32_t>(cell, axis, checked_chunk(cell, axis));
+  }
+  return chunks;
+}
+
 PackedChunk<std::uint64_t> StoreReader::sources(std::uint32_t cell) const {
   return chunk<std::uint64_t>(cell, 3, checked_chunk(cell, 3));
 }

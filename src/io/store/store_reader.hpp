@@ -40,6 +40,7 @@ class StoreReader final : public PackedCloud {
   std::span<const TreeNode> tree() const override { return tree_; }
   std::span<const BlockBox> blocks() const override { return index_.blocks; }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
+  std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const override;
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
   /// Reads the file, not the map: one call where x, y and z are adjacent in it.
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,

@@ -10,8 +10,8 @@
 namespace clearway {
 namespace {
 
-// Shares of the motion along one axis of the model. 0.8: 27 degrees aside on average.
-constexpr double kAlongAxis = 0.8;
+// Shares of the motion along one axis of the model. 0.9: 18 degrees aside on average.
+constexpr double kAlongAxis = 0.9;
 constexpr double kSurelyAlongAxis = 0.95;
 
 double greatest_share(const Vec3& shares) { return std::max({shares.x, shares.y, shares.z}); }
@@ -102,6 +102,14 @@ bool hardly_turns(const Question& question) {
   });
 }
 
+/// Whether it moves as a vehicle does all the same, in steps much too small.
+bool is_small_drive(const Question& question, double across) {
+  constexpr double kPieces = 50;
+  if (!(across > 0)) return false;
+  const Drive drive(question.query, across / kPieces);
+  return drive.is_one() && greatest_share(drive.along_axes()) > kSurelyAlongAxis;
+}
+
 void warn_of_tiny_path(const Question& question, MessageLog& log) {
   const auto& poses = question.query.poses;
   constexpr std::size_t kMany = 10;
@@ -113,7 +121,8 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
     path = united(path, {p, p});
   }
   const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
-  if (!(across < longest / 4) || !hardly_turns(question)) return;
+  if (!(across < longest / 4)) return;
+  if (!hardly_turns(question) && !is_small_drive(question, across)) return;
   log.warn("tiny-path",
            "all " + format_count(poses.size()) + " poses lie within " +
                length_text(across, question.unit) + ", and the model is " +

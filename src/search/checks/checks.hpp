@@ -10,6 +10,9 @@ namespace clearway {
 /// The path passes where nothing was scanned: "out-of-reach", "leaves-scan".
 void check_reach(const Question& question, MessageLog& log);
 
+/// The model never comes down to the ground: "floats". Reads a few points.
+void check_height(const Question& question, MessageLog& log);
+
 /// Unit and frame of the model: "model-size", "model-origin", "model-is-environment".
 void check_model(const Question& question, MessageLog& log);
 

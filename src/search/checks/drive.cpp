@@ -30,6 +30,8 @@ std::array<double, 9> rotation_of(const std::array<double, 4>& q) {
           2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
 }
 
+constexpr double kShortest = 0.5;  ///< metres: farther than positions wander at rest
+
 }  // namespace
 
 std::array<double, 9> reread(const double* r, Reading reading) {
@@ -50,10 +52,12 @@ std::array<double, 9> reread(const double* r, Reading reading) {
   return {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]};
 }
 
-Drive::Drive(const Question& question) {
-  constexpr double kShortest = 0.5;  // metres: farther than positions wander at rest
-  const double length = std::max(Sides(question.model).longest / 2, kShortest * question.metre);
-  const auto& poses = question.query.poses;
+Drive::Drive(const Question& question)
+    : Drive(question.query,
+            std::max(Sides(question.model).longest / 2, kShortest * question.metre)) {}
+
+Drive::Drive(const Query& query, double length) {
+  const auto& poses = query.poses;
   std::size_t from = 0;
   for (std::size_t to = 1; to < poses.size(); ++to) {
     const Vec3 way = difference(translation_of(poses[to]), translation_of(poses[from]));

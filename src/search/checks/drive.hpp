@@ -19,6 +19,8 @@ std::array<double, 9> reread(const double* rotation, Reading reading);
 class Drive {
  public:
   explicit Drive(const Question& question);
+  /// In pieces of this length.
+  Drive(const Query& query, double length);
 
   std::size_t pieces() const { return pieces_.size(); }
   /// Enough pieces to tell how it moves.

@@ -121,7 +121,20 @@ class Trial {
   }
 
   bool helps(Change change) const {
+    if (shrinks(change)) return false;
     return most_of([&](const Pose& pose) { return cover_.covers(moved(slice_, change(pose))); });
+  }
+
+  /// A path much shorter than the model fits at any place: that is no hint.
+  bool shrinks(Change change) const {
+    const Vec3 lo = translation_of(change(at_corner(path_.lo)));
+    const Vec3 hi = translation_of(change(at_corner(path_.hi)));
+    const double longest = Sides(question_.model).longest;
+    return half_diagonal(path_) > longest && half_diagonal({lo, hi}) < longest / 2;
+  }
+
+  static Pose at_corner(const Vec3& corner) {
+    return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {corner.x, corner.y, corner.z}};
   }
 
   bool looks_like_degrees() const {

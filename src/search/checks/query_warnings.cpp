@@ -35,6 +35,7 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
   }
   const Question question(store, unit, query);
   check_reach(question, log);
+  check_height(question, log);
   check_model(question, log);
   check_model_spacing(question, log);
   check_radius(question, log);

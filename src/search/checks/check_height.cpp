@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "search/checks/checks.hpp"
+#include "search/checks/ground.hpp"
+#include "search/checks/path_cover.hpp"
+#include "search/checks/words.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kLookedAt = 32;  ///< poses
+// Metres.
+constexpr double kLeast = 0.5;
+constexpr double kSteady = 0.5;
+/// Of the poses that are high up, and of the heights: the others may be beside vegetation or noise.
+constexpr double kMost = 0.75;
+
+/// The inner part of a slice of the model, so that walls and kerbs beside it do not count.
+Box inner_body(const Box& model) {
+  constexpr double kInner = 0.6;
+  Box body = body_slice(model);
+  const Vec3 centre = centre_of(body);
+  for (int k = 0; k < 2; ++k) {
+    const double half = kInner * (body.hi[k] - body.lo[k]) / 2;
+    body.lo[k] = centre[k] - half;
+    body.hi[k] = centre[k] + half;
+  }
+  return body;
+}
+
+/// The heights above ground of the poses, ascending; empty as soon as too few are high up.
+std::vector<double> heights_of(const Question& question) {
+  const Ground ground(question.cloud);
+  const Box body = inner_body(question.model);
+  const auto poses = spread_poses(question.query.poses.size(), kLookedAt);
+  const auto may_be_low = static_cast<std::size_t>((1 - kMost) * static_cast<double>(poses.size()));
+  std::vector<double> heights;
+  std::size_t low = 0;
+  for (const std::uint32_t i : poses) {
+    const auto height = ground.height_of(body, question.query.poses[i]);
+    if (height && *height >= kLeast * question.metre) {
+      heights.push_back(*height);
+    } else if (++low > may_be_low) {
+      return {};
+    }
+  }
+  std::sort(heights.begin(), heights.end());
+  return heights;
+}
+
+}  // namespace
+
+void check_height(const Question& question, MessageLog& log) {
+  std::vector<double> heights;
+  try {
+    heights = heights_of(question);
+  } catch (const InputError&) {
+    return;  // a damaged cell is for the search to meet, where it matters
+  }
+  if (heights.size() < 2) return;
+  const auto at = [&](double share) {
+    return heights[static_cast<std::size_t>(share * static_cast<double>(heights.size() - 1))];
+  };
+  const double usual = at(0.5), spread = at(0.9) - at(0.1);
+  if (spread > std::max(kSteady * question.metre, usual / 4)) return;
+  log.warn("floats",
+           "along the path the model stays " + length_text(usual, question.unit) +
+               " above the highest point below it, and touches no ground. Does it fly or hang? If "
+               "not, its heights have another zero: an antenna's, an ellipsoid's, or the model's",
+           {{"height", usual}, {"spread", spread}});
+}
+
+}  // namespace clearway
