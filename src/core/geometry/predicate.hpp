@@ -96,7 +96,10 @@ CLEARWAY_HD inline bool collides_inside(const Vec3& e, const Vec3& a, const Vec3
 /// decided as at its pose, so a hit at a pose is a hit on the way to it and on the way from it.
 CLEARWAY_HD inline bool collides_on_way(const Vec3& e, const Vec3& a, const Vec3& b,
                                         double radius) {
-  return collides(e, a, radius) | collides_inside(e, a, b, radius) | collides(e, b, radius);
+  const bool at_a = collides(e, a, radius);
+  const bool inside = collides_inside(e, a, b, radius);
+  const bool at_b = collides(e, b, radius);
+  return at_a | inside | at_b;
 }
 
 }  // namespace clearway
