@@ -10,7 +10,7 @@ install_missing_packages
 seconds=${1:-60}
 targets=("${@:2}")
 [ ${#targets[@]} -gt 0 ] ||
-  targets=(las ply xyz trajectory packed_chunk store store_values result journal)
+  targets=(las laz ply xyz trajectory packed_chunk store store_values result journal)
 
 cmake --preset fuzz
 cmake --build build/fuzz

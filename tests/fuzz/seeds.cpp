@@ -6,6 +6,7 @@
 #include "io/journal/journal.hpp"
 #include "support/clouds.hpp"
 #include "support/las_bytes.hpp"
+#include "support/laz_samples.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -40,6 +41,24 @@ void write_las_seeds(Seeds seeds) {
           {"LASF_Projection", 2112, "PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"US survey foot\",0.3048]]"}};
     }
     seeds.add(las.build());
+  }
+}
+
+/// Whole files, and the same points behind the settings of laz.cpp.
+void write_laz_seeds(Seeds seeds) {
+  for (const unsigned format : kLazFormats) {
+    LazBytes laz = laz_bytes(format, 60);
+    laz.chunks = {25};
+    laz.variable = format % 2 == 1;
+    seeds.add(laz.build());
+    laz.variable = false;
+    laz.chunks = {51};
+    laz.las.extra_bytes = 1;
+    for (const auto table : {LazBytes::Table::kNone, LazBytes::Table::kAtEnd}) {
+      laz.table = table;
+      const char setting = static_cast<char>(format < 6 ? format : format - 2);
+      seeds.add(std::string{setting, 1, 60, 0, 1} + laz.build().substr(laz.head(60).size()));
+    }
   }
 }
 
@@ -162,6 +181,7 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path folder = argv[1];
   write_las_seeds({folder, "las"});
+  write_laz_seeds({folder, "laz"});
   write_ply_seeds({folder, "ply"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});
   write_chunk_seeds({folder, "packed_chunk"});

@@ -4,6 +4,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "support/las_bytes.hpp"
+#include "support/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -50,6 +51,8 @@ void read_anything(const std::filesystem::path& path) {
 TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
   const std::pair<const char*, std::string> samples[] = {
       {"a.las", las_sample()},
+      {"a.laz", laz_bytes(1, 40).build()},
+      {"b.laz", laz_bytes(7, 40).build()},
       {"a.ply", ply_sample("binary_little_endian") + std::string(100, '\1')},
       {"b.ply", ply_sample("binary_big_endian") + std::string(100, '\1')},
       {"c.ply", ply_sample("ascii") + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n"},

@@ -2,6 +2,7 @@
 
 #include "io/formats/point_reader.hpp"
 #include "support/las_bytes.hpp"
+#include "support/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -10,6 +11,7 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("content counts more than the ending of the name") {
   ReaderScratch scratch;
+  CHECK(read_all(scratch.write("a.ply", laz_bytes(0, 20).build())).quanta.size() == 20);
   CHECK(read_all(scratch.write("a.xyz", LasBytes().build())).quanta.size() == 3);
   CHECK(read_all(scratch.write("b",
                                "ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\n"
