@@ -49,9 +49,9 @@ struct ConvertReport {
   std::vector<Message> warnings = {};
 };
 
-/// Turns scans (LAS, PLY, XYZ text; files and folders, or "-" alone for LAS on standard input) into
-/// a store. Throws UsageError, InputError, ResourceError; Interrupted when asked to stop. Whatever
-/// happens, nothing stands under the output's name that is not complete.
+/// Turns scans (LAS, LAZ, PLY, XYZ text; files and folders, or "-" alone for LAS or LAZ on standard
+/// input) into a store. Throws UsageError, InputError, ResourceError; Interrupted when asked to
+/// stop. Whatever happens, nothing stands under the output's name that is not complete.
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options = {});
 

@@ -7,6 +7,7 @@
 #include "support/clouds.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
+#include "support/laz_samples.hpp"
 #include "support/mesh_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 #include "support/sbet_bytes.hpp"
@@ -73,6 +74,24 @@ void write_e57_seeds(Seeds seeds) {
     one.page = 128;
     one.scans = {scan};
     seeds.add('\2' + one.content().bytes);
+  }
+}
+
+/// Whole files, and the same points behind the settings of laz.cpp.
+void write_laz_seeds(Seeds seeds) {
+  for (const unsigned format : kLazFormats) {
+    LazBytes laz = laz_bytes(format, 60);
+    laz.chunks = {25};
+    laz.variable = format % 2 == 1;
+    seeds.add(laz.build());
+    laz.variable = false;
+    laz.chunks = {51};
+    laz.las.extra_bytes = 1;
+    for (const auto table : {LazBytes::Table::kNone, LazBytes::Table::kAtEnd}) {
+      laz.table = table;
+      const char setting = static_cast<char>(format < 6 ? format : format - 2);
+      seeds.add(std::string{setting, 1, 60, 0, 1} + laz.build().substr(laz.head(60).size()));
+    }
   }
 }
 
@@ -262,6 +281,7 @@ int main(int argc, char** argv) {
   write_las_seeds({folder, "las"});
   write_e57_seeds({folder, "e57"});
   write_pcd_seeds({folder, "pcd"});
+  write_laz_seeds({folder, "laz"});
   write_ply_seeds({folder, "ply"});
   write_ptx_seeds({folder, "ptx"});
   write_text_seeds({folder, "xyz"}, {folder, "trajectory"});

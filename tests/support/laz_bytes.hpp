@@ -21,16 +21,22 @@ struct LazBytes {
   bool chunked = true;    ///< formats 0 to 3: false is compressor 1
   Table table = Table::kAtPoints;
 
-  std::string build() const {
-    LasBytes head = las;
-    head.points.clear();
-    head.evlrs.clear();
-    head.vlrs.push_back({"laszip encoded", 22204, scheme()});
-    std::string bytes = head.build();
+  /// Everything before the points, which are to be so many.
+  std::string head(std::uint64_t count) const {
+    LasBytes start = las;
+    start.points.clear();
+    start.evlrs.clear();
+    start.vlrs.push_back({"laszip encoded", 22204, scheme()});
+    std::string bytes = start.build();
     LasBytes::put(bytes, 104, static_cast<std::uint8_t>(las.format | 0x80));
     const bool legacy = las.minor < 4 || las.format < 6;
-    LasBytes::put(bytes, 107, static_cast<std::uint32_t>(legacy ? points.size() : 0));
-    if (las.minor == 4) LasBytes::put<std::uint64_t>(bytes, 247, points.size());
+    LasBytes::put(bytes, 107, static_cast<std::uint32_t>(legacy ? count : 0));
+    if (las.minor == 4) LasBytes::put(bytes, 247, count);
+    return bytes;
+  }
+
+  std::string build() const {
+    std::string bytes = head(points.size());
     append_points(bytes);
     if (!las.evlrs.empty()) {
       LasBytes::put<std::uint64_t>(bytes, 235, bytes.size());

@@ -110,8 +110,10 @@ void add_convert(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("convert", "Turn scans into a store, the one file that runs read");
   command
-      ->add_option("INPUT", options->inputs,
-                   "Scans (LAS, PLY, XYZ text), folders of scans, or - for LAS on standard input")
+      ->add_option(
+          "INPUT", options->inputs,
+          "Scans (LAS, LAZ, PLY, XYZ text), folders of scans, or - for LAS or LAZ on standard "
+          "input")
       ->required();
   command->add_option("-o,--output", options->output, "The store, an HDF5 file")
       ->type_name("FILE")
@@ -153,8 +155,7 @@ void add_convert(CLI::App& program) {
   command->add_flag("--json", options->json, "Print one JSON object about the conversion");
   command->footer(
       "Needs temporary disk space beside the output: 20 bytes a point, 32 from standard input.\n"
-      "For LAZ and other formats, pipe LAS:\n"
-      "  pdal translate in.laz STDOUT --writer las | clearway convert - -o site.h5\n"
+      "Standard input is LAS or LAZ: clearway convert - -o site.h5 < scan.las\n"
       "Example: clearway convert scans/ -o site.h5 --memory 2G");
   command->callback([options] {
     run_stoppable(options->output, "the same command starts it again, from the beginning",

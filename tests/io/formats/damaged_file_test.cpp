@@ -6,6 +6,7 @@
 #include "clearway/trajectory.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
+#include "support/laz_samples.hpp"
 #include "support/mesh_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
@@ -69,6 +70,8 @@ TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
   const std::pair<const char*, std::string> samples[] = {
       {"a.las", las_sample()},
       {"a.e57", e57_sample()},
+      {"a.laz", laz_bytes(1, 40).build()},
+      {"b.laz", laz_bytes(7, 40).build()},
       {"a.ply", ply_sample("binary_little_endian") + std::string(100, '\1')},
       {"b.ply", ply_sample("binary_big_endian") + std::string(100, '\1')},
       {"c.ply", ply_sample("ascii") + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n"},

@@ -3,6 +3,7 @@
 #include "io/formats/point_reader.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
+#include "support/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -11,6 +12,7 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("content counts more than the ending of the name") {
   ReaderScratch scratch;
+  CHECK(read_all(scratch.write("a.ply", laz_bytes(0, 20).build())).quanta.size() == 20);
   CHECK(read_all(scratch.write("a.xyz", LasBytes().build())).quanta.size() == 3);
   E57Bytes e57;
   e57.scans = {e57_scan({1, 2}, {3, 4}, {5, 6})};

@@ -223,13 +223,3 @@ TEST_CASE("variable length records must end before the points, extended ones wit
   CHECK_THAT(refusal_with<std::uint64_t>(tail, start + 20, ~std::uint64_t{0}),
              Contains("reference system"));
 }
-
-TEST_CASE("LAZ is recognised and refused with advice") {
-  const unsigned bit = GENERATE(0x80u, 0x40u);
-  LasBytes las;
-  las.format = 1;
-  CHECK_THAT(refusal_with(las, 104, static_cast<std::uint8_t>(1 | bit)),
-             Contains("LAZ") && Contains("pdal") && Contains("`-`"));
-  las.vlrs = {{"laszip encoded", 22204, "payload"}};
-  CHECK_THAT(refusal_of_bytes(las.build()), Contains("LAZ"));
-}
