@@ -121,7 +121,8 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
     path = united(path, {p, p});
   }
   const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
-  if (!(across < longest / 4)) return;
+  constexpr double kHuge = 200;  // metres: then the model's unit is what is wrong
+  if (!(across < longest / 4) || longest > kHuge * question.metre) return;
   if (!hardly_turns(question) && !is_small_drive(question, across)) return;
   log.warn("tiny-path",
            "all " + format_count(poses.size()) + " poses lie within " +

@@ -89,13 +89,14 @@ class Trial {
     if (question_.unit != LengthUnit::kDegree && looks_like_degrees()) {
       return "The path's positions look like degrees. Convert them to the scan's coordinates";
     }
-    for (const Hypothesis& hypothesis : kHypotheses) {
-      if (helps(hypothesis.change)) return hypothesis.sentence;
-    }
     if (const auto height = height_difference()) {
       return "In plan the path fits, but it lies " + length_text(std::abs(*height), unit()) +
              (*height > 0 ? " above" : " below") +
-             " the scan: heights may refer to different zeros, such as ellipsoid and sea level";
+             " what was scanned: heights may refer to different zeros, such as ellipsoid and sea "
+             "level";
+    }
+    for (const Hypothesis& hypothesis : kHypotheses) {
+      if (helps(hypothesis.change)) return hypothesis.sentence;
     }
     return shift();
   }

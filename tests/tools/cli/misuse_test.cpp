@@ -41,7 +41,7 @@ struct Site {
 
 TEST_CASE("a radius that is no finite length above 0 is refused") {
   const Site site;
-  for (const char* radius : {"nan", "inf", "0", "-1", "0.1m", "0,1", "1e400"}) {
+  for (const char* radius : {"nan", "inf", "0", "-1", "0.1x", "0,1", "1e400"}) {
     const Outcome outcome =
         site.search(std::string("--radius ") + radius + " -o " + site.path("r.h5"));
     INFO(radius);

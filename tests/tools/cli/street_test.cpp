@@ -154,6 +154,20 @@ TEST_CASE("the street gives the known answer") {
   check_street(folder, "0.1", 78'439, 0xd4d727161424e54f);
 }
 
+TEST_CASE("the street is warned of its steps and of nothing else") {
+  const ScratchFolder folder;
+  convert_street(folder, "");
+  const std::string run = "run --strict --env " + quoted(folder / "street.h5") + " --model " +
+                          quoted(street("beetle.ply")) + " --trajectory " +
+                          quoted(street("trajectory.txt")) + " --radius 0.1 -o " +
+                          quoted(folder / "out.h5");
+  const Outcome outcome = run_program(folder, run);
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, Contains("at 153 of 153 steps") && Contains("--between-poses") &&
+                              Contains("strict: 1 warning (large-steps)"));
+  CHECK(run_program(folder, run + " --between-poses").exit_code == 0);
+}
+
 TEST_CASE("a piece of the street gives what brute force gives, also far from the origin") {
   Crop crop;
   REQUIRE(crop.points.size() > 5000);

@@ -1,0 +1,302 @@
+// Questions that may be misread, asked of the built program as users ask them. With --strict the
+// program tells all warnings and refuses to search, which is fast.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
+#include "io/trajectory/trajectory_writer.hpp"
+#include "support/store_fixture.hpp"
+#include "tools/cli/support/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// A scene dense enough that nothing is to be warned of, made once.
+class Scene {
+ public:
+  Scene(const std::string& kind, const std::string& sizes) {
+    const Outcome made =
+        run_program(folder, "scene " + kind + " " + sizes + " -o " + quoted(folder / ""));
+    const Outcome converted = run_program(folder, "convert " + quoted(folder / "environment.las") +
+                                                      " -o " + quoted(folder / "site.h5"));
+    if (made.exit_code != 0 || converted.exit_code != 0) throw std::runtime_error("no scene");
+    model = read_model(folder / "model.ply");
+    poses = read_trajectory(folder / "trajectory.txt");
+  }
+  static const Scene& hall() {
+    static const Scene scene("hall", "--points 100000 --model-points 20000 --poses 2000");
+    return scene;
+  }
+
+  ScratchFolder folder;
+  std::vector<Vec3> model;
+  std::vector<Pose> poses;
+};
+
+/// The hall's question, to be spoilt.
+struct Asked {
+  std::vector<Vec3> model = Scene::hall().model;
+  std::vector<Pose> poses = Scene::hall().poses;
+  std::string radius = "0.1";
+  std::string options = "";
+
+  void move_model(const std::function<Vec3(const Vec3&)>& change) {
+    for (Vec3& p : model) p = change(p);
+  }
+  void move_path(const std::function<Vec3(const Vec3&)>& change) {
+    for (Pose& pose : poses) {
+      const Vec3 p = change({pose.translation[0], pose.translation[1], pose.translation[2]});
+      for (int k = 0; k < 3; ++k) pose.translation[k] = p[k];
+    }
+  }
+  void turn(const std::function<void(double*)>& change) {
+    for (Pose& pose : poses) change(pose.rotation);
+  }
+
+  Outcome ask(const std::string& environment) const {
+    const ScratchFolder folder;
+    write_ply(folder / "model.ply", model);
+    NoProgress progress;
+    write_trajectory(poses, File::create(folder / "path.txt"), progress);
+    const Outcome outcome = run_program(
+        folder, "run --strict --env " + environment + " --model " + quoted(folder / "model.ply") +
+                    " --trajectory " + quoted(folder / "path.txt") + " --radius " + radius +
+                    " -o " + quoted(folder / "out.h5") + " " + options);
+    CHECK(std::filesystem::exists(folder / "out.h5") == (outcome.exit_code == 0));
+    return outcome;
+  }
+  Outcome ask() const { return ask(quoted(Scene::hall().folder / "site.h5")); }
+};
+
+/// The codes of the refusal of a strict call: "strict: 2 warnings (a, b), expected none".
+std::string codes_of(const Outcome& outcome) {
+  if (outcome.exit_code == 0) return "";
+  REQUIRE(outcome.exit_code == 3);
+  const std::size_t from = outcome.err.find("warning", outcome.err.find("strict: "));
+  const std::size_t open = outcome.err.find('(', from);
+  return outcome.err.substr(open + 1, outcome.err.find(')', open) - open - 1);
+}
+
+/// Leaves every n-th.
+template <typename Value>
+void thin(std::vector<Value>& values, std::size_t n) {
+  std::vector<Value> few;
+  for (std::size_t i = 0; i < values.size(); i += n) few.push_back(values[i]);
+  values = few;
+}
+
+Vec3 scaled(const Vec3& p, double by) { return {p.x * by, p.y * by, p.z * by}; }
+
+void transpose(double* r) {
+  std::swap(r[1], r[3]);
+  std::swap(r[2], r[6]);
+  std::swap(r[5], r[7]);
+}
+
+}  // namespace
+
+TEST_CASE("nothing is warned of where nothing is wrong") {
+  CHECK(codes_of(Asked().ask()).empty());
+  for (const auto& [kind, sizes, codes] : std::vector<std::array<std::string, 3>>{
+           {"plant", "--points 300000 --model-points 20000 --poses 16000", ""},
+           {"mine", "--points 200000 --model-points 40000 --poses 12000", ""},
+           {"tunnel", "--points 200000 --poses 19392", "model-spacing"}}) {
+    CAPTURE(kind);
+    const Scene scene(kind, sizes);
+    Asked asked;
+    asked.model = scene.model;
+    asked.poses = scene.poses;
+    CHECK(codes_of(asked.ask(quoted(scene.folder / "site.h5"))) == codes);
+  }
+}
+
+TEST_CASE("a path in another unit or frame is warned of, with the remedy") {
+  struct Mistake {
+    std::function<Vec3(const Vec3&)> change;
+    const char *code, *remedy;
+  };
+  const std::vector<Mistake> mistakes{
+      {[](const Vec3& p) { return scaled(p, 1000); }, "out-of-reach", "divided by 1000"},
+      {[](const Vec3& p) { return scaled(p, 100); }, "out-of-reach", "divided by 100"},
+      {[](const Vec3& p) { return scaled(p, 1 / 0.3048); }, "leaves-scan", "multiplied by 0.3048"},
+      {[](const Vec3& p) { return scaled(p, 0.001); }, "tiny-path", "kilometres"},
+      {[](const Vec3& p) {
+         return Vec3{p.y, p.x, p.z};
+       },
+       "leaves-scan", "x and y swapped"},
+      {[](const Vec3& p) {
+         return Vec3{p.x, -p.z, p.y};
+       },
+       "leaves-scan", ""},
+      {[](const Vec3& p) {
+         return Vec3{p.x + 691'000, p.y + 5'336'000, p.z + 520};
+       },
+       "out-of-reach", "A shift of the path by about"},
+      {[](const Vec3& p) {
+         return Vec3{p.x, p.y, p.z + 47};
+       },
+       "out-of-reach", "above what was scanned"},
+      {[](const Vec3& p) {
+         return Vec3{p.x, p.y, p.z + 12};
+       },
+       "floats", "another zero"}};
+  for (const Mistake& mistake : mistakes) {
+    CAPTURE(mistake.code, mistake.remedy);
+    Asked asked;
+    asked.move_path(mistake.change);
+    const Outcome outcome = asked.ask();
+    CHECK_THAT(codes_of(outcome), Contains(mistake.code));
+    CHECK_THAT(outcome.err, Contains(mistake.remedy));
+  }
+}
+
+TEST_CASE("inverted poses are warned of") {
+  Asked asked;
+  for (Pose& pose : asked.poses) {
+    Pose inverse{};
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        inverse.rotation[3 * k + j] = pose.rotation[3 * j + k];
+        inverse.translation[k] -= pose.rotation[3 * j + k] * pose.translation[j];
+      }
+    }
+    pose = inverse;
+  }
+  const Outcome outcome = asked.ask();
+  CHECK_THAT(codes_of(outcome), Contains("leaves-scan"));
+  CHECK_THAT(outcome.err, Contains("every pose inverted"));
+}
+
+TEST_CASE("a path whose rotations were misread is warned of") {
+  struct Mistake {
+    std::function<void(double*)> change;
+    const char *code, *remedy;
+  };
+  const std::vector<Mistake> mistakes{{transpose, "rotations", "rotations are transposed"},
+                                      {[](double* r) {
+                                         for (int k = 0; k < 9; ++k) r[k] = k % 4 == 0 ? 1 : 0;
+                                       },
+                                       "rotations", "lack their rotations"},
+                                      {[](double* r) {  // z down
+                                         for (const int k : {1, 2, 4, 5, 7, 8}) r[k] = -r[k];
+                                       },
+                                       "tilted", "points down"},
+                                      {[](double* r) {  // x right, y down, z forward
+                                         for (double* row = r; row != r + 9; row += 3) {
+                                           const double forward = row[0], left = row[1],
+                                                        up = row[2];
+                                           row[0] = -left, row[1] = -up, row[2] = forward;
+                                         }
+                                       },
+                                       "tilted", "a camera's"}};
+  for (const Mistake& mistake : mistakes) {
+    CAPTURE(mistake.remedy);
+    Asked asked;
+    asked.turn(mistake.change);
+    const Outcome outcome = asked.ask();
+    CHECK_THAT(codes_of(outcome), Contains(mistake.code));
+    CHECK_THAT(outcome.err, Contains(mistake.remedy));
+  }
+}
+
+TEST_CASE("a model in another unit or frame is warned of") {
+  struct Mistake {
+    std::function<Vec3(const Vec3&)> change;
+    const char *code, *remedy;
+  };
+  const std::vector<Mistake> mistakes{
+      {[](const Vec3& p) { return scaled(p, 1000); }, "model-size", "In millimetres it would be"},
+      {[](const Vec3& p) { return scaled(p, 100); }, "model-size", "it would be"},
+      {[](const Vec3& p) { return scaled(p, 1 / 0.0254); }, "model-size", "it would be"},
+      {[](const Vec3& p) { return scaled(p, 0.001); }, "model-size", "check its unit"},
+      {[](const Vec3& p) {
+         return Vec3{p.x + 691'000, p.y + 5'336'000, p.z};
+       },
+       "model-origin", "from the origin of their frame"},
+      {[](const Vec3& p) {
+         return Vec3{-p.y, p.x, p.z};
+       },
+       "sideways", "drives sideways"}};
+  for (const Mistake& mistake : mistakes) {
+    CAPTURE(mistake.code, mistake.remedy);
+    Asked asked;
+    asked.move_model(mistake.change);
+    const Outcome outcome = asked.ask();
+    CHECK_THAT(codes_of(outcome), Contains(mistake.code));
+    CHECK_THAT(outcome.err, Contains(mistake.remedy));
+  }
+}
+
+TEST_CASE("the scan itself as the model is warned of") {
+  Asked asked;
+  asked.model = read_model(Scene::hall().folder / "environment.las");
+  CHECK_THAT(codes_of(asked.ask()), Contains("model-is-environment"));
+}
+
+TEST_CASE("a radius in another unit, and gaps that let things through, are warned of") {
+  const auto codes = [](const std::function<void(Asked&)>& change) {
+    Asked asked;
+    change(asked);
+    return codes_of(asked.ask());
+  };
+  CHECK(codes([](Asked& asked) { asked.radius = "100"; }) == "radius-size");
+  CHECK_THAT(codes([](Asked& asked) { asked.radius = "0.0005"; }), Contains("fine-radius"));
+  CHECK_THAT(codes([](Asked& asked) { thin(asked.model, 200); }), Contains("model-spacing"));
+  const auto sparse = [](Asked& asked) { thin(asked.poses, 20); };
+  CHECK(codes(sparse) == "large-steps");
+  CHECK(codes([&](Asked& asked) {
+          sparse(asked);
+          asked.options = "--between-poses";
+        }).empty());
+}
+
+TEST_CASE("a scan that does not cover the whole path is warned of") {
+  const ScratchFolder folder;
+  const auto reader = open_point_file(Scene::hall().folder / "environment.las");
+  const Quantisation quantisation = *reader->info().quantisation;
+  std::vector<Quantum> kept;
+  for (PointBatch batch; reader->read(batch);) {
+    for (const Quantum& q : batch.quanta) {
+      const double x = coordinate(quantisation, 0, q[0]);
+      if (x < 20 || x > 60) kept.push_back(q);
+    }
+  }
+  write_las(folder / "gap.las", kept, quantisation);
+  REQUIRE(run_program(folder,
+                      "convert " + quoted(folder / "gap.las") + " -o " + quoted(folder / "gap.h5"))
+              .exit_code == 0);
+  const Outcome outcome = Asked().ask(quoted(folder / "gap.h5"));
+  CHECK(codes_of(outcome) == "leaves-scan");
+  CHECK_THAT(outcome.err, Contains("there the result says nothing"));
+}
+
+TEST_CASE("warnings are in the JSON, and the last line names them") {
+  const Scene& hall = Scene::hall();
+  const ScratchFolder folder;
+  const auto run = [&](const std::string& radius) {
+    return run_program(folder, "run --json --force --env " + quoted(hall.folder / "site.h5") +
+                                   " --model " + quoted(hall.folder / "model.ply") +
+                                   " --trajectory " + quoted(hall.folder / "trajectory.txt") +
+                                   " --radius " + radius + " -o " + quoted(folder / "out.h5"));
+  };
+  const Outcome silent = run("10cm");
+  CHECK(nlohmann::json::parse(silent.out)["warnings"].empty());
+  CHECK_THAT(silent.err, !Contains("warning"));
+  const Outcome doubtful = run("0.5mm");
+  const auto warnings = nlohmann::json::parse(doubtful.out)["warnings"];
+  REQUIRE_FALSE(warnings.empty());
+  const auto fine = std::ranges::find_if(
+      warnings, [](const auto& warning) { return warning["code"] == "fine-radius"; });
+  REQUIRE(fine != warnings.end());
+  CHECK((*fine)["numbers"]["radius"] == 0.0005);
+  CHECK_FALSE((*fine)["message"].get<std::string>().empty());
+  const std::string last = doubtful.err.substr(doubtful.err.rfind("info: "));
+  CHECK_THAT(last, Contains("environment points collide, but see the") && Contains("above"));
+}
