@@ -127,7 +127,8 @@ TEST_CASE("a pose that changes during the conversion is noticed") {
   const ScratchFolder folder;
   put_bytes(folder / "scan000.3d", "0 0 100\n");
   put_bytes(folder / "scan000.pose", "0 0 0 0 0 0\n");
-  const EnvironmentSource source({folder / "scan000.3d"}, {});
+  NoProgress progress;
+  const EnvironmentSource source({folder / "scan000.3d"}, {}, progress);
   source.refuse_changed();
   put_bytes(folder / "scan000.pose", "0 0 100 0 0 0\n");
   CHECK_THROWS_WITH(source.refuse_changed(), Contains("scan000.pose"));

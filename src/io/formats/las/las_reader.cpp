@@ -42,7 +42,7 @@ class LasReader final : public PointReader {
     batch.quanta.clear();
     const std::size_t most = InputBuffer::kCapacity / header_.record_bytes;
     while (batch.quanta.size() < kBatchPoints) {
-      const std::uint64_t wanted =
+      const auto wanted =
           std::min<std::uint64_t>({most, kBatchPoints - batch.quanta.size(), points_ - next_});
       const auto bytes = wanted > 0 ? take_records(wanted) : take_more_records();
       if (bytes.empty()) break;

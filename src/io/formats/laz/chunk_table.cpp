@@ -54,7 +54,7 @@ class Entries {
  public:
   Entries(const InputBuffer& input, std::uint64_t begin, std::uint64_t end, const Scheme& scheme)
       : fixed_points_(scheme.chunk_points),
-        model_(std::make_unique<IntegerModel<32, 2>>()),
+        model_(std::make_unique<IntegerModel<32, 2>>(fresh<IntegerModel<32, 2>>())),
         decoder_(window_.open(input, begin, end, kMostBytes)) {}
 
   /// The next chunk's points and bytes.

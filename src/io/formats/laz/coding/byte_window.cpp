@@ -32,7 +32,7 @@ const std::byte* ByteWindow::refill(const std::byte* cursor) {
     if (cursor > loaded_) throw DamagedChunk{"its bytes end before its points"};
     return cursor;
   }
-  const std::size_t kept = static_cast<std::size_t>(loaded_ - cursor);
+  const auto kept = static_cast<std::size_t>(loaded_ - cursor);
   std::memmove(buffer_.data(), cursor, kept);
   load(kept);
   return buffer_.data();

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <type_traits>
 
 /// The adaptive models of LAZ. How their counts become probabilities, and when, is part of the
@@ -94,11 +95,25 @@ class SymbolModel {
   std::array<Symbol, slots(slot_bits(kMost))> guess_;
 };
 
-/// A model, or what is made of several, as it is at a chunk's start.
+/// A model, or what is made of several, as it is at a chunk's start. To be copied: that takes less
+/// than to count anew.
+template <typename Model>
+const Model& fresh() {
+  static const Model model;
+  return model;
+}
+
 template <typename Model>
 void renew(Model& model) {
-  static const Model fresh;
-  model = fresh;
+  model = fresh<Model>();
+}
+template <typename Model>
+void renew(std::unique_ptr<Model>& model) {
+  if (model) {
+    renew(*model);
+  } else {
+    model = std::make_unique<Model>(fresh<Model>());
+  }
 }
 
 /// The same as SymbolModel for one bit.

@@ -20,8 +20,7 @@ class ModelsByValue {
 
  private:
   void start(std::uint8_t last) {
-    if (!models_[last]) models_[last] = std::make_unique<SymbolModel<256>>();
-    laz::renew(*models_[last]);
+    laz::renew(models_[last]);
     used_[last] = true;
   }
 

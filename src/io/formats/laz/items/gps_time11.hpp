@@ -41,7 +41,7 @@ class GpsTimeVersion2 {
   void skip_multiple(ArithmeticDecoder& decoder, unsigned symbol);
   void skip_jump(ArithmeticDecoder& decoder);
 
-  Models models_;
+  Models models_ = fresh<Models>();
 };
 
 /// Version 1: one sequence.
@@ -63,7 +63,7 @@ class GpsTimeVersion1 {
 
   void skip_multiple(ArithmeticDecoder& decoder, unsigned symbol);
 
-  Models models_;
+  Models models_ = fresh<Models>();
 };
 
 }  // namespace clearway::laz

@@ -26,7 +26,7 @@ class RgbVersion2 {
     SymbolModel<128> changed;
     std::array<SymbolModel<256>, 6> bytes;
   };
-  Models models_;
+  Models models_ = fresh<Models>();
 };
 
 /// Version 1.
@@ -40,7 +40,7 @@ class RgbVersion1 {
     SymbolModel<64> changed;
     IntegerModel<8, 6> bytes;
   };
-  Models models_;
+  Models models_ = fresh<Models>();
 };
 
 /// The item WAVEPACKET13, of which there is one version.
@@ -57,13 +57,13 @@ class WavePacket {
     IntegerModel<32, 3> direction;
     unsigned last_kind = 0;
   };
-  Models models_;
+  Models models_ = fresh<Models>();
 };
 
 /// The item BYTE: `count` extra bytes. Version 2.
 class BytesVersion2 {
  public:
-  explicit BytesVersion2(std::size_t count) : models_(count) {}
+  explicit BytesVersion2(std::size_t count) : models_(count, fresh<SymbolModel<256>>()) {}
   void begin();
   ArithmeticDecoder skip(ArithmeticDecoder decoder);
 
@@ -74,7 +74,8 @@ class BytesVersion2 {
 /// Version 1.
 class BytesVersion1 {
  public:
-  explicit BytesVersion1(std::size_t count) : widths_(count) {}
+  explicit BytesVersion1(std::size_t count)
+      : widths_(count, fresh<SymbolModel<9>>()), corrector_(fresh<CorrectorModel<8>>()) {}
   void begin();
   ArithmeticDecoder skip(ArithmeticDecoder decoder);
 

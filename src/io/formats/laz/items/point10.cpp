@@ -12,7 +12,7 @@ Point10Fields::Point10Fields(const std::byte* record)
 
 void Point10Version2::begin(const std::byte* record) {
   last_ = Point10Fields(record);
-  renew(*models_);
+  renew(models_);
   returns_.renew();
   classification_.renew();
   user_data_.renew();
@@ -38,7 +38,7 @@ ArithmeticDecoder Point10Version2::next_attributes(ArithmeticDecoder decoder, un
 
 void Point10Version1::begin(const std::byte* record) {
   last_ = Point10Fields(record);
-  renew(*models_);
+  renew(models_);
   returns_.renew();
   classification_.renew();
   user_data_.renew();

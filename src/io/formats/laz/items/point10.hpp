@@ -62,7 +62,7 @@ class Point10Version2 {
   ArithmeticDecoder next_attributes(ArithmeticDecoder decoder, unsigned changed);
 
   Point10Fields last_;
-  std::unique_ptr<Models> models_ = std::make_unique<Models>();
+  std::unique_ptr<Models> models_;  ///< none before the first chunk
   ModelsByValue returns_, classification_, user_data_;
 };
 
@@ -86,7 +86,7 @@ class Point10Version1 {
   ArithmeticDecoder next_attributes(ArithmeticDecoder decoder, unsigned changed, unsigned width);
 
   Point10Fields last_;
-  std::unique_ptr<Models> models_ = std::make_unique<Models>();
+  std::unique_ptr<Models> models_;  ///< none before the first chunk
   ModelsByValue returns_, classification_, user_data_;
 };
 

@@ -19,8 +19,7 @@ void Point14::begin(const std::byte* record, bool has_heights) {
 
 /// Begins a channel with the last point of another.
 void Point14::start(Channel& channel, const Channel& from) {
-  if (!channel.models) channel.models = std::make_unique<Models>();
-  renew(*channel.models);
+  renew(channel.models);
   channel.used = true;
   channel.position = from.position;
   channel.heights.fill(from.position[2]);
