@@ -7,7 +7,7 @@
 using namespace clearway;
 using namespace clearway::test;
 
-TEST_CASE("a cube is watertight; without a triangle, or with one turned or repeated, it is not") {
+TEST_CASE("a cube is watertight, without a triangle, or with one turned or repeated, it is not") {
   TriangleMesh mesh = unit_cube();
   MeshFacts facts = facts_of(mesh);
   CHECK(facts.area == 6);
@@ -32,7 +32,7 @@ TEST_CASE("a cube is watertight; without a triangle, or with one turned or repea
   CHECK_FALSE(facts.watertight());
 }
 
-TEST_CASE("parts share no vertex; vertices at one place are one") {
+TEST_CASE("parts share no vertex, vertices at one place are one") {
   TriangleMesh mesh = unit_cube();
   const TriangleMesh other = unit_cube();
   for (const Vec3& v : other.vertices) mesh.vertices.push_back({v.x + 1, v.y + 1, v.z + 1});

@@ -194,7 +194,7 @@ TEST_CASE("a binary section that is none, or lies elsewhere, is refused") {
   }
 }
 
-TEST_CASE("packets are walked in order; no offset of an index is followed") {
+TEST_CASE("packets are walked in order, no offset of an index is followed") {
   E57Bytes file = one_scan();
   file.scans[0].index_packets = true;
   // The index packet's entries, and its offset in the section's header, point at the index itself.

@@ -63,7 +63,7 @@ TEST_CASE("each scan's pose turns and then shifts its points, in the order of th
   CHECK_THAT(all_texts(all.info), Contains("3 scans; 2 poses are applied"));
 }
 
-TEST_CASE("half of a pose is a pose; a quaternion is normalised") {
+TEST_CASE("half of a pose is a pose, a quaternion is normalised") {
   E57Bytes file;
   file.scans = {e57_scan({1}, {2}, {3}), e57_scan({1}, {2}, {3}), e57_scan({1}, {2}, {3})};
   const std::string shift = "<translation type=\"Structure\">" + E57Bytes::number("x", "4") +
@@ -125,7 +125,7 @@ TEST_CASE("the Cartesian coordinates count where they are valid, then the spheri
   }
 }
 
-TEST_CASE("absent records keep their numbers over batches and scans; reading again says the same") {
+TEST_CASE("absent records keep their numbers over batches and scans, reading again says the same") {
   E57Bytes file;
   constexpr std::size_t kCount = 70'000;
   std::vector<std::int64_t> x(kCount), state(kCount);
@@ -184,7 +184,7 @@ TEST_CASE("a file without scans, and a scan without a binary section, hold no po
   CHECK(read_all(scratch.write("a.e57", E57Bytes::paged(content.bytes))).size() == 0);
 }
 
-TEST_CASE("the coordinate reference system is kept, and its unit; E57's own is the metre") {
+TEST_CASE("the coordinate reference system is kept, and its unit, E57's own is the metre") {
   E57Bytes file;
   file.scans = {e57_scan({1}, {2}, {3})};
   CHECK(read(file).info.unit == LengthUnit::kMetre);

@@ -48,7 +48,7 @@ TEST_CASE("a scan is placed by its matrix, points are rows") {
   CHECK_THAT(cloud.info.remarks[0].text, Contains("1 scan") && Contains("0 of 2 records"));
 }
 
-TEST_CASE("several scans follow each other, each with its matrix; 0 0 0 is no point") {
+TEST_CASE("several scans follow each other, each with its matrix, 0 0 0 is no point") {
   const std::string text = "1\n2\n" + kAxes + kIdentity + "0 0 0 0.5 0 0 0\n1 2 3 0.5 0 0 0\n" +
                            "2\n1\n" + kTurned + "1 2 3 0.5\n0 0.0 -0 0\n";
   ReaderScratch scratch;

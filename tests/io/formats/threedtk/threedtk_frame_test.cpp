@@ -52,7 +52,7 @@ const std::string kIdentity = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
 
 }  // namespace
 
-TEST_CASE("3DTK's axes are x right, y up, z forward; ours x forward, y left, z up") {
+TEST_CASE("3DTK's axes are x right, y up, z forward, ours x forward, y left, z up") {
   CHECK(from_threedtk(Vec3{100, 0, 0}) == Vec3{0, -1, 0});
   CHECK(from_threedtk(Vec3{0, 100, 0}) == Vec3{0, 0, 1});
   CHECK(from_threedtk(Vec3{0, 0, 100}) == Vec3{1, 0, 0});
