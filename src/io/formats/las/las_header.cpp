@@ -18,15 +18,10 @@ constexpr std::uint16_t kSmallestRecord[] = {20, 28, 26, 34, 57, 63, 30, 36, 38,
 constexpr std::uint16_t kInternalWaveforms = 2;  // of the global encoding
 constexpr unsigned kFormatBits = 0x3F;           // of byte 104; one of the others is set in LAZ
 
-[[noreturn]] void refuse_cut(const InputBuffer& input, const std::string& expected) {
-  refuse(input.name(),
-         "ends at byte " + std::to_string(input.end_position()) + "; expected " + expected);
-}
-
 std::span<const std::byte> take_header(InputBuffer& input, std::size_t bytes) {
   const auto taken = input.take(bytes);
   if (taken.empty())
-    refuse_cut(input, "a LAS header of at least " + std::to_string(bytes) + " bytes");
+    refuse_cut_las(input, "a LAS header of at least " + std::to_string(bytes) + " bytes");
   return taken;
 }
 
@@ -126,6 +121,11 @@ void check_layout(const InputBuffer& input, const LasPublicHeader& header) {
 
 }  // namespace
 
+void refuse_cut_las(const InputBuffer& input, const std::string& expected) {
+  refuse(input.name(),
+         "ends at byte " + std::to_string(input.end_position()) + "; expected " + expected);
+}
+
 std::uint64_t LasPublicHeader::points_end() const { return points_offset + points * record_bytes; }
 
 LasPublicHeader read_las_header(InputBuffer& input) {
@@ -159,7 +159,7 @@ LasPublicHeader read_las_header(InputBuffer& input) {
   }
   check_layout(input, header);
   if (!input.skip(header.header_bytes - input.position())) {
-    refuse_cut(input, "a header of " + std::to_string(header.header_bytes) + " bytes");
+    refuse_cut_las(input, "a header of " + std::to_string(header.header_bytes) + " bytes");
   }
   return header;
 }

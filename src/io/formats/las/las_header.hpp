@@ -26,6 +26,9 @@ struct LasPublicHeader {
   std::uint64_t points_end() const;  ///< byte behind the last point record, if not compressed
 };
 
+/// Refuses a file that ends before what it declares; the input has met its end.
+[[noreturn]] void refuse_cut_las(const InputBuffer& input, const std::string& expected);
+
 /// Reads the public header block and leaves the input behind it. Throws InputError for anything
 /// malformed, and where the file's size is known and too small for what is declared.
 LasPublicHeader read_las_header(InputBuffer& input);

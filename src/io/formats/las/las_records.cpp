@@ -12,11 +12,6 @@
 namespace clearway {
 namespace {
 
-[[noreturn]] void refuse_cut(const InputBuffer& input, const std::string& expected) {
-  refuse(input.name(),
-         "ends at byte " + std::to_string(input.end_position()) + "; expected " + expected);
-}
-
 /// A user id or a text of fixed length, padded with zeros.
 std::string_view padded_text(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -61,7 +56,7 @@ void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords
                       std::to_string(header.points_offset) + "; expected 54 bytes for its header");
     }
     const auto head = input.take(kVlrHeaderBytes);
-    if (head.empty()) refuse_cut(input, which);
+    if (head.empty()) refuse_cut_las(input, which);
     const std::string user(padded_text(head.subspan(2, 16)));
     const unsigned id = load<std::uint16_t>(head.data() + 18);
     const std::size_t length = load<std::uint16_t>(head.data() + 20);
@@ -72,12 +67,12 @@ void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords
                       std::to_string(header.points_offset));
     }
     const auto payload = input.take(length);
-    if (payload.size() != length) refuse_cut(input, which);
+    if (payload.size() != length) refuse_cut_las(input, which);
     if (user == "laszip encoded") records.laz.assign(payload.begin(), payload.end());
     note_record(user, id, payload, records.crs);
   }
   if (!input.skip(header.points_offset - input.position())) {
-    refuse_cut(input, "points from byte " + std::to_string(header.points_offset));
+    refuse_cut_las(input, "points from byte " + std::to_string(header.points_offset));
   }
 }
 
@@ -85,8 +80,8 @@ void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& cr
   constexpr std::size_t kEvlrHeaderBytes = 60;
   if (header.tail_count == 0) return;
   if (!input.skip(header.tail_offset - input.position())) {
-    refuse_cut(input,
-               "extended variable length records from byte " + std::to_string(header.tail_offset));
+    refuse_cut_las(
+        input, "extended variable length records from byte " + std::to_string(header.tail_offset));
   }
   for (std::uint32_t i = 0; i < header.tail_count; ++i) {
     const std::uint64_t start = input.position();
@@ -94,7 +89,7 @@ void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& cr
                               std::to_string(header.tail_count) + " from byte " +
                               std::to_string(start);
     const auto head = input.take(kEvlrHeaderBytes);
-    if (head.empty()) refuse_cut(input, which);
+    if (head.empty()) refuse_cut_las(input, which);
     const std::string user(padded_text(head.subspan(2, 16)));
     const unsigned id = load<std::uint16_t>(head.data() + 18);
     const auto length = load<std::uint64_t>(head.data() + 20);
@@ -107,10 +102,10 @@ void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& cr
       }
       payload = input.take(length);
       if (payload.size() != length)
-        refuse_cut(input, which + " with its " + std::to_string(length) + " bytes");
+        refuse_cut_las(input, which + " with its " + std::to_string(length) + " bytes");
       note_record(user, id, payload, crs);
     } else if (!input.skip(length)) {
-      refuse_cut(input, which + " with its " + std::to_string(length) + " bytes");
+      refuse_cut_las(input, which + " with its " + std::to_string(length) + " bytes");
     }
   }
 }

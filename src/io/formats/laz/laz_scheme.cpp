@@ -6,13 +6,13 @@
 namespace clearway::laz {
 namespace {
 
-struct Item {
+struct DeclaredItem {
   unsigned type, bytes, version;
 };
 
 /// What is known of an item type: its size (0: any), the versions that are read, the layers of a
 /// chunk (0: not layered; kEveryByte: one for each byte), and its place in the order of a record.
-struct Kind {
+struct ItemKind {
   const char* name;
   unsigned type, bytes;
   unsigned least_version, greatest_version;
@@ -22,16 +22,16 @@ struct Kind {
 
 constexpr unsigned kEveryByte = ~0u;
 constexpr unsigned kPointPlace = 0, kGpsPlace = 1, kRgbPlace = 2, kWavePlace = 3, kBytesPlace = 4;
-constexpr Kind kKinds[] = {{"POINT10", 6, 20, 1, 2, 0, kPointPlace},
-                           {"GPSTIME11", 7, 8, 1, 2, 0, kGpsPlace},
-                           {"RGB12", 8, 6, 1, 2, 0, kRgbPlace},
-                           {"WAVEPACKET13", 9, 29, 1, 1, 0, kWavePlace},
-                           {"BYTE", 0, 0, 1, 2, 0, kBytesPlace},
-                           {"POINT14", 10, 30, 2, 4, 9, kPointPlace},
-                           {"RGB14", 11, 6, 2, 4, 1, kRgbPlace},
-                           {"RGBNIR14", 12, 8, 2, 4, 2, kRgbPlace},
-                           {"WAVEPACKET14", 13, 29, 3, 4, 1, kWavePlace},
-                           {"BYTE14", 14, 0, 2, 4, kEveryByte, kBytesPlace}};
+constexpr ItemKind kKinds[] = {{"POINT10", 6, 20, 1, 2, 0, kPointPlace},
+                               {"GPSTIME11", 7, 8, 1, 2, 0, kGpsPlace},
+                               {"RGB12", 8, 6, 1, 2, 0, kRgbPlace},
+                               {"WAVEPACKET13", 9, 29, 1, 1, 0, kWavePlace},
+                               {"BYTE", 0, 0, 1, 2, 0, kBytesPlace},
+                               {"POINT14", 10, 30, 2, 4, 9, kPointPlace},
+                               {"RGB14", 11, 6, 2, 4, 1, kRgbPlace},
+                               {"RGBNIR14", 12, 8, 2, 4, 2, kRgbPlace},
+                               {"WAVEPACKET14", 13, 29, 3, 4, 1, kWavePlace},
+                               {"BYTE14", 14, 0, 2, 4, kEveryByte, kBytesPlace}};
 
 constexpr std::size_t kFixedBytes = 34;
 constexpr std::size_t kItemBytes = 6;
@@ -40,11 +40,11 @@ constexpr std::size_t kItemBytes = 6;
   refuse(name, "its LAZ record (laszip encoded) " + what);
 }
 
-const Kind& kind_of(const std::string& name, const Item& item) {
+const ItemKind& kind_of(const std::string& name, const DeclaredItem& item) {
   const std::string shown = "item of type " + std::to_string(item.type) + ", " +
                             std::to_string(item.bytes) + " bytes, version " +
                             std::to_string(item.version);
-  for (const Kind& kind : kKinds) {
+  for (const ItemKind& kind : kKinds) {
     if (kind.type != item.type) continue;
     if (item.bytes == 0 || (kind.bytes != 0 && kind.bytes != item.bytes) ||
         item.version < kind.least_version || item.version > kind.greatest_version) {
@@ -59,7 +59,7 @@ const Kind& kind_of(const std::string& name, const Item& item) {
                 "has an " + shown + "; expected a type of the LAZ specification, 0 or 6 to 14");
 }
 
-void note_item(Scheme& scheme, const Kind& kind, const Item& item) {
+void note_item(Scheme& scheme, const ItemKind& kind, const DeclaredItem& item) {
   unsigned* const versions[] = {&scheme.point_version, &scheme.gps_time_version,
                                 &scheme.rgb_version, &scheme.wave_packet_version,
                                 &scheme.bytes_version};
@@ -75,9 +75,9 @@ void read_items(const std::string& name, std::span<const std::byte> items, unsig
   unsigned next_place = kPointPlace;
   for (std::size_t at = 0; at < items.size(); at += kItemBytes) {
     const std::byte* fields = items.data() + at;
-    const Item item{load<std::uint16_t>(fields), load<std::uint16_t>(fields + 2),
-                    load<std::uint16_t>(fields + 4)};
-    const Kind& kind = kind_of(name, item);
+    const DeclaredItem item{load<std::uint16_t>(fields), load<std::uint16_t>(fields + 2),
+                            load<std::uint16_t>(fields + 4)};
+    const ItemKind& kind = kind_of(name, item);
     if ((kind.layers != 0) != layered || kind.place < next_place ||
         (next_place == kPointPlace && kind.place != kPointPlace)) {
       refuse_scheme(name, std::string("has the item ") + kind.name + " as number " +

@@ -58,12 +58,14 @@ class IntegerModel {
                                                      std::uint32_t prediction, unsigned context) {
     const std::uint32_t value =
         prediction + corrector_.decode(decoder, widths_[context], last_width_);
-    return kBits == 32 ? value : value & ((1u << kBits) - 1);
+    return value & kMask;
   }
   /// Of the corrector decoded last.
   unsigned last_width() const { return last_width_; }
 
  private:
+  static constexpr std::uint32_t kMask = 0xFFFFFFFFu >> (32 - kBits);
+
   unsigned last_width_ = 0;
   std::array<SymbolModel<kBits + 1>, kContexts> widths_;
   CorrectorModel<kBits> corrector_;
