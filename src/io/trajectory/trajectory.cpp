@@ -10,8 +10,8 @@
 
 #include "io/formats/input_buffer.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/sbet.hpp"
-#include "io/trajectory/text_trajectory.hpp"
+#include "io/trajectory/geographic/sbet.hpp"
+#include "io/trajectory/text/text_trajectory.hpp"
 #include "io/trajectory/threedtk_trajectory.hpp"
 #include "io/trajectory/trajectory_file.hpp"
 

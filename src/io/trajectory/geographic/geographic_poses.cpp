@@ -1,11 +1,11 @@
-#include "io/trajectory/geographic_poses.hpp"
+#include "io/trajectory/geographic/geographic_poses.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "core/geometry/angle.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/map_projection.hpp"
+#include "io/trajectory/geographic/map_projection.hpp"
 
 namespace clearway {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/trajectory/map_projection.hpp"
+#include "io/trajectory/geographic/map_projection.hpp"
 
 #include <proj.h>
 

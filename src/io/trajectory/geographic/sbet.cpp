@@ -1,4 +1,4 @@
-#include "io/trajectory/sbet.hpp"
+#include "io/trajectory/geographic/sbet.hpp"
 
 #include <array>
 #include <bit>
@@ -10,7 +10,7 @@
 
 #include "core/geometry/angle.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/geographic_poses.hpp"
+#include "io/trajectory/geographic/geographic_poses.hpp"
 
 namespace clearway {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/trajectory/length_unit.hpp"
+#include "io/trajectory/text/length_unit.hpp"
 
 #include <algorithm>
 #include <iterator>

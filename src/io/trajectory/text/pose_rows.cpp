@@ -1,12 +1,12 @@
-#include "io/trajectory/pose_rows.hpp"
+#include "io/trajectory/text/pose_rows.hpp"
 
 #include <cmath>
 #include <utility>
 
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/angle_table.hpp"
-#include "io/trajectory/length_unit.hpp"
+#include "io/trajectory/text/angle_table.hpp"
+#include "io/trajectory/text/length_unit.hpp"
 
 namespace clearway {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/trajectory/angle_table.hpp"
+#include "io/trajectory/text/angle_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "core/geometry/angle.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/geographic_poses.hpp"
+#include "io/trajectory/geographic/geographic_poses.hpp"
 
 namespace clearway {
 namespace {
