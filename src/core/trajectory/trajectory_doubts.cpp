@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "core/geometry/angle.hpp"
 #include "core/trajectory/trajectory_summary.hpp"
 
 namespace clearway {
@@ -16,8 +16,6 @@ namespace {
 
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using Vector = Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string number(double value) {
   char text[32];

@@ -6,7 +6,7 @@
 namespace clearway {
 namespace {
 
-Vec3 position_of(const Pose& pose) {
+Vec3 place_of(const Pose& pose) {
   return {pose.translation[0], pose.translation[1], pose.translation[2]};
 }
 
@@ -48,7 +48,7 @@ BodyAxis axis_of(const Vec3& sums, const Vec3& sizes, double weight) {
 void add_steps(std::span<const Pose> poses, TrajectorySummary& out) {
   std::vector<double> moving;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-    const double step = distance(position_of(poses[i]), position_of(poses[i + 1]));
+    const double step = distance(place_of(poses[i]), place_of(poses[i + 1]));
     out.length += step;
     if (step > out.largest_step) {
       out.largest_step = step;
@@ -112,8 +112,8 @@ double turn_between(const Pose& a, const Pose& b) {
 std::vector<Chord> chords_of(std::span<const Pose> poses, double least) {
   std::vector<Chord> chords;
   for (std::size_t start = 0, i = 1; i < poses.size(); ++i) {
-    const Vec3 a = position_of(poses[start]);
-    const Vec3 b = position_of(poses[i]);
+    const Vec3 a = place_of(poses[start]);
+    const Vec3 b = place_of(poses[i]);
     const double length = distance(a, b);
     if (!(length >= least) || !(length > 0) || !std::isfinite(length)) continue;
     chords.push_back({{(b.x - a.x) / length, (b.y - a.y) / length, (b.z - a.z) / length},
@@ -128,7 +128,7 @@ TrajectorySummary summarize_trajectory(std::span<const Pose> poses) {
   TrajectorySummary out;
   out.poses = poses.size();
   if (poses.empty()) return out;
-  out.box = {position_of(poses[0]), position_of(poses[0])};
+  out.box = {place_of(poses[0]), place_of(poses[0])};
   for (const Pose& pose : poses) {
     for (int k = 0; k < 3; ++k) {
       out.box.lo[k] = std::min(out.box.lo[k], pose.translation[k]);

@@ -10,8 +10,8 @@
 
 #include "io/formats/input_buffer.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/sbet.hpp"
-#include "io/trajectory/text_trajectory.hpp"
+#include "io/trajectory/geographic/sbet.hpp"
+#include "io/trajectory/text/text_trajectory.hpp"
 #include "io/trajectory/threedtk_trajectory.hpp"
 #include "io/trajectory/trajectory_file.hpp"
 
@@ -158,8 +158,10 @@ const char* name_of(TrajectoryFormat format) {
   return "";
 }
 
-TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
-                                    const TrajectoryOptions& options) {
+namespace {
+
+TrajectoryFile read_without_doubts(const std::filesystem::path& path,
+                                   const TrajectoryOptions& options) {
   TrajectoryFile found;
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
@@ -170,6 +172,14 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
   refuse_useless(path, options, found);
   apply_lever_arm(path, options.lever_arm, found.poses);
   remark_times(path, found);
+  return found;
+}
+
+}  // namespace
+
+TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
+                                    const TrajectoryOptions& options) {
+  TrajectoryFile found = read_without_doubts(path, options);
   auto doubts = doubts_about(found.poses, found.rotations, path.string());
   std::move(doubts.begin(), doubts.end(), std::back_inserter(found.remarks));
   return found;
@@ -177,11 +187,10 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 
 std::vector<Pose> read_trajectory(const std::filesystem::path& path,
                                   const TrajectoryOptions& options, std::vector<Message>* remarks) {
+  if (remarks == nullptr) return read_without_doubts(path, options).poses;
   TrajectoryFile found = read_trajectory_file(path, options);
-  if (remarks != nullptr) {
-    remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
-                    std::make_move_iterator(found.remarks.end()));
-  }
+  remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
+                  std::make_move_iterator(found.remarks.end()));
   return std::move(found.poses);
 }
 

@@ -10,6 +10,7 @@
 #include "support/mesh_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
+#include "support/sbet_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -90,6 +91,10 @@ TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
       {"scan000.pose", "1 2 3\n4 5 6\n"},
       {"scan000.frames", "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n"},
       {"a.csv", "t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n"},
+      {"b.csv", "x[mm],y[mm],z[mm],roll_deg,pitch_deg,heading_deg\n1,2,3,4,5,6\n"},
+      {"a.sbet", SbetRecord().bytes() + SbetRecord().bytes()},
+      {"a.pose", "1 2 3\n10 20 30\n"},
+      {"a.frames", "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n"},
       {"a.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"}};
   ReaderScratch scratch;
   std::mt19937 random(1);

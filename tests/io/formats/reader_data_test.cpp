@@ -147,6 +147,20 @@ TEST_CASE("the real trajectories load") {
   CHECK(street[0].translation[2] == -1.73);
 }
 
+TEST_CASE("nothing is doubted in the real trajectories") {
+  for (const char* name : {"trajectories/kitti00.txt", "trajectories/tum_freiburg1_xyz.txt",
+                           "trajectories/euroc_v102.csv", "street/trajectory.txt"}) {
+    INFO(name);
+    std::vector<Message> remarks;
+    read_trajectory(data_folder() / name, {}, &remarks);
+    CHECK(remarks.empty());
+  }
+}
+
+TEST_CASE("the poses of a 3DTK folder load in the order of their numbers") {
+  CHECK(read_trajectory(data_folder() / "formats" / "3dtk").size() == 1);
+}
+
 TEST_CASE("the model of the street loads") {
   const auto model = read_model(data_folder() / "street" / "beetle.ply");
   CHECK(model.size() == 46'877);

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/geometry/angle.hpp"
 
 namespace clearway::tool {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string tilt_text(const char* part, double up) {
   const double shown = std::abs(up);

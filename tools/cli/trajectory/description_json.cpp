@@ -1,16 +1,14 @@
-#include <numbers>
 #include <vector>
 
 #include "cli/support/warnings_json.hpp"
 #include "cli/trajectory/attitude_text.hpp"
 #include "cli/trajectory/description.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace clearway::tool {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ordered_json pose_json(const Pose& pose) {
   const PoseAngles angles = angles_of(pose);

@@ -1,17 +1,15 @@
 #include <fmt/format.h>
 
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "cli/trajectory/attitude_text.hpp"
 #include "cli/trajectory/description.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway::tool {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 using Lines = std::vector<std::pair<const char*, std::string>>;
 

@@ -1,4 +1,4 @@
-#include "io/trajectory/trajectory_columns.hpp"
+#include "io/trajectory/text/trajectory_columns.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,16 +1,14 @@
-#include "io/trajectory/geographic_poses.hpp"
+#include "io/trajectory/geographic/geographic_poses.hpp"
 
 #include <algorithm>
 #include <cstdio>
-#include <numbers>
 
+#include "core/geometry/angle.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/map_projection.hpp"
+#include "io/trajectory/geographic/map_projection.hpp"
 
 namespace clearway {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Range {
   double least = 0, greatest = 0;

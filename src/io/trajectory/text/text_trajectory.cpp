@@ -1,4 +1,4 @@
-#include "io/trajectory/text_trajectory.hpp"
+#include "io/trajectory/text/text_trajectory.hpp"
 
 #include <array>
 #include <optional>
@@ -8,7 +8,7 @@
 #include "io/formats/text/column_names.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/pose_rows.hpp"
+#include "io/trajectory/text/pose_rows.hpp"
 
 namespace clearway {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/trajectory/attitude.hpp"
-#include "io/trajectory/trajectory_columns.hpp"
+#include "io/trajectory/text/trajectory_columns.hpp"
 #include "io/trajectory/trajectory_file.hpp"
 
 namespace clearway {

@@ -1,4 +1,4 @@
-#include "io/trajectory/map_projection.hpp"
+#include "io/trajectory/geographic/map_projection.hpp"
 
 #include <proj.h>
 
@@ -10,12 +10,12 @@
 
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/geometry/angle.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSemiMajor = 6378137;               // of WGS 84
 constexpr double kEccentricity2 = 6.69437999014e-3;  // squared, of WGS 84
 

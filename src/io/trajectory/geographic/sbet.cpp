@@ -1,4 +1,4 @@
-#include "io/trajectory/sbet.hpp"
+#include "io/trajectory/geographic/sbet.hpp"
 
 #include <array>
 #include <bit>
@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/angle.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/geographic_poses.hpp"
+#include "io/trajectory/geographic/geographic_poses.hpp"
 
 namespace clearway {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kHighest = 1e5;  // metres; no scanner flies there
 
 /// The numbers of a record that make a pose; radians and metres.
@@ -38,13 +38,16 @@ std::string objection_to_angle(const char* name, double value, double most) {
 
 /// Why a record is no pose; empty where it is one.
 std::string objection_to(const Record& record) {
-  constexpr double kTurn = 2 * kPi + 1e-6;
+  constexpr double kTurn = 2 * std::numbers::pi + 1e-6;
   const struct {
     const char* name;
     double value, most;
-  } angles[] = {{"latitude", record.latitude, kPi / 2}, {"longitude", record.longitude, kTurn},
-                {"roll", record.roll, kPi + 1e-6},      {"pitch", record.pitch, kPi / 2 + 1e-6},
-                {"heading", record.heading, kTurn},     {"wander angle", record.wander, kTurn}};
+  } angles[] = {{"latitude", record.latitude, std::numbers::pi / 2},
+                {"longitude", record.longitude, kTurn},
+                {"roll", record.roll, std::numbers::pi + 1e-6},
+                {"pitch", record.pitch, std::numbers::pi / 2 + 1e-6},
+                {"heading", record.heading, kTurn},
+                {"wander angle", record.wander, kTurn}};
   for (const auto& angle : angles) {
     if (auto text = objection_to_angle(angle.name, angle.value, angle.most); !text.empty()) {
       return text;
@@ -61,10 +64,9 @@ std::string objection_to(const Record& record) {
 }
 
 AttitudeRow row_of(const Record& record) {
-  constexpr double kDegrees = 180 / kPi;
   // The platform's heading is counted in the wander frame, which avoids the singularity at the
   // poles.
-  return {{record.longitude * kDegrees, record.latitude * kDegrees, record.altitude},
+  return {{record.longitude / kDegree, record.latitude / kDegree, record.altitude},
           record.roll,
           record.pitch,
           record.heading - record.wander};

@@ -1,4 +1,4 @@
-#include "io/trajectory/length_unit.hpp"
+#include "io/trajectory/text/length_unit.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -14,16 +14,16 @@ struct Unit {
   double metres;
 };
 
-constexpr Unit kUnits[] = {{"m", 1},         {"metre", 1},       {"metres", 1},  {"meter", 1},
-                           {"meters", 1},    {"mm", 0.001},      {"cm", 0.01},   {"in", 0.0254},
-                           {"inch", 0.0254}, {"inches", 0.0254}, {"ft", 0.3048}, {"feet", 0.3048},
-                           {"foot", 0.3048}};
+constexpr Unit kLengthUnits[] = {
+    {"m", 1},       {"metre", 1},     {"metres", 1},   {"meter", 1},     {"meters", 1},
+    {"mm", 0.001},  {"cm", 0.01},     {"in", 0.0254},  {"inch", 0.0254}, {"inches", 0.0254},
+    {"ft", 0.3048}, {"feet", 0.3048}, {"foot", 0.3048}};
 
 /// 0 where the unit is not known.
 double metres_of(std::string_view text) {
-  const auto* const unit = std::find_if(std::begin(kUnits), std::end(kUnits),
+  const auto* const unit = std::find_if(std::begin(kLengthUnits), std::end(kLengthUnits),
                                         [text](const Unit& known) { return known.name == text; });
-  return unit == std::end(kUnits) ? 0 : unit->metres;
+  return unit == std::end(kLengthUnits) ? 0 : unit->metres;
 }
 
 }  // namespace

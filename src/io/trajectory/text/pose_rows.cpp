@@ -1,12 +1,12 @@
-#include "io/trajectory/pose_rows.hpp"
+#include "io/trajectory/text/pose_rows.hpp"
 
 #include <cmath>
 #include <utility>
 
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/angle_table.hpp"
-#include "io/trajectory/length_unit.hpp"
+#include "io/trajectory/text/angle_table.hpp"
+#include "io/trajectory/text/length_unit.hpp"
 
 namespace clearway {
 namespace {
@@ -21,13 +21,6 @@ double seconds_of(double time) {
                  : size >= kMicroseconds ? 1e-6
                  : size >= kMilliseconds ? 1e-3
                                          : 1);
-}
-
-bool all_finite(std::span<const double> numbers) {
-  for (const double number : numbers) {
-    if (!std::isfinite(number)) return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -165,7 +158,8 @@ Objection PoseRows::add_angles(const std::array<double, 3>& position) {
   std::array<double, 3> angles{};
   Objection objection = numbers_in(columns_->rotation, angles);
   if (!objection.text.empty()) return objection;
-  if (!all_finite(position) || !all_finite(angles)) return {"expected finite numbers"};
+  const double sum = position[0] + position[1] + position[2] + angles[0] + angles[1] + angles[2];
+  if (!std::isfinite(sum)) return {"expected finite numbers"};
   const double horizontal = columns_->geographic ? 1 : metres_;
   angles_.push_back({{position[0] * horizontal, position[1] * horizontal, position[2] * metres_},
                      angles[0],

@@ -1,4 +1,4 @@
-#include "io/trajectory/angle_table.hpp"
+#include "io/trajectory/text/angle_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,19 +7,18 @@
 #include <span>
 #include <string_view>
 
+#include "core/geometry/angle.hpp"
 #include "io/system/input_error.hpp"
-#include "io/trajectory/geographic_poses.hpp"
+#include "io/trajectory/geographic/geographic_poses.hpp"
 
 namespace clearway {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
 constexpr double kSlack = 1 + 1e-9;
 
 /// Angles in radians can be counted on beyond a turn, but not so far in a tilt.
-constexpr double kMostTiltRadians = 2 * kPi;
-constexpr double kMostTurnRadians = 20 * kPi;
+constexpr double kMostTiltRadians = 2 * std::numbers::pi;
+constexpr double kMostTurnRadians = 20 * std::numbers::pi;
 
 struct Largest {
   double tilt = 0, turn = 0, latitude = 0, longitude = 0;
@@ -96,7 +95,8 @@ double attitude_factor(const Largest& most, const PoseColumns& columns,
 double geographic_factor(const Largest& most, const PoseColumns& columns,
                          const TrajectoryOptions& options, const std::string& name) {
   AngleUnit unit = declared_unit(std::span(columns.position_units).first(2), name);
-  const bool surely_degrees = most.latitude > kPi / 2 * kSlack || most.longitude > 2 * kPi * kSlack;
+  const bool surely_degrees = most.latitude > std::numbers::pi / 2 * kSlack ||
+                              most.longitude > 2 * std::numbers::pi * kSlack;
   if (unit == AngleUnit::kDeclared) {
     unit = surely_degrees ? AngleUnit::kDegrees : options.angle_unit;
   }
@@ -109,7 +109,7 @@ double geographic_factor(const Largest& most, const PoseColumns& columns,
   if (unit == AngleUnit::kRadians && surely_degrees) {
     refuse(name, largest + " are declared to be radians; these look like degrees");
   }
-  if (most.latitude * factor_of(unit) > kPi / 2 * kSlack) {
+  if (most.latitude * factor_of(unit) > std::numbers::pi / 2 * kSlack) {
     refuse(name, largest + "; expected latitudes within 90 degrees");
   }
   return factor_of(unit) / kDegree;
@@ -131,7 +131,8 @@ AngleFrame frame_of(const PoseColumns& columns, const TrajectoryOptions& options
   return options.angle_frame;
 }
 
-void note_frame(AngleFrame frame, bool geographic, const std::string& name, TrajectoryFile& out) {
+void note_angle_frame(AngleFrame frame, bool geographic, const std::string& name,
+                      TrajectoryFile& out) {
   const std::string from = geographic ? "true " : "the map's ";
   out.note("angle-frame",
            name +
@@ -158,7 +159,7 @@ void append_poses_of_angles(std::vector<AttitudeRow> rows, const PoseColumns& co
     row.pitch *= to_radians;
     row.yaw *= to_radians;
   }
-  note_frame(frame, columns.geographic, name, out);
+  note_angle_frame(frame, columns.geographic, name, out);
   if (columns.geographic) {
     const double to_degrees = geographic_factor(most, columns, options, name);
     for (AttitudeRow& row : rows) {

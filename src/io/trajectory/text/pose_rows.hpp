@@ -9,7 +9,7 @@
 
 #include "io/trajectory/attitude.hpp"
 #include "io/trajectory/pose_input.hpp"
-#include "io/trajectory/trajectory_columns.hpp"
+#include "io/trajectory/text/trajectory_columns.hpp"
 #include "io/trajectory/trajectory_file.hpp"
 
 namespace clearway {
