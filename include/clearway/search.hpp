@@ -36,7 +36,7 @@ struct SearchOptions {
   /// Of reading model and trajectory, told already: the report holds them too, and strict counts
   /// them.
   std::vector<Message> input_warnings = {};
-  double journal_interval_seconds = 5;    ///< between two syncs of the journal to the disk
+  double journal_interval_seconds = 5;  ///< between two syncs of the journal to the disk
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< notes, and the warnings that the report holds
   StopFlag stop = nullptr;

@@ -72,9 +72,9 @@ struct PointReadOptions {
 };
 
 /// Opens a file by its content, where the content tells, and by the ending of its name otherwise:
-/// LAS 1.0-1.4, LAZ, E57, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file is
-/// read as by open_las_stream, with the system's folder for temporary files. Unknown formats throw
-/// InputError with advice.
+/// LAS 1.0-1.4, LAZ, E57, PLY, PCD, PTX, PTS, XYZ text and scans of 3DTK. What is no regular file
+/// is read as by open_las_stream, with the system's folder for temporary files. Unknown formats
+/// throw InputError with advice.
 std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
                                              const PointReadOptions& options = {});
 
