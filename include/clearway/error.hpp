@@ -20,8 +20,8 @@ enum class Remedy {
   kCudaDevice,
   kMoreCellPoints,
   kFewerCellPoints,
-  kScale,     ///< amount: a step in metres that fits, 0: a coarser one
-  kOneScale,  ///< for all inputs; amount: a step in metres, 0: the caller's choice
+  kScale,           ///< amount: a step in metres that fits, 0: a coarser one
+  kOneScale,        ///< for all inputs; amount: a step in metres, 0: the caller's choice
   kAcceptScale,     ///< amount: the step in metres that the range needs, if that is accepted
   kColumns,         ///< of a text, which the caller can name
   kSkipUnreadable,  ///< one of several inputs; the others can be converted without it
