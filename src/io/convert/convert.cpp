@@ -127,7 +127,7 @@ class Conversion {
     check_cells(top, counted.points);
     report_.count_seconds = watch_.lap();
 
-    PlaceCounter places(survey.places.candidates());
+    PlaceCounter places(survey.places.suspects());
     const Distribution distribution =
         distribute(environment, counted.points_hash, lattice, tree, places, folder_, kBufferBytes,
                    threads_, progress_);

@@ -52,7 +52,7 @@ void PlaceSample::choose_next() {
   for (unsigned level = level_; level > 0; --level) next_ = 2 * next_ + half_of(level, next_);
 }
 
-std::vector<PlaceQuanta> PlaceSample::candidates() const {
+std::vector<PlaceQuanta> PlaceSample::suspects() const {
   std::vector<PlaceQuanta> sorted = samples_;
   std::sort(sorted.begin(), sorted.end());
   std::vector<PlaceQuanta> found;

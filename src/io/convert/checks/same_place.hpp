@@ -26,7 +26,7 @@ class PlaceSample {
   /// The next points, in order.
   void add(const QuantaBatch& batch);
   /// The places that may hold more than kSamePlaceShare of the points; at most 200.
-  std::vector<PlaceQuanta> candidates() const;
+  std::vector<PlaceQuanta> suspects() const;
 
  private:
   static constexpr std::size_t kMostSamples = std::size_t{1} << 16;

@@ -30,20 +30,20 @@ class XyzReader final : public PointReader {
   bool read(PointBatch& batch) override {
     batch.quanta.clear();
     batch.absent.clear();
-    batch.positions.resize(kBatchPoints);
-    std::size_t count = 0;
+    batch.positions.clear();
     std::string_view line;
-    while (count < kBatchPoints && next_data_line(input_, line)) {
+    while (batch.positions.size() < kBatchPoints && next_data_line(input_, line)) {
       if (next_ == info_.declared_points) {
         fail("more than the " + std::to_string(next_) + " points that the first line declares");
       }
-      if (!line_.parse(line, batch.positions[count++])) refuse_point(line);
+      Vec3 point{};
+      if (!line_.parse(line, point)) refuse_point(line);
+      batch.positions.push_back(point);
       if (!input_.line_terminated()) check_open_end(line);
       ++next_;
     }
-    batch.positions.resize(count);
-    if (count < kBatchPoints) check_count();
-    return count > 0;
+    if (batch.positions.size() < kBatchPoints) check_count();
+    return !batch.positions.empty();
   }
 
   void rewind() override {

@@ -287,14 +287,6 @@ TEST_CASE("chosen columns that are not there are refused") {
                   UsageError);
 }
 
-TEST_CASE("decimal commas are named") {
-  CHECK_THAT(refusal_of_text("1,5 2,5 3,5\n").text, Contains("decimal commas"));
-  CHECK_THAT(refusal_of_text("1,5;2,5;3,5\n").text, Contains("decimal commas"));
-  CHECK_THAT(refusal_of_text("x;y;z\n1,5;2,5;3,5\n").text,
-             Contains("line 2") && Contains("decimal commas"));
-  CHECK(refusal_of_text("hello\n").text.find("decimal") == std::string::npos);
-}
-
 TEST_CASE("the lines of points in a text are told") {
   ReaderScratch scratch;
   const auto reader =

@@ -105,3 +105,11 @@ TEST_CASE("lines across the borders of the buffer are whole") {
     if (!(points[i] == Vec3{static_cast<double>(i), 0.125, -7})) FAIL("line " << i);
   }
 }
+
+TEST_CASE("decimal commas are named") {
+  CHECK_THAT(refusal_of_text("1,5 2,5 3,5\n"), Contains("decimal commas"));
+  CHECK_THAT(refusal_of_text("1,5;2,5;3,5\n"), Contains("decimal commas"));
+  CHECK_THAT(refusal_of_text("x;y;z\n1,5;2,5;3,5\n"),
+             Contains("line 2") && Contains("decimal commas"));
+  CHECK_THAT(refusal_of_text("hello\n"), !Contains("decimal"));
+}
