@@ -134,6 +134,7 @@ ordered_json describe_trajectory(const std::filesystem::path& file) {
   ordered_json bounds = nullptr;
   if (!poses.empty()) {
     std::vector<Vec3> positions;
+    positions.reserve(poses.size());
     for (const Pose& pose : poses) {
       positions.push_back({pose.translation[0], pose.translation[1], pose.translation[2]});
     }

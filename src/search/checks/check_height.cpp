@@ -10,12 +10,12 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kLookedAt = 32;  ///< poses
+constexpr std::size_t kHeightPoses = 32;  ///< poses
 // Metres.
 constexpr double kLeast = 0.5;
 constexpr double kSteady = 0.5;
 /// Of the poses that are high up, and of the heights: the others may be beside vegetation or noise.
-constexpr double kMost = 0.75;
+constexpr double kMostHigh = 0.75;
 
 /// The inner part of a slice of the model, so that walls and kerbs beside it do not count.
 Box inner_body(const Box& model) {
@@ -34,8 +34,9 @@ Box inner_body(const Box& model) {
 std::vector<double> heights_of(const Question& question) {
   const Ground ground(question.cloud);
   const Box body = inner_body(question.model);
-  const auto poses = spread_poses(question.query.poses.size(), kLookedAt);
-  const auto may_be_low = static_cast<std::size_t>((1 - kMost) * static_cast<double>(poses.size()));
+  const auto poses = spread_poses(question.query.poses.size(), kHeightPoses);
+  const auto may_be_low =
+      static_cast<std::size_t>((1 - kMostHigh) * static_cast<double>(poses.size()));
   std::vector<double> heights;
   std::size_t low = 0;
   for (const std::uint32_t i : poses) {

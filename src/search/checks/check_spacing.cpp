@@ -10,8 +10,8 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kSample = 512;
-constexpr std::size_t kMeasured = 16;
+constexpr std::size_t kModelSample = 512;
+constexpr std::size_t kMeasuredPoints = 16;
 constexpr std::size_t kMarks = (1 << 19) - 1;
 constexpr double kSomeAlone = 0.01;  ///< share of points that may stand alone, such as antennas
 
@@ -21,7 +21,8 @@ class Neighbours {
  public:
   Neighbours(const std::vector<Vec3>& model, double radius)
       : model_(model), radius_(radius), per_radius_(1 / radius) {
-    for (const std::uint32_t i : spread_poses(model.size(), kSample)) sample_.push_back(model[i]);
+    for (const std::uint32_t i : spread_poses(model.size(), kModelSample))
+      sample_.push_back(model[i]);
     alone_.assign(sample_.size(), true);
     fill();
   }
@@ -90,7 +91,8 @@ class Neighbours {
 /// The largest of the distances from some of `alone` to their nearest other model points.
 double largest_spacing(const std::vector<Vec3>& model, const std::vector<Vec3>& alone) {
   std::vector<Vec3> some;
-  for (const std::uint32_t i : spread_poses(alone.size(), kMeasured)) some.push_back(alone[i]);
+  for (const std::uint32_t i : spread_poses(alone.size(), kMeasuredPoints))
+    some.push_back(alone[i]);
   std::vector<double> nearest(some.size(), kInfinity);
   for (const Vec3& p : model) {
     for (std::size_t i = 0; i < some.size(); ++i) {

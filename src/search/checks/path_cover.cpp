@@ -7,8 +7,8 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kLookedAt = 16'384;  ///< poses
-constexpr std::size_t kMeasured = 64;
+constexpr std::size_t kCoverPoses = 16'384;  ///< poses
+constexpr std::size_t kMeasuredPoses = 64;
 /// Metres.
 constexpr double kFar = 10;
 constexpr double kNear = 3;
@@ -50,7 +50,7 @@ PathCover::PathCover(const Question& question)
 void PathCover::measure(const Question& question) {
   const Box slice = body_slice(question.model);
   std::vector<double> distances;
-  for (const std::uint32_t i : spread_poses(question.query.poses.size(), kMeasured)) {
+  for (const std::uint32_t i : spread_poses(question.query.poses.size(), kMeasuredPoses)) {
     distances.push_back(scan_.nearest(moved(slice, question.query.poses[i]), far_).distance);
   }
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
@@ -60,7 +60,7 @@ void PathCover::measure(const Question& question) {
 
 void PathCover::look(const Question& question) {
   const Box slice = body_slice(question.model);
-  for (const std::uint32_t i : spread_poses(question.query.poses.size(), kLookedAt)) {
+  for (const std::uint32_t i : spread_poses(question.query.poses.size(), kCoverPoses)) {
     ++looked_at_;
     if (scan_.within(moved(slice, question.query.poses[i]), reach_)) continue;
     if (outside_ == 0) first_outside_ = i;

@@ -12,7 +12,7 @@ namespace clearway {
 namespace {
 
 /// Blocks that are looked at for the typical one.
-constexpr std::uint64_t kSample = 4096;
+constexpr std::uint64_t kBlockSample = 4096;
 /// A block longer than this many typical ones lies across a gap.
 constexpr double kUsual = 4;
 
@@ -68,8 +68,8 @@ Box ScanProximity::block_box(std::uint32_t cell, std::uint32_t block) const {
 
 double ScanProximity::median_block() const {
   const std::uint64_t cells = cloud_.cells().size();
-  const std::uint64_t a_cell = std::max<std::uint64_t>(1, kSample / cells);
-  const std::uint64_t stride = divide_up(cells, kSample);
+  const std::uint64_t a_cell = std::max<std::uint64_t>(1, kBlockSample / cells);
+  const std::uint64_t stride = divide_up(cells, kBlockSample);
   std::vector<double> diagonals;
   for (std::uint64_t cell = 0; cell < cells; cell += stride) {
     const std::uint64_t blocks = blocks_of(cloud_.cells()[cell]);
