@@ -105,12 +105,12 @@ void add_map(CLI::App& command, TrajectoryOptions& options) {
 }
 
 void add_lengths(CLI::App& command, TrajectoryOptions& options) {
-  static const std::map<std::string, double> kUnits{
+  static const std::map<std::string, double> kMetresPerUnit{
       {"mm", 0.001}, {"cm", 0.01}, {"m", 1}, {"in", 0.0254}, {"ft", 0.3048}};
   command
       .add_option_function<std::string>(
           "--trajectory-unit",
-          [&options](const std::string& name) { options.metres_per_unit = kUnits.at(name); },
+          [&options](const std::string& name) { options.metres_per_unit = kMetresPerUnit.at(name); },
           "Unit of the positions: mm, cm, m, in or ft (default: m, or what a header says)")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));

@@ -56,7 +56,7 @@ std::string_view without_mark_and_label(std::string_view line) {
 }
 
 /// Of a field such as "X [m]": what stands in brackets.
-std::string unit_in(std::string_view field) {
+std::string bracketed_unit(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {};
   const char close = field[open] == '[' ? ']' : ')';
@@ -67,7 +67,7 @@ std::string unit_in(std::string_view field) {
 
 void add_name(TableHeader& header, std::string_view field) {
   std::string name = table_name(field);
-  std::string unit = unit_in(field);
+  std::string unit = bracketed_unit(field);
   const std::size_t mark = name.rfind('_');
   if (unit.empty() && mark != std::string::npos && mark > 0) {
     const std::string_view end = std::string_view(name).substr(mark + 1);
@@ -128,7 +128,7 @@ TableHeader parse_table_header(std::string_view line) {
   for (const std::string_view field : fields) {
     // In "X [m] Y [m]" with blanks for separators the unit is a field of its own.
     if (header.separator == ' ' && !header.units.empty() && field.find_first_of("[(") == 0) {
-      header.units.back() = unit_in(field);
+      header.units.back() = bracketed_unit(field);
     } else {
       add_name(header, field);
     }
