@@ -147,6 +147,15 @@ std::optional<double> metres_of(const Store& store) {
   return std::nullopt;
 }
 
+Store open_environment(const std::filesystem::path& path) {
+  try {
+    return Store(path);
+  } catch (const InputError&) {
+    check_is_store(path);
+    throw;
+  }
+}
+
 void run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
@@ -154,10 +163,9 @@ void run(RunOptions& options) {
   watch_call(options.search, progress);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
-  check_is_store(options.environment);
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
-  const Store store(options.environment);
+  const Store store = open_environment(options.environment);
   if (const auto metres = metres_of(store)) options.lengths.convert(*metres);
   const Query query = read_query(options, store);
   ProgramReport program{.inputs_seconds = total.seconds()};

@@ -142,15 +142,21 @@ std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> 
   if (count == 0 || count == infos.size()) return std::nullopt;
   const auto integers = std::find_if(infos.begin(), infos.end(), has_integers);
   const double step = *std::max_element(quantisation.scale, quantisation.scale + 3);
-  return Message{step > kCoarseStep ? Message::Severity::kWarning : Message::Severity::kNote,
-                 "floating-point-rounded",
-                 std::to_string(count) + " of " + std::to_string(infos.size()) +
-                     " files have floating-point coordinates, the first is " +
-                     files[static_cast<std::size_t>(floating - infos.begin())].string() +
-                     ". They are rounded to the steps of " +
-                     files[static_cast<std::size_t>(integers - infos.begin())].string() + ", " +
-                     brief(step),
-                 {{"files", static_cast<double>(count)}, {"step", step}}};
+  const bool as_models_are = std::any_of(files.begin(), files.end(), [](const auto& file) {
+    return file.extension() == ".ply" || file.extension() == ".PLY";
+  });
+  return Message{
+      step > kCoarseStep || as_models_are ? Message::Severity::kWarning : Message::Severity::kNote,
+      "floating-point-rounded",
+      std::to_string(count) + " of " + std::to_string(infos.size()) +
+          " files have floating-point coordinates, the first is " +
+          files[static_cast<std::size_t>(floating - infos.begin())].string() +
+          ". They are rounded to the steps of " +
+          files[static_cast<std::size_t>(integers - infos.begin())].string() + ", " + brief(step) +
+          (as_models_are ? ". Is one of them the model? It does not belong among the "
+                           "scans"
+                         : ""),
+      {{"files", static_cast<double>(count)}, {"step", step}}};
 }
 
 }  // namespace clearway

@@ -42,8 +42,9 @@ TEST_CASE("floating-point coordinates are rounded to the steps of the files with
   CHECK(environment.largest_change == Approx(0.0005).epsilon(1e-6));
   const Message* note = find(environment.warnings, "floating-point-rounded");
   REQUIRE(note);
-  CHECK(note->severity == Message::Severity::kNote);
-  CHECK_THAT(note->text, Contains("2 of 4 files") && Contains("a.ply") && Contains("b.las"));
+  CHECK(note->severity == Message::Severity::kWarning);
+  CHECK_THAT(note->text, Contains("2 of 4 files") && Contains("a.ply") && Contains("b.las") &&
+                             Contains("the model?"));
 }
 
 TEST_CASE("rounding to coarse steps of other files is warned of") {

@@ -90,7 +90,7 @@ TEST_CASE("a trajectory as a scan, and as a model, is refused as what it is") {
   const Outcome run = work.run("run --env " + work.hall / "site.h5" + " --model " +
                                work.path("path.txt") + " --trajectory " + work.path("path.txt") +
                                " --radius 0.1 -o " + work.path("out.h5"));
-  check_refused(run, 3, "looks like a trajectory");
+  check_refused(run, 3, "is a trajectory");
   CHECK_THAT(run.err, !Contains("--columns"));
 }
 
