@@ -6,7 +6,7 @@
 #include "io/journal/journal.hpp"
 #include "support/clouds.hpp"
 #include "support/las_bytes.hpp"
-#include "support/laz_samples.hpp"
+#include "support/laz/laz_samples.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -4,7 +4,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "support/las_bytes.hpp"
-#include "support/laz_samples.hpp"
+#include "support/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
