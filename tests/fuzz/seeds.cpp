@@ -7,7 +7,7 @@
 #include "support/clouds.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
-#include "support/laz_samples.hpp"
+#include "support/laz/laz_samples.hpp"
 #include "support/mesh_bytes.hpp"
 #include "support/pcd_bytes.hpp"
 #include "support/sbet_bytes.hpp"

@@ -3,7 +3,7 @@
 #include "io/formats/point_reader.hpp"
 #include "support/e57_bytes.hpp"
 #include "support/las_bytes.hpp"
-#include "support/laz_samples.hpp"
+#include "support/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

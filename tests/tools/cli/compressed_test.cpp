@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/clouds.hpp"
-#include "support/laz_samples.hpp"
+#include "support/laz/laz_samples.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/spawned.hpp"
 

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "io/system/thread_limit.hpp"
-#include "support/laz_samples.hpp"
+#include "support/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -86,7 +86,7 @@ TEST_CASE("batches of LAZ have at most the usual size, and no fewer points than 
 
 TEST_CASE("a CRS before and behind compressed points is read") {
   LazBytes laz = laz_bytes(6, 20);
-  const std::string wkt = "PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"foot\",0.3048]]";
+  const std::string wkt = R"(PROJCS["a",GEOGCS["b"],UNIT["foot",0.3048]])";
   SECTION("before") { laz.las.vlrs = {{"LASF_Projection", 2112, wkt}}; }
   SECTION("behind") { laz.las.evlrs = {{"copc", 1000, "any"}, {"LASF_Projection", 2112, wkt}}; }
   ReaderScratch scratch;

@@ -2,7 +2,7 @@
 #include <chrono>
 #include <limits>
 
-#include "support/laz_samples.hpp"
+#include "support/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -39,7 +39,7 @@ TEST_CASE("what a LAZ record must not say is refused, with what was expected") {
   const LazBytes laz = laz_bytes(1, 20);
   const std::size_t at = scheme_of(laz);
   const auto refusal = [&](std::size_t field, std::uint16_t value) {
-    const std::string message = refusal_with(laz, at + field, value);
+    std::string message = refusal_with(laz, at + field, value);
     CHECK_THAT(message, Contains("a.laz") && Contains("expected"));
     return message;
   };
@@ -90,7 +90,7 @@ TEST_CASE("a chunk table in the wrong place, or of what cannot be, is refused") 
   const std::size_t pointer = laz.points_offset();
   const std::uint64_t table = table_of(laz), size = laz.build().size();
   const auto moved = [&](std::uint64_t place) {
-    const std::string message = refusal_with(laz, pointer, place);
+    std::string message = refusal_with(laz, pointer, place);
     CHECK_THAT(message, Contains("a.laz") && Contains("expected"));
     return message;
   };

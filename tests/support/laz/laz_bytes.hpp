@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "support/las_bytes.hpp"
-#include "support/laz_items.hpp"
+#include "support/laz/laz_items.hpp"
 
 namespace clearway::test {
 

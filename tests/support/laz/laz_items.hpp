@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "support/laz_coder.hpp"
+#include "support/laz/laz_coder.hpp"
 
 namespace clearway::test {
 
