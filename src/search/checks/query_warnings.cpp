@@ -1,6 +1,9 @@
 #include "search/checks/query_warnings.hpp"
 
+#include <cmath>
+
 #include "search/checks/checks.hpp"
+#include "search/checks/words.hpp"
 
 namespace clearway {
 namespace {
@@ -15,6 +18,19 @@ void warn_of_unit(LengthUnit unit, MessageLog& log) {
              "the environment is in degrees: radius, model and trajectory are taken in degrees "
              "too. Distances in degrees mean nothing: convert the scan to metres");
   }
+}
+
+/// What was understood, for people to compare with what they meant.
+void note_sizes(const Question& question, MessageLog& log) {
+  const auto& poses = question.query.poses;
+  double length = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    length += std::sqrt(squared_distance(translation_of(poses[i - 1]), translation_of(poses[i])));
+  }
+  log.note("model " + size_text(question.model, question.unit) + ", path " +
+           length_text(length, question.unit) + " long, environment " +
+           size_text(question.environment, question.unit) + ", radius " +
+           length_text(question.query.radius, question.unit));
 }
 
 }  // namespace
@@ -34,6 +50,7 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
     log.note("the trajectory has one pose: the model is checked at that place alone");
   }
   const Question question(store, unit, query);
+  note_sizes(question, log);
   check_reach(question, log);
   check_height(question, log);
   check_model(question, log);
