@@ -110,7 +110,9 @@ void add_lengths(CLI::App& command, TrajectoryOptions& options) {
   command
       .add_option_function<std::string>(
           "--trajectory-unit",
-          [&options](const std::string& name) { options.metres_per_unit = kMetresPerUnit.at(name); },
+          [&options](const std::string& name) {
+            options.metres_per_unit = kMetresPerUnit.at(name);
+          },
           "Unit of the positions: mm, cm, m, in or ft (default: m, or what a header says)")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
