@@ -19,6 +19,8 @@ check_tidy() {
     echo "clang-tidy is not installed: the sources are not checked with it."
     return
   fi
+  source tools/setup.sh
+  install_missing_packages
   cmake --preset release -B build/lint -DCLEARWAY_CUDA=OFF -DCLEARWAY_TESTS=OFF >/dev/null
   cmake --build build/lint --target clearway_commit >/dev/null
   local sources

@@ -15,6 +15,7 @@
 #include "io/journal/journal.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
+#include "io/system/file.hpp"
 #include "io/system/xxh64.hpp"
 #include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
@@ -206,6 +207,7 @@ struct InfoOptions {
 };
 
 void run_info(const InfoOptions& options) {
+  File::open_regular(options.file);  // a pipe without a writer would wait for ever
   const ordered_json description = describe(options.file);
   // Names of files need not be UTF-8.
   constexpr auto kReplace = ordered_json::error_handler_t::replace;
