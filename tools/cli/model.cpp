@@ -70,7 +70,7 @@ ordered_json describe(const ModelInput& input) {
 }
 
 /// What is as it should be is left out.
-std::string text_of(const ordered_json& facts) {
+std::string facts_text(const ordered_json& facts) {
   std::string text;
   const auto line = [&text](const char* name, const std::string& value) {
     text += fmt::format("{:<16}  {}\n", name, value);
@@ -135,7 +135,7 @@ void run_model(const ModelCommand& options) {
     messages = input.messages;
   }
   for (const Message& message : messages) log_message(message);
-  print(options.json ? facts.dump(2) + "\n" : text_of(facts));
+  print(options.json ? facts.dump(2) + "\n" : facts_text(facts));
 }
 
 }  // namespace
