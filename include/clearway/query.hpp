@@ -16,6 +16,8 @@ struct QueryParameters {
   bool first_pose = false;
   bool between_poses = false;  ///< model points move on straight segments from pose to pose
   double clearance = 0;        ///< metres: distances below it are asked for too; 0: none
+  /// Metres: of every pose the least distance below it is asked for, and the point; 0: none.
+  double profile = 0;
   /// Metres: a point whose distance differs from the radius by no more may be answered wrongly; 0:
   /// none. Below the radius, and only without first poses, clearances and motion between poses.
   double tolerance = 0;

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "clearway/box.hpp"
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
 
@@ -16,8 +18,18 @@ class ResultReader;
 /// Distances of environment points to the model, ascending by source.
 struct Clearances {
   std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;            ///< empty in files before version 3
   std::vector<double> distance;     ///< metres, the least over all poses
   std::vector<std::uint32_t> pose;  ///< the first one that has it
+};
+
+/// Of every pose of the trajectory the least distance between the model and the environment.
+struct Profile {
+  static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
+  std::vector<double> distance;       ///< metres; infinity where it is not below the one asked for
+  std::vector<std::uint64_t> source;  ///< of the point, of several the smallest; or kNoPoint
+  std::vector<Vec3> xyz;              ///< of the point; NaN where there is none
+  std::vector<double> chainage;       ///< metres along the positions of the path
 };
 
 /// A result that search() wrote. Columns are read when they are asked for; row i of each is the
@@ -41,6 +53,12 @@ class Result {
   /// with motion between poses may be one higher: their ways did not include their ends.
   std::vector<std::uint32_t> first_pose() const;
   Clearances clearance() const;  ///< empty unless the query asked for it
+  Profile profile() const;       ///< likewise
+  /// Of the model's points; none in files before version 3.
+  std::optional<Box> model_box() const;
+
+  /// For the library itself.
+  const ResultReader& reader() const { return *reader_; }
 
  private:
   std::unique_ptr<ResultReader> reader_;

@@ -67,6 +67,7 @@ struct SearchReport {
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
+  std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
   std::vector<Message> warnings;
 
   Engine engine = Engine::kAuto;  ///< that searched

@@ -53,15 +53,23 @@ struct TrajectoryOptions {
   Vec3 lever_arm{0, 0, 0};
 };
 
+/// What a file says of its poses beside where they are. Each list has one entry a pose, or none.
+struct PoseLabels {
+  std::vector<double> time;       ///< seconds, as the file counts them
+  std::vector<std::string> name;  ///< for people: a name, or an index of the file's own
+};
+
 /// Reads a trajectory, in the formats above; the poses of a model whose frame is that of the file.
 /// For roll, pitch and heading, SBET and 3DTK the model has x forward, y left and z up.
 /// Rotations stay as read (matrices) or follow from the normalised quaternion or the angles. Throws
 /// InputError with file and line or byte for anything malformed or ambiguous and, unless allowed,
 /// for a matrix whose singular values are not within 1e-4 of 1. UsageError for options that do not
 /// apply to the file. An empty trajectory gives an empty vector.
-/// remarks: where given, notes on how the file was understood and warnings are appended.
+/// remarks: where given, notes on how the file was understood and warnings are appended. labels:
+/// where given, becomes what the file says of its poses.
 std::vector<Pose> read_trajectory(const std::filesystem::path& path,
                                   const TrajectoryOptions& options = {},
-                                  std::vector<Message>* remarks = nullptr);
+                                  std::vector<Message>* remarks = nullptr,
+                                  PoseLabels* labels = nullptr);
 
 }  // namespace clearway

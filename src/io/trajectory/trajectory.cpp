@@ -186,7 +186,8 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 }
 
 std::vector<Pose> read_trajectory(const std::filesystem::path& path,
-                                  const TrajectoryOptions& options, std::vector<Message>* remarks) {
+                                  const TrajectoryOptions& options, std::vector<Message>* remarks,
+                                  PoseLabels* /*labels*/) {
   if (remarks == nullptr) return read_without_doubts(path, options).poses;
   TrajectoryFile found = read_trajectory_file(path, options);
   remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),

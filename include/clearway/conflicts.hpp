@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/progress.hpp"
+#include "clearway/result.hpp"
+#include "clearway/vec3.hpp"
+
+namespace clearway {
+
+/// Where a conflict lies, seen from the model.
+enum class Side { kUnknown, kLeft, kRight, kAbove, kBelow, kFront, kBehind };
+
+const char* name_of(Side side);  ///< "left", ...; "unknown"
+
+/// An axis of the model's frame, with its sign.
+enum class Axis { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };
+
+struct ConflictOptions {
+  /// Metres: points at most this far apart belong to the same conflict.
+  double gap = 0.3;
+  std::uint64_t min_points = 10;  ///< groups of fewer are counted, not listed
+  /// Metres along the path: longer groups are cut at multiples of it; 0: never.
+  double split = 25;
+  Axis forward = Axis::kPlusX, up = Axis::kPlusZ;  ///< of the model; not along one line
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  int threads = 0;  ///< 0: all cores
+  ProgressCallback progress = nullptr;
+  StopFlag stop = nullptr;
+};
+
+/// Colliding points that hang together.
+struct Conflict {
+  std::uint32_t id = 0;                         ///< 1, 2, ... by chainage_from, then source
+  std::uint64_t points = 0;                     ///< colliding ones
+  std::uint64_t source = 0;                     ///< the smallest of its points
+  Box box{};                                    ///< of its points, metres
+  Vec3 centroid{};                              ///< from exact sums of the stored integers
+  std::uint32_t first_pose = 0, last_pose = 0;  ///< smallest and greatest first pose of its points
+  double chainage_from = 0, chainage_to = 0;    ///< of these, metres along the path
+  std::optional<double> least_distance = {};    ///< metres; where the result has clearances
+  std::optional<std::uint32_t> nearest_pose = {};    ///< that has it
+  std::optional<std::uint64_t> nearest_source = {};  ///< and the point
+  std::optional<double> encroachment = {};           ///< radius - least_distance
+  Side side = Side::kUnknown;  ///< of the centroid, at the nearest or else first pose
+  std::uint64_t group = 0;     ///< smallest source of the whole group, before it was cut
+};
+
+struct Conflicts {
+  std::vector<Conflict> listed;  ///< by id
+  std::uint64_t colliding_points = 0;
+  std::uint64_t groups = 0;                          ///< before cutting, small ones too
+  std::uint64_t small_groups = 0, small_points = 0;  ///< not listed
+  double path_length = 0;                            ///< metres
+  /// The longest stretch of the path that one group has, before it was cut, metres.
+  double longest_group = 0;
+  std::uint64_t longest_group_points = 0;
+};
+
+/// Groups the colliding points of a result. poses: those of the search. conflict_of: where given,
+/// becomes the id of each row of the result, 0 for points of small groups. Throws InputError for
+/// poses of another search, UsageError for a result without first poses; Interrupted when asked to
+/// stop.
+Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
+                         const ConflictOptions& options = {},
+                         std::vector<std::uint32_t>* conflict_of = nullptr);
+
+}  // namespace clearway
