@@ -37,6 +37,9 @@ enum class Remedy {
   kAllowNonRigid,
   kAskForClearance,
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
+  kEnvironmentOfResult,  ///< the files given are not those that the result is of
+  kModelOfResult,
+  kTrajectoryOfResult,
   kResume,        ///< the same call goes on from what was finished
 };
 

@@ -15,6 +15,7 @@ void add_compare(CLI::App& program, int& exit_code);
 void add_info(CLI::App& program);
 void add_verify(CLI::App& program, int& exit_code);
 void add_model(CLI::App& program);
+void add_report(CLI::App& program);
 void add_scene(CLI::App& program);
 void add_trajectory(CLI::App& program);
 

@@ -16,6 +16,7 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_info(program);
   add_verify(program, exit_code);
   add_model(program);
+  add_report(program);
   add_scene(program);
   add_trajectory(program);
   program.add_subcommand("bench")->group("")->prefix_command()->callback(
