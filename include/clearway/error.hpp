@@ -36,6 +36,8 @@ enum class Remedy {
   kDeclareLength,       ///< unit of the trajectory's positions
   kAllowNonRigid,
   kAskForClearance,
+  kAskForFirstPose,
+  kSameTrajectory,  ///< the file and options that the search had
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kEnvironmentOfResult,  ///< the files given are not those that the result is of
   kModelOfResult,

@@ -76,6 +76,10 @@ std::string advice_on(const Error& error) {
       return "; --allow-non-rigid accepts any invertible matrix";
     case Remedy::kAskForClearance:
       return "; run with --clearance";
+    case Remedy::kAskForFirstPose:
+      return "; run with --first-pose";
+    case Remedy::kSameTrajectory:
+      return ". --trajectory takes the file of the run, with the same options";
     case Remedy::kModelSpacing:
       return "; --model-spacing " +
              (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
