@@ -37,11 +37,10 @@ enum class Remedy {
   kAllowNonRigid,
   kAskForClearance,
   kAskForFirstPose,
-  kSameTrajectory,  ///< the file and options that the search had
+  kSameTrajectory,   ///< the file and options that the search had
+  kSameModel,        ///< likewise
+  kSameEnvironment,  ///< the store that was searched
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
-  kEnvironmentOfResult,  ///< the files given are not those that the result is of
-  kModelOfResult,
-  kTrajectoryOfResult,
   kResume,        ///< the same call goes on from what was finished
 };
 

@@ -47,6 +47,7 @@ class PointReader {
   PointReader(const Result& result, const PageLattice& lattice, const PointSelection& selection)
       : result_(result.reader()),
         radius_(result.parameters().radius),
+        has_places_(result_.header().has_clearance_xyz()),
         lattice_(lattice),
         selection_(selection),
         picks_(picks_of(selection, result.size())),
@@ -92,7 +93,11 @@ class PointReader {
   void note_least(const RowCursor& row, const ClearanceCursor& clearance, bool collides) {
     if (out_.least && out_.least->distance <= clearance.distance()) return;
     out_.least = {clearance.distance(), clearance.pose(), clearance.source(), {}};
-    if (collides) out_.least->xyz = row.xyz();
+    if (collides) {
+      out_.least->xyz = row.xyz();
+    } else if (has_places_) {
+      out_.least->xyz = clearance.xyz();
+    }
   }
 
   void add_colliding(const RowCursor& row, double distance) {
@@ -115,11 +120,17 @@ class PointReader {
     if (clearance.distance() >= selection_.classes.back()) return;
     const std::uint8_t k = class_of(clearance.distance(), false);
     ++out_.of_class[k];
-    ++out_.without_place;
+    if (!has_places_) {
+      ++out_.without_place;
+    } else if (other_pick_.next()) {
+      ++out_.shown_class[k];
+      out_.points.push_back(page_point(lattice_, clearance.xyz(), k));
+    }
   }
 
   const ResultReader& result_;
   const double radius_;
+  const bool has_places_;  ///< of clearances
   const PageLattice& lattice_;
   const PointSelection& selection_;
   std::vector<EvenPick> picks_;

@@ -6,14 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/predicate.hpp"
-
 namespace clearway {
 namespace {
-
-Vec3 position_of(const Pose& pose) {
-  return {pose.translation[0], pose.translation[1], pose.translation[2]};
-}
 
 std::int32_t whole(double value) {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
@@ -82,19 +76,6 @@ std::string joined_names(std::span<const std::uint32_t> shown, const PoseLabels&
 }
 
 }  // namespace
-
-std::vector<double> chainages_of(std::span<const Pose> poses) {
-  std::vector<double> out;
-  out.reserve(poses.size());
-  double sum = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (i > 0) {
-      sum += std::sqrt(squared_distance(position_of(poses[i]), position_of(poses[i - 1])));
-    }
-    out.push_back(sum);
-  }
-  return out;
-}
 
 std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
                                         const std::vector<Conflict>& conflicts) {

@@ -14,9 +14,6 @@ namespace clearway {
 
 inline constexpr std::size_t kMostShownPoses = 20'000;
 
-/// Metres along the positions of the poses.
-std::vector<double> chainages_of(std::span<const Pose> poses);
-
 /// Poses for the page, ascending: all, or of each of kMostShownPoses stretches of the list the
 /// nearest to the environment (without a profile its first), and in any case the first, the last
 /// and those that conflicts name.

@@ -7,6 +7,7 @@
 #include "clearway/error.hpp"
 #include "clearway/report.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
 #include "io/result/result.hpp"
@@ -40,10 +41,10 @@ void check_inputs(const Result& result, const Store& store, const std::vector<Ve
                   const std::vector<Pose>& poses) {
   const ResultHeader& header = result.reader().header();
   check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,
-             Remedy::kEnvironmentOfResult);
-  check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kModelOfResult);
+             Remedy::kSameEnvironment);
+  check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kSameModel);
   check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
-             Remedy::kTrajectoryOfResult);
+             Remedy::kSameTrajectory);
 }
 
 std::vector<double> classes_of(const Result& result, const std::vector<double>& asked) {
@@ -152,7 +153,7 @@ class Report {
   }
 
   void find_least() {
-    chainage_ = chainages_of(poses_);
+    chainage_ = chainage_of(poses_);
     least_ = points_.least;
     least_of_ = "clearance";
     if (!least_) {

@@ -80,17 +80,14 @@ std::string advice_on(const Error& error) {
       return "; run with --first-pose";
     case Remedy::kSameTrajectory:
       return ". --trajectory takes the file of the run, with the same options";
+    case Remedy::kSameModel:
+      return ". --model takes the file of the run, with the same --model-... options";
+    case Remedy::kSameEnvironment:
+      return ". --env takes the store of the run, or another one of the same scans";
     case Remedy::kModelSpacing:
       return "; --model-spacing " +
              (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
              " sets it, and --model-unit says what the file counts in";
-    case Remedy::kEnvironmentOfResult:
-      return "; give the store that was searched, or one converted from the same scans";
-    case Remedy::kModelOfResult:
-      return "; give the model of the run, with its --model-unit, --model-spacing and "
-             "--model-vertices";
-    case Remedy::kTrajectoryOfResult:
-      return "; give the trajectory of the run, with its --trajectory-format and other options";
     case Remedy::kResume:
       return "; the same command with --resume, without --force, continues from the finished work";
   }
