@@ -7,8 +7,8 @@ const kKinds = [["front", "From the front", "The conflict and what is within a f
 function conflictFacts(conflict) {
   const { query } = page.facts, words = classOf(conflict.least_distance);
   const rows = [
-    ["Where", `chainage ${conflict.chainage_from.toFixed(2)} to ${station(conflict.chainage_to)}, ` +
-              sideWords(conflict.side)],
+    ["Where", `chainage ${conflict.chainage_from.toFixed(2)} to ${station(conflict.chainage_to)}` +
+              after(sideWords(conflict.side))],
     ["Place", coordinates(conflict.nearest_point ?? conflict.centroid)],
   ];
   if (conflict.least_distance !== null) {
@@ -55,8 +55,8 @@ function drawDetails() {
     make("div", { class: "tools" }, make("h3", {}, `Conflict ${conflict.id}`),
          button("Previous", () => nextConflict(-1)), button("Next", () => nextConflict(1)),
          button("Show in 3-D", () => byId("view").scrollIntoView())),
-    conflictFacts(conflict),
-    conflictPictures(conflict, Math.round(460 * Math.min(2, devicePixelRatio || 1))));
+    make("div", { class: "details" }, conflictFacts(conflict),
+         conflictPictures(conflict, innerWidth > 1800 ? 880 : 640)));
   for (const again of holder.querySelectorAll("button")) {
     if (again.textContent === focused) again.focus();
   }

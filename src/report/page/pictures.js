@@ -92,7 +92,7 @@ function viewOf(kind, conflict, vehicle, place, aspect) {
   camera.halfHeight = Math.max(4 * radius, 0.22 * Math.max(vehicle.height, vehicle.width), 0.15);
   camera.halfWidth = camera.halfHeight * aspect;
   camera.origin = place;
-  return { camera, lo: -0.1, hi: 0.1 };
+  return { camera, lo: -0.05, hi: 0.05 };
 }
 
 /** Draws a picture of a conflict: kind is "front", "above" or "section". */
@@ -107,7 +107,7 @@ function drawConflict(canvas, conflict, kind) {
   let thickness = view.hi;
   const square = stampOf("square", kind === "section" ? Math.max(2, size - 1) : size);
   let drawn = paintEnvironment(painter, { lo: view.lo, hi: view.hi, stamp: square });
-  while (kind === "section" && drawn < 150 && thickness < 0.5) {
+  while (kind === "section" && drawn < 60 && thickness < 0.2) {
     thickness *= 2;  // where points are thin, more of them tell where the surface is
     drawn = paintEnvironment(painter, { lo: -thickness, hi: thickness, stamp: square });
   }

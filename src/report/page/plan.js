@@ -142,7 +142,9 @@ function schedulePlan() {
   requestAnimationFrame(() => {
     plan.due = false;
     const canvas = byId("plan-canvas");
-    paintPlan(canvas, canvas.width / canvas.clientWidth || 1);
+    if (canvas.width > 0 && canvas.height > 0) {
+      paintPlan(canvas, canvas.width / canvas.clientWidth || 1);
+    }
   });
 }
 

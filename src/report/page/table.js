@@ -23,7 +23,8 @@ function tableColumns() {
     ["Pose", poseOf, (c) => String(poseOf(c))],
     ["Place x, y, z", (c) => (c.nearest_point ?? c.centroid)[0],
      (c) => coordinates(c.nearest_point ?? c.centroid)],
-  ].filter(Boolean).map(([title, value, cell]) => ({ title, value, cell }));
+  ].filter(Boolean).map(([title, value, cell]) =>
+      ({ title, value, cell, number: !["Side", "Class"].includes(title) }));
 }
 
 function classCell(conflict) {
@@ -66,14 +67,14 @@ function tableHead(columns, sortable) {
   return make("thead", {}, make("tr", {}, columns.map((c) => {
     const sorted = sortable && table.title === c.title;
     const label = titleWithUnit(c.title) + (sorted ? (table.down ? " ▼" : " ▲") : "");
-    return make("th", { scope: "col", "aria-sort": sorted ? (table.down ? "descending" : "ascending")
+    return make("th", { scope: "col", class: c.number ? "number" : null, "aria-sort": sorted ? (table.down ? "descending" : "ascending")
                                                           : null },
                 sortable ? button(label, () => sortBy(c.title)) : titleWithUnit(c.title));
   })));
 }
 
 function tableRow(conflict, columns, live) {
-  const cells = columns.map((c) => make("td", {}, c.cell(conflict)));
+  const cells = columns.map((c) => make("td", { class: c.number ? "number" : null }, c.cell(conflict)));
   if (!live) return make("tr", {}, cells);
   const chosen = conflict === page.conflict;
   return make("tr", { tabindex: 0, "data-id": conflict.id, class: chosen ? "chosen" : null,

@@ -31,7 +31,7 @@ function conflictTiles() {
     tiles.push(tile(missing === null ? plural(worst.points, "point") : metres(missing),
                     missing === null ? "most in one conflict" : "missing at the worst place"));
     tiles.push(tile(`No. ${worst.id}`,
-                    `worst: chainage ${station(worst.chainage_from)}, ${kSides[worst.side]}. Show it`,
+                    `worst: chainage ${station(stationOf(worst))}${after(kSides[worst.side])}. Show it`,
                     () => goTo(worst)));
   }
   return tiles;
@@ -66,14 +66,16 @@ function verdictSentences() {
   const first = `The environment is closer than ${radius} to the vehicle${where}.`;
   if (!worst) return [first, leastSentence()];
   const worstText = worst.least_distance === null
-      ? `Conflict ${worst.id} has the most points, at chainage ${station(worst.chainage_from)}.`
-      : `The worst place is conflict ${worst.id}, at chainage ${station(worst.chainage_from)}, ` +
-        `${sideWords(worst.side)}: ${metres(worst.least_distance)} instead of ${radius}.`;
+      ? `Conflict ${worst.id} has the most points, at chainage ${station(worst.chainage_from)}` +
+        `${after(sideWords(worst.side))}.`
+      : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
+        `${after(sideWords(worst.side))}: ${metres(worst.least_distance)} instead of ${radius}.`;
   return [first, worstText];
 }
 
 function cautions() {
-  const { facts } = page, out = facts.warnings.map((w) => w.message);
+  const { facts } = page;
+  const out = facts.warnings.map((w) => w.message[0].toUpperCase() + w.message.slice(1) + ".");
   const { conflicts, inputs, query } = facts;
   if (!query.exact) {
     out.push("The result is not exact: it was made with a tolerance or in single precision.");
@@ -151,7 +153,8 @@ function buildVerdict() {
          make("div", { class: "words" }, make("h2", { id: "verdict-word" }, clear ? "Clear" : "Conflict"),
               make("p", {}, first), make("p", {}, second),
               warned.length > 0 &&
-                  make("p", { class: "but" }, `But see ${plural(warned.length, "warning")} below.`)),
+                  make("p", { class: "but" },
+                       `${clear ? "But see" : "See also"} ${plural(warned.length, "warning")} below.`)),
          make("div", { class: "tiles" }, clear ? clearTiles() : conflictTiles())),
     warned.length > 0 && make("ul", { class: "warnings", "aria-label": "Warnings" },
                               warned.map((text) => make("li", {}, text))),

@@ -4,11 +4,16 @@ const view = { target: [0, 0, 0], distance: 20, yaw: -2.2, pitch: 0.7, follow: f
                cutAbove: false, cutFront: false, scene: null, due: false, places: [] };
 const kHalfAngle = Math.PI / 8;
 
-function viewCamera() {
-  const { yaw, pitch, target, distance } = view, flat = Math.cos(pitch);
+function cameraAxes(yaw, pitch) {
+  const flat = Math.cos(pitch);
   const toViewer = [flat * Math.cos(yaw), flat * Math.sin(yaw), Math.sin(pitch)];
-  const right = unit([-toViewer[1], toViewer[0], 0]), up = cross(toViewer, right);
-  return { toViewer, right, up, target, distance, eye: plus(target, toViewer, distance),
+  const right = unit([-toViewer[1], toViewer[0], 0]);
+  return { toViewer, right, up: cross(toViewer, right) };
+}
+
+function viewCamera() {
+  const { target, distance } = view, axes = cameraAxes(view.yaw, view.pitch);
+  return { ...axes, target, distance, eye: plus(target, axes.toViewer, distance),
            halfAngle: kHalfAngle };
 }
 
@@ -21,8 +26,8 @@ function painterCamera(canvas) {
 
 /** Leaves out what is nearer to the viewer than the target and hides it. */
 function cutPlane(camera) {
-  if (!view.cutFront) return undefined;
   const { toViewer, target, distance } = camera, size = page.vehicleSize;
+  if (!view.cutFront || distance > 6 * size) return undefined;  // of an overview nothing
   const margin = Math.min(0.6 * size, 0.45 * distance);
   return [...toViewer, -dot(toViewer, target) - margin];
 }
@@ -70,6 +75,7 @@ function drawWithoutWebgl(canvas) {
 
 function paintView() {
   const canvas = byId("view-canvas"), over = byId("view-numbers");
+  if (canvas.width === 0 || canvas.height === 0) return;
   if (page.poses.count > 0) {
     if (view.follow) view.target = vehicleAt(page.pose).middle;
     if (view.scene) drawWebgl(canvas); else drawWithoutWebgl(canvas);
@@ -133,12 +139,28 @@ function flyToConflict() {
           yaw: Math.atan2(eye[1], eye[0]) });
 }
 
+/** Distance from which all of the path and what is beside it is in sight. */
+function fittingDistance(target, yaw, pitch) {
+  const canvas = byId("view-canvas"), wide = Math.tan(kHalfAngle) * canvas.width / canvas.height;
+  const { toViewer, right, up } = cameraAxes(yaw, pitch);
+  const stride = Math.max(1, Math.floor(page.path.length / 300)), size = page.vehicleSize;
+  let distance = 2 * size;
+  for (let i = 0; i < page.path.length; i += stride) {
+    const d = plus(page.path[i], target, -1), depth = dot(d, toViewer);
+    const across = Math.abs(dot(d, right)) + size, high = Math.abs(dot(d, up)) + size;
+    distance = Math.max(distance, depth + across / wide, depth + high / Math.tan(kHalfAngle));
+  }
+  return 1.1 * distance;
+}
+
 function flyToOverview() {
-  const { lo, hi } = planBox(), across = Math.hypot(hi[0] - lo[0], hi[1] - lo[1]);
-  const middle = page.path.length > 0 ? page.path[page.path.length >> 1] : [0, 0, 0];
-  const long = hi[1] - lo[1] > hi[0] - lo[0];
-  flyTo({ target: [(lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, middle[2]], distance: 0.85 * across,
-          yaw: long ? -0.6 : -2.0, pitch: 0.75 });
+  const lo = [0, 1, 2].map((k) => page.path.reduce((a, p) => Math.min(a, p[k]), Infinity));
+  const hi = [0, 1, 2].map((k) => page.path.reduce((a, p) => Math.max(a, p[k]), -Infinity));
+  if (page.path.length === 0) return;
+  const target = times(plus(lo, hi), 0.5), pitch = 0.8;
+  // Across the path's longer side, so that it lies along the picture.
+  const yaw = hi[1] - lo[1] > hi[0] - lo[0] ? -0.35 : -Math.PI / 2 - 0.35;
+  flyTo({ target, distance: fittingDistance(target, yaw, pitch), yaw, pitch });
 }
 
 function flyToVehicle() {

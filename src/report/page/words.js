@@ -21,6 +21,15 @@ const sideWords = (side) => ({ left: "on the left", right: "on the right", above
                                below: "below it", front: "in front of it", behind: "behind it" })[side]
     ?? "";
 
+/** ", text", or nothing. */
+const after = (text) => text ? `, ${text}` : "";
+
+/** Where along the path a conflict is nearest, or else where it begins. */
+function stationOf(conflict) {
+  return conflict.nearest_pose === null ? conflict.chainage_from
+      : page.poses.chainage[shownPose(conflict.nearest_pose)];
+}
+
 /** The class of a distance: {name, below, ...words}; the last one for distances beyond all. */
 function classOf(distance) {
   const classes = page.facts.classes, radius = page.facts.query.radius;
