@@ -76,7 +76,10 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary,
 
 void run_report(ReportCommand& options) {
   ConsoleProgress progress;
-  watch_call(options.report.conflicts, progress);
+  options.report.conflicts.progress = [&progress](const ProgressUpdate& update) {
+    progress.update(update);
+  };
+  options.report.conflicts.stop = &stop_flag();
   refuse_overwriting(options.output,
                      {options.result, options.environment, options.model, options.trajectory});
   check_is_model(options.model);

@@ -16,7 +16,8 @@ async function start() {
   const least = page.facts.least_distance;
   if (worstConflict()) selectConflict(worstConflict());
   else if (least) selectPose(shownPose(least.pose));
-  if (worstConflict()) flyToOverview();
+  // Of a long path the overview shows little.
+  if (worstConflict() && profileLength() < 30 * page.vehicleSize) flyToOverview();
   document.body.dataset.ready = "true";
 }
 

@@ -51,15 +51,18 @@ function drawNumbers(context, painter, unitSize, places) {
   const order = [...conflictList()].sort((a, b) => (b === page.conflict) - (a === page.conflict) ||
       (b === worst) - (a === worst) || (b.encroachment ?? 0) - (a.encroachment ?? 0) ||
       b.points - a.points);
-  const taken = [];
+  const taken = [], dots = [];
   for (const conflict of order) {
     const at = painter.project(placeOf(conflict));
     if (!at || at[0] < 0 || at[1] < 0 || at[0] > painter.width || at[1] > painter.height) continue;
     const free = taken.every(([x, y]) => Math.hypot(x - at[0], y - at[1]) > 21 * unitSize);
-    drawNumber(context, at, conflict, free, unitSize);
-    if (!free) continue;
-    taken.push(at);
-    places.push({ x: at[0], y: at[1], conflict });
+    (free ? taken : dots).push(at);
+    at.conflict = conflict;
+  }
+  for (const at of dots) drawNumber(context, at, at.conflict, false, unitSize);
+  for (const at of taken.reverse()) {
+    drawNumber(context, at, at.conflict, true, unitSize);
+    places.push({ x: at[0], y: at[1], conflict: at.conflict });
   }
 }
 
