@@ -98,7 +98,8 @@ TEST_CASE("integers over their whole range are compared without overflow") {
   found.quanta = {{kLeast, kLeast, kLeast}, {kMost, kMost, kMost}, {0, 0, 0}, {kMost, 0, 0}};
   CHECK(check_groups(found, 1e9) == 4);
   CHECK(check_groups(found, 2'147'483'647) == 3);
-  CHECK(check_groups(found, 3'719'550'787) == 2);  // sqrt(3) 2^31, rounded up
+  CHECK(check_groups(found, 3'719'550'786) == 2);  // sqrt(3) 2^31, rounded down
+  CHECK(check_groups(found, 3'719'550'787) == 1);
   CHECK(check_groups(found, 7'439'101'574) == 1);
   CHECK(check_groups(found, 1e30) == 1);
   found.quantisation.scale[2] = 2;

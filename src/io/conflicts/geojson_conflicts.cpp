@@ -8,13 +8,17 @@
 namespace clearway {
 namespace {
 
+/// Where there is none, a local one: readers take files that name none for WGS 84.
+std::string crs_name(const std::string& wkt) {
+  if (wkt.empty()) return R"(LOCAL_CS["unknown",UNIT["metre",1]])";
+  const ScanCrs crs = scan_crs_of(wkt);
+  return crs.epsg != 0 ? "urn:ogc:def:crs:EPSG::" + std::to_string(crs.epsg) : crs.wkt;
+}
+
 /// As the GeoJSON of 2008 had it. RFC 7946 knows only WGS 84, which a scan in a local frame cannot
 /// be turned into.
 std::string crs_json(const std::string& wkt) {
-  if (wkt.empty()) return "null";
-  const ScanCrs crs = scan_crs_of(wkt);
-  const std::string name =
-      crs.epsg != 0 ? "urn:ogc:def:crs:EPSG::" + std::to_string(crs.epsg) : crs.wkt;
+  const std::string name = crs_name(wkt);
   return "{\"type\": \"name\", \"properties\": {\"name\": " + json_string(name) + "}}";
 }
 

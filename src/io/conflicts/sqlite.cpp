@@ -11,7 +11,8 @@ namespace clearway::sqlite {
 
 Database::Database(const std::filesystem::path& path) : name_(path.string()) {
   File::create(path);
-  const int code = sqlite3_open_v2(name_.c_str(), &handle_, SQLITE_OPEN_READWRITE, nullptr);
+  // Without locks of its own: outputs are locked by their PendingFile, by this process too.
+  const int code = sqlite3_open_v2(name_.c_str(), &handle_, SQLITE_OPEN_READWRITE, "unix-none");
   if (code != SQLITE_OK) {
     const std::string reason = handle_ == nullptr ? "out of memory" : sqlite3_errmsg(handle_);
     sqlite3_close(std::exchange(handle_, nullptr));

@@ -33,8 +33,8 @@ std::string row_text(const Conflict& c, bool distances) {
                                 format_count(c.points), name_of(c.side));
   if (distances) {
     row += c.least_distance
-               ? fmt::format("  {:>9.3f}  {:>9.3f}", *c.least_distance, *c.encroachment)
-               : fmt::format("  {:>9}  {:>9}", "-", "-");
+               ? fmt::format("  {:>12.3f}  {:>16.3f}", *c.least_distance, *c.encroachment)
+               : fmt::format("  {:>12}  {:>16}", "-", "-");
   }
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
@@ -69,7 +69,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
     text += fmt::format("the {} {}:\n", distances ? "worst" : "first", rows.size());
   }
   text += fmt::format("{:>5}  {:>19}  {:>11}  {:>7}", "id", "chainage (m)", "points", "side");
-  if (distances) text += fmt::format("  {:>9}  {:>9}", "least (m)", "lacks (m)");
+  if (distances) text += fmt::format("  {:>12}  {:>16}", "distance (m)", "encroachment (m)");
   text += "  centroid\n";
   for (const Conflict& conflict : rows) text += row_text(conflict, distances);
   return text;
