@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "clearway/progress.hpp"
@@ -22,6 +23,9 @@ struct ModelOptions {
   double unit = 1;
   /// Takes the vertices of a mesh alone, and not its surface.
   bool vertices_only = false;
+  /// Leaves out the points whose z in the model's frame is below it, metres: wheels, for example,
+  /// which stand on the ground.
+  std::optional<double> above = {};
 };
 
 /// Reads a model: points (LAS, PLY, XYZ text), or a mesh (STL, OBJ, PLY with faces, OFF), whose

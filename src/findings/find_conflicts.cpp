@@ -7,6 +7,7 @@
 #include <string>
 
 #include "clearway/conflicts.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "findings/cell_grid.hpp"
 #include "findings/check_conflicts.hpp"
@@ -14,7 +15,7 @@
 #include "findings/conflict_memory.hpp"
 #include "findings/join_cells.hpp"
 #include "findings/least_distances.hpp"
-#include "findings/path_line.hpp"
+#include "findings/path_stretches.hpp"
 #include "findings/point_groups.hpp"
 #include "findings/side.hpp"
 #include "findings/tally_points.hpp"
@@ -31,7 +32,7 @@ class ConflictSearch {
       : reader_(result.reader()),
         poses_(poses),
         options_(options),
-        model_box_(options.model_box),
+        model_box_(options.model_box ? options.model_box : result.model_box()),
         progress_(progress),
         memory_(options.memory_bytes, reader_.collisions(), poses.size()),
         chainage_(chainage_of(poses)) {}

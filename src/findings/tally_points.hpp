@@ -6,7 +6,7 @@
 
 #include "core/util/progress.hpp"
 #include "findings/cell_grid.hpp"
-#include "findings/path_line.hpp"
+#include "findings/path_stretches.hpp"
 #include "findings/point_groups.hpp"
 #include "findings/tally.hpp"
 

@@ -11,6 +11,7 @@ namespace clearway::tool {
 void add_convert(CLI::App& program);
 void add_run(CLI::App& program);
 void add_export(CLI::App& program);
+void add_conflicts(CLI::App& program);
 void add_compare(CLI::App& program, int& exit_code);
 void add_info(CLI::App& program);
 void add_verify(CLI::App& program, int& exit_code);

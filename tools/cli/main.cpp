@@ -12,6 +12,7 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_convert(program);
   add_run(program);
   add_export(program);
+  add_conflicts(program);
   add_compare(program, exit_code);
   add_info(program);
   add_verify(program, exit_code);

@@ -12,6 +12,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
@@ -31,6 +32,7 @@ using nlohmann::ordered_json;
 struct ModelCommand {
   std::filesystem::path input, output;
   ModelOptions how;
+  LengthOptions lengths;
   bool force = false;
   bool json = false;
 };
@@ -162,6 +164,8 @@ void add_model(CLI::App& program) {
       ->add_flag("--vertices,--model-vertices", options->how.vertices_only,
                  "Take the vertices of a mesh alone, not its surface")
       ->excludes(spacing);
+  options->lengths.add(*command, "--above,--model-above", options->how.above,
+                       "Leave out the points whose z is below this", LengthRange::kAny);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(

@@ -1,8 +1,10 @@
 #include "io/model/model_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "io/formats/mesh/mesh_reader.hpp"
 #include "io/formats/point_reader.hpp"
@@ -149,6 +151,28 @@ std::vector<Vec3> sampled(const ModelInput& input, double spacing, std::vector<M
   return points;
 }
 
+void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& points,
+                     std::vector<Message>& messages) {
+  const std::size_t all = points.size();
+  if (!std::isfinite(above)) {
+    throw UsageError(input.path.string() + ": " + shown(above) +
+                     " m as the lowest height of the model; expected a finite number");
+  }
+  const double highest = std::ranges::max_element(points, {}, [](const Vec3& p) { return p.z; })->z;
+  std::erase_if(points, [above](const Vec3& p) { return p.z < above; });
+  if (points.empty()) {
+    refuse(input.path.string(), "all " + format_count(all) +
+                                    " points of the model are below z = " + format_number(above) +
+                                    " m, the highest at " + format_number(highest) +
+                                    " m; expected one at least that is not left out");
+  }
+  const std::size_t left_out = all - points.size();
+  tell(messages, input,
+       format_count(left_out) + " of " + format_count(all) +
+           " model points are below z = " + format_number(above) + " m, and are left out",
+       {{"left_out", static_cast<double>(left_out)}, {"above", above}});
+}
+
 }  // namespace
 
 ModelInput read_model_input(const std::filesystem::path& path, double unit, bool with_faces) {
@@ -172,8 +196,11 @@ ModelInput read_model_input(const std::filesystem::path& path, double unit, bool
 std::vector<Vec3> points_of(const ModelInput& input, const ModelOptions& options,
                             std::vector<Message>& messages) {
   messages.insert(messages.end(), input.messages.begin(), input.messages.end());
-  if (input.is_mesh() && !options.vertices_only) return sampled(input, options.spacing, messages);
-  return input.mesh.vertices;
+  const bool as_surface = input.is_mesh() && !options.vertices_only;
+  std::vector<Vec3> points =
+      as_surface ? sampled(input, options.spacing, messages) : input.mesh.vertices;
+  if (options.above) leave_out_below(input, *options.above, points, messages);
+  return points;
 }
 
 }  // namespace clearway

@@ -98,6 +98,9 @@ std::string advice_on(const Message& message) {
   if (message.code == "large-steps") {
     return ". --between-poses searches the way too; clearway trajectory resample adds poses";
   }
+  if (message.code == "one-long-conflict") {
+    return ". clearway run --model-above leaves out the lowest part of the model";
+  }
   return "";
 }
 

@@ -65,22 +65,29 @@ std::optional<ParsedLength> parse(std::string_view text) {
 
 }  // namespace
 
-ParsedLength parse_length(const std::string& option, const std::string& text) {
+ParsedLength parse_length(const std::string& option, const std::string& text, LengthRange range) {
   const auto length = parse(text);
-  if (length && std::isfinite(length->value) && length->value > 0) return *length;
+  if (length && std::isfinite(length->value)) {
+    const double value = length->value;
+    if (range == LengthRange::kAny || value > 0) return *length;
+    if (range == LengthRange::kFromZero && value == 0) return *length;
+  }
+  const char* limit = range == LengthRange::kAboveZero  ? " above 0"
+                      : range == LengthRange::kFromZero ? ", 0 or more"
+                                                        : "";
   throw CLI::ValidationError(option,
-                             text +
-                                 ": expected a finite number of metres above 0, for example 0.1, "
-                                 "or a number with mm, cm, m, km, in or ft, for example 10cm");
+                             text + ": expected a finite number of metres" + limit +
+                                 ", for example 0.1, or a number with mm, cm, m, km, in or ft, "
+                                 "for example 10cm");
 }
 
 CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, double& length,
-                                const std::string& description) {
+                                const std::string& description, LengthRange range) {
   return command
       .add_option_function<std::string>(
           name,
-          [this, &length, name](const std::string& text) {
-            const ParsedLength parsed = parse_length(name, text);
+          [this, &length, name, range](const std::string& text) {
+            const ParsedLength parsed = parse_length(name, text, range);
             length = parsed.value;
             if (parsed.has_unit) in_metres_.push_back(&length);
           },
@@ -88,8 +95,24 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, doub
       ->type_name("METRES");
 }
 
+CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
+                                std::optional<double>& length, const std::string& description,
+                                LengthRange range) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [this, &length, name, range](const std::string& text) {
+            const ParsedLength parsed = parse_length(name, text, range);
+            length = parsed.value;
+            if (parsed.has_unit) optional_in_metres_.push_back(&length);
+          },
+          description)
+      ->type_name("METRES");
+}
+
 void LengthOptions::convert(double metres) const {
   for (double* length : in_metres_) *length /= metres;
+  for (std::optional<double>* length : optional_in_metres_) **length /= metres;
 }
 
 }  // namespace clearway::tool

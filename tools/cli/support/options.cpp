@@ -88,7 +88,7 @@ void add_model_unit(CLI::App& command, const std::string& names, double& unit) {
       ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
 }
 
-void add_model_options(CLI::App& command, ModelOptions& options) {
+void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths) {
   CLI::Option* spacing =
       command
           .add_option("--model-spacing", options.spacing,
@@ -101,6 +101,9 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
       .add_flag("--model-vertices", options.vertices_only,
                 "Take the vertices of a mesh alone as the model, not its surface")
       ->excludes(spacing);
+  lengths.add(command, "--model-above", options.above,
+              "Leave out the model's points whose z is below this, such as wheels on the ground",
+              LengthRange::kAny);
 }
 
 }  // namespace clearway::tool

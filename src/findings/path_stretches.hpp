@@ -3,13 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "clearway/pose.hpp"
-
 namespace clearway {
-
-/// How far along the positions of the poses each one lies: the sum of the distances of consecutive
-/// positions, from 0.
-std::vector<double> chainage_of(const std::vector<Pose>& poses);
 
 /// The path cut at multiples of a length.
 class PathStretches {
