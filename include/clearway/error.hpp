@@ -36,6 +36,7 @@ enum class Remedy {
   kDeclareLength,       ///< unit of the trajectory's positions
   kAllowNonRigid,
   kAskForClearance,
+  kAskForProfile,
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kResume,        ///< the same call goes on from what was finished
 };

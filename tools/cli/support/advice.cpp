@@ -76,6 +76,8 @@ std::string advice_on(const Error& error) {
       return "; --allow-non-rigid accepts any invertible matrix";
     case Remedy::kAskForClearance:
       return "; run with --clearance";
+    case Remedy::kAskForProfile:
+      return "; run with --profile";
     case Remedy::kModelSpacing:
       return "; --model-spacing " +
              (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
