@@ -8,7 +8,11 @@ SweepEngine::SweepEngine(const PackedCloud& cloud, const SweepFilter& filter,
     : cloud_(cloud),
       filter_(filter),
       pool_(cloud, filter.query(), layout),
-      results_(layout.slots) {}
+      results_(layout.slots) {
+  if (!(filter.ref().profile > 0)) return;
+  bests_.emplace(filter.ref());
+  facts_.resize(layout.slots);
+}
 
 void SweepEngine::start(std::uint32_t slot, const PageShape& shape) {
   const Clock::time_point begin = Clock::now();
@@ -23,7 +27,34 @@ void SweepEngine::start(std::uint32_t slot, const PageShape& shape) {
   }
   give_back(std::move(search));
   results_[slot] = pool_.result(slot, shape.cells);
+  if (bests_) search_profile(slot, page);
   results_[slot].compute = {begin, Clock::now()};
+}
+
+void SweepEngine::search_profile(std::uint32_t slot, const PageRef& page) {
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
+    const PageCell& cell = page.cell(i);
+    const std::span nodes(page.nodes(cell), cell.node_count);
+    most += HostProfile::most_facts(cloud_, pose_count(filter_.motion(), nodes));
+  }
+  std::vector<ProfileFact>& facts = facts_[slot];
+  facts.clear();
+  if (facts.capacity() < most) facts = {};
+  facts.reserve(most);
+  HostProfile search(cloud_, filter_.ref());
+  search.search(page, bests_->ref(), facts);
+  results_[slot].profile = facts;
+  const std::lock_guard lock(mutex_);
+  statistics_.add(search.take_statistics());
+}
+
+std::uint64_t SweepEngine::profile_bytes(const PackedCloud& cloud, const Query& query,
+                                         const SlotLayout& layout, std::uint64_t most_poses) {
+  if (!(query.profile > 0)) return 0;
+  return ProfileBestValues::size_bytes(query.poses.size()) +
+         std::uint64_t{layout.slots} * layout.cells *
+             HostProfile::most_facts(cloud, most_poses) * sizeof(ProfileFact);
 }
 
 std::unique_ptr<CellSearch> SweepEngine::take_search() {
