@@ -37,10 +37,27 @@ Clearances Result::clearance() const {
   const std::uint64_t rows = reader_->clearances();
   Clearances out;
   out.source.resize(rows);
+  out.xyz.resize(reader_->header().has_clearance_xyz() ? rows : 0);
   out.distance.resize(rows);
   out.pose.resize(rows);
-  if (rows > 0) reader_->read_clearances(0, out.source, out.distance, out.pose);
+  if (rows > 0) reader_->read_clearances(0, out.source, out.xyz, out.distance, out.pose);
   return out;
+}
+
+Profile Result::profile() const {
+  const std::uint64_t rows = reader_->profile_rows();
+  Profile out;
+  out.distance.resize(rows);
+  out.source.resize(rows);
+  out.xyz.resize(rows);
+  out.chainage.resize(rows);
+  if (rows > 0) reader_->read_profile(0, out.distance, out.source, out.xyz, out.chainage);
+  return out;
+}
+
+std::optional<Box> Result::model_box() const {
+  if (!reader_->header().has_model_box()) return std::nullopt;
+  return reader_->header().model_box;
 }
 
 }  // namespace clearway

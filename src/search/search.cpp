@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "clearway/error.hpp"
+#include "core/geometry/point_box.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -67,7 +68,9 @@ class Search {
             query_.tolerance > 0 ? name_of(chosen_engine(options_)) : "",
             options_.float_precision,
             metadata.quantisation,
-            metadata.crs_wkt};
+            metadata.crs_wkt,
+            false,
+            query_.model.empty() ? Box{} : box_of(query_.model)};
   }
 
   /// Before anything is searched, and of a result that is there already too.

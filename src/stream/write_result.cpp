@@ -20,6 +20,7 @@ struct Collision {
 struct ClearanceRow {
   std::uint64_t source;
   double distance;
+  std::int32_t q[3];
   std::uint32_t pose;
 };
 
@@ -127,24 +128,30 @@ void append_rows(ResultWriter& writer, const std::vector<Collision>& rows,
   }
 }
 
-void append_rows(ResultWriter& writer, const std::vector<ClearanceRow>& rows) {
+void append_rows(ResultWriter& writer, const std::vector<ClearanceRow>& rows,
+                 const Quantisation& quantisation) {
   std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;
   std::vector<double> distance;
   std::vector<std::uint32_t> pose;
   const std::size_t most = std::min(kRows, rows.size());
   source.reserve(most);
+  xyz.reserve(most);
   distance.reserve(most);
   pose.reserve(most);
   for (std::size_t first = 0; first < rows.size(); first += kRows) {
     source.clear();
+    xyz.clear();
     distance.clear();
     pose.clear();
     for (std::size_t i = first; i < std::min(rows.size(), first + kRows); ++i) {
-      source.push_back(rows[i].source);
-      distance.push_back(rows[i].distance);
-      pose.push_back(rows[i].pose);
+      const ClearanceRow& row = rows[i];
+      source.push_back(row.source);
+      xyz.push_back(position(quantisation, row.q[0], row.q[1], row.q[2]));
+      distance.push_back(row.distance);
+      pose.push_back(row.pose);
     }
-    writer.append_clearances(source, distance, pose);
+    writer.append_clearances(source, xyz, distance, pose);
   }
 }
 
@@ -201,13 +208,17 @@ void write_result(const StoreReader& store, const SearchResult& answer, const Re
   if (header.clearance > 0) {
     write_set<ClearanceRow>(
         store, clearances, distances, memory_bytes, progress,
-        [&](std::uint32_t) {
-          return [&](std::uint64_t source, std::uint64_t entry, std::uint32_t) {
+        [&](std::uint32_t cell) {
+          return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
+                                                  std::uint32_t i) {
             const Clearance clearance = clearances.at(entry);
-            return ClearanceRow{source, std::sqrt(clearance.squared), clearance.pose};
+            return ClearanceRow{
+                source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
           };
         },
-        [&](const std::vector<ClearanceRow>& rows) { append_rows(writer, rows); });
+        [&](const std::vector<ClearanceRow>& rows) {
+          append_rows(writer, rows, store.quantisation());
+        });
   }
   writer.finish();
   progress.end();

@@ -95,12 +95,14 @@ TEST_CASE("a result's columns are those of its file") {
   CHECK(same_rows({result.source(), result.xyz(), result.first_pose()}, rows));
   ClearanceRows expected;
   expected.source.resize(reader.clearances());
+  expected.xyz.resize(reader.clearances());
   expected.distance.resize(reader.clearances());
   expected.pose.resize(reader.clearances());
-  reader.read_clearances(0, expected.source, expected.distance, expected.pose);
+  reader.read_clearances(0, expected.source, expected.xyz, expected.distance, expected.pose);
   const Clearances clearances = result.clearance();
   CHECK(clearances.source.size() == report.clearance_points);
   CHECK(clearances.source == expected.source);
+  CHECK(clearances.xyz == expected.xyz);
   CHECK(clearances.distance == expected.distance);
   CHECK(clearances.pose == expected.pose);
 }

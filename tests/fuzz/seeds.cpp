@@ -232,6 +232,9 @@ void write_result_seeds(Seeds seeds) {
       header.clearance = 0.5;
       write_result(seeds.next(), header, sample_rows(header, rows), 1000,
                    sample_clearances(header, rows));
+      header.poses = 20;
+      header.profile = 0.25;
+      write_result(seeds.next(), header, {}, 1000, {}, sample_profile(header));
     }
   }
 }

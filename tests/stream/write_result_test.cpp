@@ -67,6 +67,19 @@ SearchResult answer_for(const StoreReader& store) {
   return answer;
 }
 
+/// Of every source index.
+std::vector<Vec3> places_of(const StoreReader& store) {
+  std::vector<Vec3> places(store.point_count());
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    const auto sources = store.sources(cell);
+    const auto q = store.coordinates(cell);
+    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
+      places[sources[i]] = position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 TEST_CASE("collisions and clearances written in several passes give the bytes of one") {
@@ -79,6 +92,7 @@ TEST_CASE("collisions and clearances written in several passes give the bytes of
     CHECK((site.written(answer, header, memory) == once));
   }
 
+  const std::vector<Vec3> places = places_of(site.store());
   const ResultReader result = site.result();
   ClearanceRows batch;
   std::uint64_t wrong = 0, source = 0;
@@ -87,7 +101,7 @@ TEST_CASE("collisions and clearances written in several passes give the bytes of
       if (source % 5 == 2) ++source;
       wrong += batch.source[i] != source ||
                batch.pose[i] != static_cast<std::uint32_t>(source * 7) ||
-               batch.distance[i] != std::sqrt(squared_of(source));
+               batch.distance[i] != std::sqrt(squared_of(source)) || batch.xyz[i] != places[source];
     }
   }
   CHECK(wrong == 0);

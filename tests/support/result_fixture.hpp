@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "clearway/result.hpp"
 #include "io/result/result.hpp"
 #include "io/result/result_rows.hpp"
 
@@ -65,6 +67,7 @@ inline ResultHeader sample_header(bool first_pose) {
   header.trajectory_hash = 0xffffffffffffffff;
   header.radius = 0.1;
   header.first_pose = first_pose;
+  header.model_box = {{-1.5, -0.75, 0}, {2, 0.75, 3.25}};
   header.quantisation = {{0.001, 0.0001, 0.01}, {5e6, -2e6 + 0.5, 1e3}};
   return header;
 }
@@ -85,9 +88,28 @@ inline ResultRows sample_rows(const ResultHeader& header, std::size_t count) {
 inline ClearanceRows sample_clearances(const ResultHeader& header, std::size_t count) {
   ClearanceRows rows;
   for (std::size_t i = 0; i < count; ++i) {
+    const auto q = static_cast<std::int32_t>(i * 40503u);
     rows.source.push_back(2 * i + 1);
+    rows.xyz.push_back(position(header.quantisation, -q, q / 3, 7 - q));
     rows.distance.push_back(header.clearance / static_cast<double>(1 + i % 7));
     rows.pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
+  }
+  return rows;
+}
+
+/// The profile of header.poses poses; every fifth has no point.
+inline ProfileRows sample_profile(const ResultHeader& header) {
+  ProfileRows rows;
+  for (std::size_t i = 0; i < header.poses; ++i) {
+    const auto q = static_cast<std::int32_t>(i * 40503u);
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const bool found = i % 5 != 4;
+    rows.distance.push_back(found ? header.profile / static_cast<double>(1 + i % 7)
+                                  : std::numeric_limits<double>::infinity());
+    rows.source.push_back(found ? i * 4050343 % header.environment_points : Profile::kNoPoint);
+    rows.xyz.push_back(found ? position(header.quantisation, q, -q, q / 2)
+                             : Vec3{none, none, none});
+    rows.chainage.push_back(0.25 * static_cast<double>(i / 2));
   }
   return rows;
 }
@@ -95,7 +117,7 @@ inline ClearanceRows sample_clearances(const ResultHeader& header, std::size_t c
 /// Writes `rows` by append() calls of `step` rows.
 inline void write_result(const std::filesystem::path& path, const ResultHeader& header,
                          const ResultRows& rows, std::size_t step = 1000,
-                         const ClearanceRows& clearances = {}) {
+                         const ClearanceRows& clearances = {}, const ProfileRows& profile = {}) {
   ResultWriter writer(path, header, rows.size(), clearances.size());
   for (std::size_t from = 0; from < rows.size(); from += step) {
     const std::size_t count = std::min(step, rows.size() - from);
@@ -107,8 +129,16 @@ inline void write_result(const std::filesystem::path& path, const ResultHeader& 
   for (std::size_t from = 0; from < clearances.size(); from += step) {
     const std::size_t count = std::min(step, clearances.size() - from);
     writer.append_clearances(std::span(clearances.source).subspan(from, count),
+                             std::span(clearances.xyz).subspan(from, count),
                              std::span(clearances.distance).subspan(from, count),
                              std::span(clearances.pose).subspan(from, count));
+  }
+  for (std::size_t from = 0; from < profile.size(); from += step) {
+    const std::size_t count = std::min(step, profile.size() - from);
+    writer.append_profile(std::span(profile.distance).subspan(from, count),
+                          std::span(profile.source).subspan(from, count),
+                          std::span(profile.xyz).subspan(from, count),
+                          std::span(profile.chainage).subspan(from, count));
   }
   writer.finish();
 }

@@ -72,6 +72,11 @@ std::string comparison_text(const Comparison& c, const std::string& a, const std
             ", only in b: " + format_count(c.clearances->only_in_b) +
             ", differing: " + format_count(c.clearances->differing) + "\n";
   }
+  if (c.profiles) {
+    text += "differing poses of the profile: " + format_count(c.profiles->differing);
+    if (c.profiles->first) text += ", the first is pose " + std::to_string(*c.profiles->first);
+    text += "\n";
+  }
   for (const QueryDifference& query : c.queries) {
     text += "queries differ: " + query.what + ": " + query.a + " / " + query.b + "\n";
   }
@@ -99,6 +104,13 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
         {"in_a", c.clearances->in_a},           {"in_b", c.clearances->in_b},
         {"common", c.clearances->common},       {"only_in_a", c.clearances->only_in_a},
         {"only_in_b", c.clearances->only_in_b}, {"differing", c.clearances->differing}};
+  }
+  out["profiles"] = nullptr;
+  if (c.profiles) {
+    out["profiles"] = {{"poses", c.profiles->poses},
+                       {"differing", c.profiles->differing},
+                       {"first_differing_pose", nullptr}};
+    if (c.profiles->first) out["profiles"]["first_differing_pose"] = *c.profiles->first;
   }
   auto& queries = out["question_differences"] = nlohmann::ordered_json::array();
   for (const QueryDifference& query : c.queries) {

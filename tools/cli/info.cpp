@@ -64,14 +64,17 @@ ordered_json describe(const StoreReader& store) {
 ordered_json describe(const ResultReader& result) {
   const ResultHeader& h = result.header();
   ordered_json description{{"kind", "result"},
+                           {"version", h.version},
                            {"colliding_points", result.collisions()},
                            {"environment_points", h.environment_points},
                            {"radius", h.radius},
                            {"model_points", h.model_points},
+                           {"model_box", h.has_model_box() ? box_json(h.model_box) : nullptr},
                            {"poses", h.poses},
                            {"first_pose", h.first_pose},
                            {"clearance", h.clearance},
                            {"clearance_points", result.clearances()},
+                           {"profile", h.profile},
                            {"between_poses", h.between_poses},
                            {"scale", h.quantisation.scale},
                            {"offset", h.quantisation.offset},

@@ -127,8 +127,10 @@ std::vector<Number> read_dataset(const Id& parent, const std::string& name, std:
 /// was read.
 std::uint64_t dataset_rows(const Id& parent, const std::string& name, const std::string& file);
 
+/// columns: as write_dataset's.
 template <typename Number>
-void write_attribute(const Id& object, const std::string& name, std::span<const Number> values);
+void write_attribute(const Id& object, const std::string& name, std::span<const Number> values,
+                     std::uint64_t columns = 0);
 void write_attribute(const Id& object, const std::string& name, const std::string& text);
 
 /// An attribute of one number.

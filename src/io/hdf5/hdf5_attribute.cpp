@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "io/hdf5/hdf5_detail.hpp"
@@ -24,8 +25,9 @@ Attribute open_attribute(const Id& object, const std::string& name, const std::s
 }  // namespace
 
 template <typename Number>
-void write_attribute(const Id& object, const std::string& name, std::span<const Number> values) {
-  const Id space = simple_space(values.size(), 0);
+void write_attribute(const Id& object, const std::string& name, std::span<const Number> values,
+                     std::uint64_t columns) {
+  const Id space = simple_space(values.size() / std::max<std::uint64_t>(columns, 1), columns);
   const Id attribute(H5Acreate2(object.get(), name.c_str(), file_type<Number>(), space.get(),
                                 H5P_DEFAULT, H5P_DEFAULT),
                      H5Aclose, "create attribute " + name);
@@ -76,7 +78,8 @@ std::string read_text_attribute(const Id& object, const std::string& name,
 }
 
 #define CLEARWAY_INSTANTIATE(Number)                                                      \
-  template void write_attribute(const Id&, const std::string&, std::span<const Number>);  \
+  template void write_attribute(const Id&, const std::string&, std::span<const Number>,   \
+                                std::uint64_t);                                           \
   template std::vector<Number> read_attribute(const Id&, const std::string&, std::size_t, \
                                               const std::string&);
 

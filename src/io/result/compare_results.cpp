@@ -1,6 +1,7 @@
 #include "io/result/compare_results.hpp"
 
 #include "clearway/error.hpp"
+#include "clearway/result.hpp"
 #include "io/result/result_cursor.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/xxh64.hpp"
@@ -24,8 +25,8 @@ std::string quantisation_text(const Quantisation& quantisation) {
   return text;
 }
 
-std::string clearance_text(const ResultHeader& header) {
-  return header.clearance > 0 ? shown(header.clearance) + " m" : "not asked for";
+std::string distance_text(double asked_for) {
+  return asked_for > 0 ? shown(asked_for) + " m" : "not asked for";
 }
 
 std::string tolerance_text(const ResultHeader& header) {
@@ -49,7 +50,8 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
          content_text(b.poses, "poses", b.trajectory_hash));
   differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");
   differ("first poses", first_pose_text(a), first_pose_text(b));
-  differ("clearance", clearance_text(a), clearance_text(b));
+  differ("clearance", distance_text(a.clearance), distance_text(b.clearance));
+  differ("profile", distance_text(a.profile), distance_text(b.profile));
   differ("motion", a.between_poses ? "between poses" : "at poses only",
          b.between_poses ? "between poses" : "at poses only");
   differ("tolerance", tolerance_text(a), tolerance_text(b));
@@ -114,14 +116,39 @@ ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader
   ClearanceComparison out;
   out.in_a = a.clearances();
   out.in_b = b.clearances();
+  const bool xyz = a.header().has_clearance_xyz() && b.header().has_clearance_xyz();
   ClearanceCursor from_a(a), from_b(b);
   merge_rows(
       from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
       [&] {
         ++out.common;
-        const bool same = from_a.distance() == from_b.distance() && from_a.pose() == from_b.pose();
+        const bool same = from_a.distance() == from_b.distance() &&
+                          from_a.pose() == from_b.pose() && (!xyz || from_a.xyz() == from_b.xyz());
         if (!same) ++out.differing;
       });
+  return out;
+}
+
+bool has_same_path(const ResultHeader& a, const ResultHeader& b) {
+  return a.poses == b.poses && a.trajectory_hash == b.trajectory_hash;
+}
+
+ProfileComparison compare_profiles(const ResultReader& a, const ResultReader& b) {
+  ProfileComparison out;
+  ProfileRowStream from_a(a), from_b(b);
+  ProfileRows rows_a, rows_b;
+  while (from_a.read(rows_a) && from_b.read(rows_b)) {
+    for (std::size_t i = 0; i < rows_a.size(); ++i, ++out.poses) {
+      const bool none = rows_a.source[i] == Profile::kNoPoint;
+      if (rows_a.source[i] == rows_b.source[i] && rows_a.distance[i] == rows_b.distance[i] &&
+          rows_a.chainage[i] == rows_b.chainage[i] && (none || rows_a.xyz[i] == rows_b.xyz[i])) {
+        continue;
+      }
+      ++out.differing;
+      if (!out.first) out.first = out.poses;
+    }
+  }
+  from_b.read(rows_b);  // of both, the end checks the hash
   return out;
 }
 
@@ -137,6 +164,9 @@ Comparison compare_results(const ResultReader& a, const ResultReader& b, std::si
   Comparison out = Merge(a, b, kept).run();
   if (a.header().clearance > 0 && b.header().clearance > 0) {
     out.clearances = compare_clearances(a, b);
+  }
+  if (a.header().profile > 0 && b.header().profile > 0 && has_same_path(a.header(), b.header())) {
+    out.profiles = compare_profiles(a, b);
   }
   return out;
 }

@@ -29,10 +29,21 @@ struct PointDifference {
 struct ClearanceComparison {
   std::uint64_t in_a = 0, in_b = 0;
   std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
-  std::uint64_t differing = 0;  ///< of common points, in distance or pose
+  std::uint64_t differing =
+      0;  ///< of common points, in distance, pose or, where both have them, coordinates
 
   bool equal() const { return only_in_a == 0 && only_in_b == 0 && differing == 0; }
   friend bool operator==(const ClearanceComparison&, const ClearanceComparison&) = default;
+};
+
+/// How the profiles of two results differ, pose by pose.
+struct ProfileComparison {
+  std::uint64_t poses = 0;
+  std::uint64_t differing = 0;              ///< in distance, point, its coordinates or chainage
+  std::optional<std::uint64_t> first = {};  ///< pose that differs
+
+  bool equal() const { return differing == 0; }
+  friend bool operator==(const ProfileComparison&, const ProfileComparison&) = default;
 };
 
 struct Comparison {
@@ -41,14 +52,17 @@ struct Comparison {
   std::uint64_t differing_coordinates = 0;             ///< of common points
   std::optional<std::uint64_t> differing_first_poses;  ///< of common points, where both have them
   std::optional<ClearanceComparison> clearances;       ///< where both have them
+  /// Where both have one, of the same trajectory.
+  std::optional<ProfileComparison> profiles;
   std::vector<QueryDifference> queries;
   std::vector<PointDifference> points;  ///< the first ones, ascending by source
 
-  /// The same points at the same places with the same first poses and clearances, whatever was
-  /// asked.
+  /// The same points at the same places with the same first poses, clearances and profile, whatever
+  /// was asked.
   bool equal() const {
     return only_in_a == 0 && only_in_b == 0 && differing_coordinates == 0 &&
-           differing_first_poses.value_or(0) == 0 && (!clearances || clearances->equal());
+           differing_first_poses.value_or(0) == 0 && (!clearances || clearances->equal()) &&
+           (!profiles || profiles->equal());
   }
 };
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "clearway/box.hpp"
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
@@ -28,30 +29,37 @@ struct ResultHeader : QueryParameters {
   std::string crs_wkt;
   /// First poses between poses are those of version 0.1.0, whose ways did not include their ends.
   bool ways_without_ends = false;
+  Box model_box{};  ///< of the model's points
+  /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances.
+  std::uint32_t version = 3;
 
   bool has_poses_of_ways() const { return first_pose && between_poses; }
+  bool has_model_box() const { return version >= 3; }
+  bool has_clearance_xyz() const { return version >= 3; }
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
 };
 
-/// Writes `/collisions/source` (uint64, ascending), `/collisions/xyz` (float64, n x 3) and, where
-/// the header asks, `/collisions/first_pose` (uint32) and `/clearance/source` (uint64, ascending),
-/// `distance` (float64) and `pose` (uint32) to a file of its own; the caller publishes it. Its
-/// bytes depend on header and rows alone. A failing disk throws ResourceError.
-/// docs/design/result-format.md has the layout.
+/// Writes the datasets that docs/design/result-format.md lists and the header asks for, to a file
+/// of its own; the caller publishes it. Its bytes depend on header and rows alone. Collisions come
+/// first, then clearances, then the profile. All append functions throw std::logic_error for rows
+/// out of this order, more rows than promised, sources that do not ascend (but in the profile) and
+/// spans of unequal lengths. A failing disk throws ResourceError.
 class ResultWriter {
  public:
+  /// The profile has a row a pose.
   ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
                std::uint64_t collisions, std::uint64_t clearances = 0);
   ~ResultWriter();
 
-  /// The next rows, ascending by source. first_pose: empty unless the header has it. Throws
-  /// std::logic_error for rows out of order, more than promised, or spans of unequal lengths.
+  /// The next rows. first_pose: empty unless the header has it.
   void append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
               std::span<const std::uint32_t> first_pose);
-  /// The next clearances, ascending by source; distance in metres. After every collision, and only
-  /// where the header asks for them. Throws like append.
-  void append_clearances(std::span<const std::uint64_t> source, std::span<const double> distance,
-                         std::span<const std::uint32_t> pose);
+  /// The next clearances; distance in metres. Only where the header asks for them.
+  void append_clearances(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
+                         std::span<const double> distance, std::span<const std::uint32_t> pose);
+  /// The next poses' rows, as Profile has them. Only where the header asks for a profile.
+  void append_profile(std::span<const double> distance, std::span<const std::uint64_t> source,
+                      std::span<const Vec3> xyz, std::span<const double> chainage);
   /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
   void finish();
 
@@ -60,9 +68,9 @@ class ResultWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Reads a result by ranges of rows, which lie below collisions(); whoever reads all of them front
-/// to back (result_rows.hpp) checks them against their hash too. Throws InputError when the file
-/// is not a complete result, is damaged, or holds rows that no run can have found.
+/// Reads a result by ranges of rows, which lie below the number of rows; whoever reads all of them
+/// front to back (result_rows.hpp) checks them against their hash too. Throws InputError when the
+/// file is not a complete result, is damaged, or holds rows that no run can have found.
 class ResultReader {
  public:
   explicit ResultReader(const std::filesystem::path& path);
@@ -82,12 +90,21 @@ class ResultReader {
 
   /// Rows of the clearances, 0 where the header has none.
   std::uint64_t clearances() const;
-  /// ColumnHashes of source, distance and pose; 0 where there are none.
+  /// ColumnHashes of source, xyz (where the header has it), distance and pose; 0 without any.
   std::uint64_t clearances_hash() const;
   /// source as read_source, distance from 0 to header().clearance, pose as read_first_pose. Only
-  /// where the header has clearances.
-  void read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
+  /// where the header has clearances. xyz: empty unless the header has them.
+  void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<double> distance, std::span<std::uint32_t> pose) const;
+
+  /// Rows of the profile: header().poses, or 0 where the header has none.
+  std::uint64_t profile_rows() const;
+  /// ColumnHashes of distance, source, xyz and chainage; 0 where there is none.
+  std::uint64_t profile_hash() const;
+  /// As Profile says; chainage from 0 at the first pose, ascending. Only where the header has it.
+  void read_profile(std::uint64_t first, std::span<double> distance,
+                    std::span<std::uint64_t> source, std::span<Vec3> xyz,
+                    std::span<double> chainage) const;
 
  private:
   struct State;

@@ -41,6 +41,7 @@ class RowCursor : public ResultCursor<ResultRowStream, ResultRows> {
 class ClearanceCursor : public ResultCursor<ClearanceRowStream, ClearanceRows> {
  public:
   using ResultCursor::ResultCursor;
+  Vec3 xyz() const { return rows_.xyz[at_]; }  ///< only where the result has them
   double distance() const { return rows_.distance[at_]; }
   std::uint32_t pose() const { return rows_.pose[at_]; }
 };

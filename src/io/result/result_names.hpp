@@ -6,7 +6,8 @@
 namespace clearway::result_names {
 
 inline constexpr const char* kFormat = "clearway result";
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kOldestVersion = 2;
 
 inline constexpr const char* kGroup = "collisions";
 inline constexpr const char* kSource = "source";
@@ -17,6 +18,11 @@ inline constexpr const char* kClearanceGroup = "clearance";
 inline constexpr const char* kDistance = "distance";
 inline constexpr const char* kPose = "pose";
 
+inline constexpr const char* kProfileGroup = "profile";  // exists where kProfile is above 0
+inline constexpr const char* kChainage = "chainage";
+
+inline constexpr const char* kProfile = "profile";
+inline constexpr const char* kModelBox = "model_box";
 inline constexpr const char* kTolerance = "tolerance";  // with kEngine, only where there is one
 inline constexpr const char* kEngine = "engine";
 inline constexpr const char* kPrecision = "precision";  // only where it is kFloat
@@ -26,5 +32,6 @@ inline constexpr const char* kClosedWay = "closed way";
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";
+inline constexpr const char* kProfileHash = "profile_hash";
 
 }  // namespace clearway::result_names

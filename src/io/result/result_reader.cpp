@@ -1,4 +1,3 @@
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 
@@ -6,8 +5,9 @@
 #include "io/hdf5/hdf5.hpp"
 #include "io/result/as_numbers.hpp"
 #include "io/result/result.hpp"
+#include "io/result/result_header.hpp"
 #include "io/result/result_names.hpp"
-#include "io/system/input_error.hpp"
+#include "io/result/row_checks.hpp"
 
 namespace clearway {
 namespace {
@@ -26,70 +26,17 @@ auto as_input(const std::string& name, Call call) {
   }
 }
 
-void check_format(const hdf5::Id& file, const std::string& name) {
-  if (!hdf5::has_attribute(file, "format", name) ||
-      hdf5::read_text_attribute(file, "format", name) != names::kFormat) {
-    throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
-                     "\"; this HDF5 file is not a result of clearway run");
-  }
-  const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
-  if (version != names::kVersion) {
-    throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
-                     std::to_string(names::kVersion) + "; another release of clearway wrote it");
-  }
-  if (!hdf5::has_attribute(file, "complete", name) ||
-      hdf5::read_number<std::uint8_t>(file, "complete", name) != 1) {
-    throw InputError(name + ": not complete: the run that wrote it was interrupted");
+void check_range(std::uint64_t first, std::size_t count, std::uint64_t rows) {
+  if (first > rows || count > rows - first) {
+    throw std::logic_error("ResultReader: rows past the end");
   }
 }
 
-void read_axes(const hdf5::Id& file, const std::string& attribute, const std::string& name,
-               double (&out)[3]) {
-  const auto values = hdf5::read_attribute<double>(file, attribute, 3, name);
-  for (int k = 0; k < 3; ++k) out[k] = values[k];
-}
-
-void check_tolerance(const ResultHeader& header, const std::string& name) {
-  if (header.tolerance > 0 && header.tolerance < header.radius) return;
-  throw InputError(name + ": attribute 'tolerance' is " + std::to_string(header.tolerance) +
-                   ", expected a length above 0 and below the radius");
-}
-
-/// Whether the file has the attribute, which has only this one value.
-bool has_value(const hdf5::Id& file, const char* attribute, const char* value,
-               const std::string& name) {
-  if (!hdf5::has_attribute(file, attribute, name)) return false;
-  const std::string found = hdf5::read_text_attribute(file, attribute, name);
-  if (found == value) return true;
-  refuse(name,
-         std::string("attribute '") + attribute + "' is " + excerpt(found) + ", expected " + value);
-}
-
-ResultHeader read_header(const hdf5::Id& file, const std::string& name) {
-  check_format(file, name);
-  ResultHeader header;
-  header.environment_points = hdf5::read_number<std::uint64_t>(file, "environment_points", name);
-  header.environment_hash = hdf5::read_number<std::uint64_t>(file, "environment_hash", name);
-  header.model_points = hdf5::read_number<std::uint64_t>(file, "model_points", name);
-  header.model_hash = hdf5::read_number<std::uint64_t>(file, "model_hash", name);
-  header.poses = hdf5::read_number<std::uint64_t>(file, "poses", name);
-  header.trajectory_hash = hdf5::read_number<std::uint64_t>(file, "trajectory_hash", name);
-  header.radius = hdf5::read_number<double>(file, "radius", name);
-  header.first_pose = hdf5::read_number<std::uint8_t>(file, "first_pose", name) != 0;
-  header.clearance = hdf5::read_number<double>(file, "clearance", name);
-  header.between_poses = hdf5::read_number<std::uint8_t>(file, "between_poses", name) != 0;
-  read_axes(file, "scale", name, header.quantisation.scale);
-  read_axes(file, "offset", name, header.quantisation.offset);
-  header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
-  if (hdf5::has_attribute(file, names::kTolerance, name)) {
-    header.tolerance = hdf5::read_number<double>(file, names::kTolerance, name);
-    header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
-    check_tolerance(header, name);
+template <typename... Spans>
+void check_lengths(std::size_t rows, const Spans&... spans) {
+  if (((spans.size() != rows) || ...)) {
+    throw std::logic_error("ResultReader: rows of unequal lengths");
   }
-  header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
-  header.ways_without_ends =
-      header.has_poses_of_ways() && !has_value(file, names::kFirstPoseOf, names::kClosedWay, name);
-  return header;
 }
 
 }  // namespace
@@ -98,21 +45,47 @@ struct ResultReader::State {
   explicit State(const std::filesystem::path& path)
       : name(path.string()),
         file(hdf5::open_file(path)),
-        header(read_header(file, name)),
+        header(read_result_header(file, name)),
         collisions_hash(hdf5::read_number<std::uint64_t>(file, names::kCollisionsHash, name)),
         source(open<std::uint64_t>(names::kGroup, names::kSource, 0)),
         xyz(open<double>(names::kGroup, names::kXyz, 3)) {
     if (header.first_pose) {
       first_pose.emplace(open<std::uint32_t>(names::kGroup, names::kFirstPose, 0));
     }
-    if (header.clearance > 0) {
-      clearance_hash = hdf5::read_number<std::uint64_t>(file, names::kClearanceHash, name);
-      clearance.emplace(
-          ClearanceDatasets{open<std::uint64_t>(names::kClearanceGroup, names::kSource, 0),
-                            open<double>(names::kClearanceGroup, names::kDistance, 0),
-                            open<std::uint32_t>(names::kClearanceGroup, names::kPose, 0)});
+    check_equal(names::kGroup, source.rows(), {xyz.rows(), rows_of(first_pose, source.rows())});
+    if (header.clearance > 0) open_clearances();
+    if (header.profile > 0) open_profile();
+  }
+
+  void open_clearances() {
+    clearance_hash = hdf5::read_number<std::uint64_t>(file, names::kClearanceHash, name);
+    clearance.emplace(
+        ClearanceDatasets{open<std::uint64_t>(names::kClearanceGroup, names::kSource, 0),
+                          {},
+                          open<double>(names::kClearanceGroup, names::kDistance, 0),
+                          open<std::uint32_t>(names::kClearanceGroup, names::kPose, 0)});
+    if (header.has_clearance_xyz()) {
+      clearance->xyz.emplace(open<double>(names::kClearanceGroup, names::kXyz, 3));
     }
-    check_lengths();
+    const std::uint64_t rows = clearance->source.rows();
+    check_equal(
+        names::kClearanceGroup, rows,
+        {clearance->distance.rows(), clearance->pose.rows(), rows_of(clearance->xyz, rows)});
+  }
+
+  void open_profile() {
+    profile_hash = hdf5::read_number<std::uint64_t>(file, names::kProfileHash, name);
+    profile.emplace(ProfileDatasets{open<double>(names::kProfileGroup, names::kDistance, 0),
+                                    open<std::uint64_t>(names::kProfileGroup, names::kSource, 0),
+                                    open<double>(names::kProfileGroup, names::kXyz, 3),
+                                    open<double>(names::kProfileGroup, names::kChainage, 0)});
+    check_equal(names::kProfileGroup, profile->distance.rows(),
+                {profile->source.rows(), profile->xyz.rows(), profile->chainage.rows()});
+    if (profile->distance.rows() != header.poses) {
+      throw InputError(name + ": /profile has " + std::to_string(profile->distance.rows()) +
+                       " rows, expected one for each of " + std::to_string(header.poses) +
+                       " poses");
+    }
   }
 
   template <typename Number>
@@ -121,72 +94,45 @@ struct ResultReader::State {
     return hdf5::Rows<Number>::open(file, path, columns, name);
   }
 
-  void check_lengths() const {
-    const auto check = [&](const char* group, bool equal) {
-      if (!equal) throw InputError(name + ": the datasets of /" + group + " differ in their rows");
-    };
-    check(names::kGroup,
-          xyz.rows() == source.rows() && (!first_pose || first_pose->rows() == source.rows()));
-    if (clearance) {
-      const std::uint64_t rows = clearance->source.rows();
-      check(names::kClearanceGroup,
-            clearance->distance.rows() == rows && clearance->pose.rows() == rows);
+  template <typename Rows>
+  static std::uint64_t rows_of(const std::optional<Rows>& dataset, std::uint64_t otherwise) {
+    return dataset ? dataset->rows() : otherwise;
+  }
+
+  void check_equal(const char* group, std::uint64_t rows,
+                   std::initializer_list<std::uint64_t> others) const {
+    for (const std::uint64_t other : others) {
+      if (other == rows) continue;
+      throw InputError(name + ": the datasets of /" + group + " differ in their rows");
     }
   }
 
-  [[noreturn]] void malformed_row(const char* group, const char* dataset, std::uint64_t row,
-                                  const std::string& expected) const {
-    throw InputError(name + ": /" + group + "/" + dataset + ", row " + std::to_string(row) +
-                     ": expected " + expected);
-  }
-
-  void check_sources(const char* group, std::uint64_t first,
-                     std::span<const std::uint64_t> out) const {
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      if (out[i] >= header.environment_points || (i > 0 && out[i] <= out[i - 1])) {
-        malformed_row(group, names::kSource, first + i,
-                      "an index above the row before and below environment_points");
-      }
-    }
-  }
-
-  void check_poses(const char* group, const char* dataset, std::uint64_t first,
-                   std::span<const std::uint32_t> out) const {
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      if (out[i] >= header.poses) malformed_row(group, dataset, first + i, "a pose below poses");
-    }
-  }
-
-  void check_distances(std::uint64_t first, std::span<const double> out) const {
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      if (!(out[i] >= 0 && out[i] <= header.clearance)) {
-        malformed_row(names::kClearanceGroup, names::kDistance, first + i,
-                      "a distance from 0 to the clearance");
-      }
-    }
-  }
-
-  static void check_range(std::uint64_t first, std::size_t count, std::uint64_t rows) {
-    if (first > rows || count > rows - first) {
-      throw std::logic_error("ResultReader: rows past the end");
-    }
+  RowChecks checks(const char* group, std::uint64_t first) const {
+    return {name, header, group, first};
   }
 
   struct ClearanceDatasets {
     hdf5::Rows<std::uint64_t> source;
+    std::optional<hdf5::Rows<double>> xyz;
     hdf5::Rows<double> distance;
     hdf5::Rows<std::uint32_t> pose;
+  };
+
+  struct ProfileDatasets {
+    hdf5::Rows<double> distance;
+    hdf5::Rows<std::uint64_t> source;
+    hdf5::Rows<double> xyz, chainage;
   };
 
   std::string name;
   hdf5::Id file;
   ResultHeader header;
-  std::uint64_t collisions_hash;
-  std::uint64_t clearance_hash = 0;
+  std::uint64_t collisions_hash, clearance_hash = 0, profile_hash = 0;
   hdf5::Rows<std::uint64_t> source;
   hdf5::Rows<double> xyz;
   std::optional<hdf5::Rows<std::uint32_t>> first_pose;
   std::optional<ClearanceDatasets> clearance;
+  std::optional<ProfileDatasets> profile;
 };
 
 ResultReader::ResultReader(const std::filesystem::path& path) {
@@ -204,30 +150,25 @@ const ResultHeader& ResultReader::header() const { return state_->header; }
 std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
 std::uint64_t ResultReader::collisions_hash() const { return state_->collisions_hash; }
 std::uint64_t ResultReader::clearances_hash() const { return state_->clearance_hash; }
+std::uint64_t ResultReader::profile_hash() const { return state_->profile_hash; }
 
 void ResultReader::read_source(std::uint64_t first, std::span<std::uint64_t> out) const {
-  state_->check_range(first, out.size(), collisions());
+  check_range(first, out.size(), collisions());
   as_input(state_->name, [&] { state_->source.read(first, out); });
-  state_->check_sources(names::kGroup, first, out);
+  state_->checks(names::kGroup, first).sources(out);
 }
 
 void ResultReader::read_xyz(std::uint64_t first, std::span<Vec3> out) const {
-  state_->check_range(first, out.size(), collisions());
+  check_range(first, out.size(), collisions());
   as_input(state_->name, [&] { state_->xyz.read(first, as_numbers(out)); });
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      if (!std::isfinite(out[i][k])) {
-        state_->malformed_row(names::kGroup, names::kXyz, first + i, "finite coordinates");
-      }
-    }
-  }
+  state_->checks(names::kGroup, first).points(out);
 }
 
 void ResultReader::read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const {
-  state_->check_range(first, out.size(), collisions());
+  check_range(first, out.size(), collisions());
   if (!state_->first_pose) throw std::logic_error("ResultReader: no first poses");
   as_input(state_->name, [&] { state_->first_pose->read(first, out); });
-  state_->check_poses(names::kGroup, names::kFirstPose, first, out);
+  state_->checks(names::kGroup, first).poses(names::kFirstPose, out);
 }
 
 std::uint64_t ResultReader::clearances() const {
@@ -235,21 +176,46 @@ std::uint64_t ResultReader::clearances() const {
 }
 
 void ResultReader::read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
-                                   std::span<double> distance,
+                                   std::span<Vec3> xyz, std::span<double> distance,
                                    std::span<std::uint32_t> pose) const {
-  if (!state_->clearance) throw std::logic_error("ResultReader: no clearances");
-  if (distance.size() != source.size() || pose.size() != source.size()) {
-    throw std::logic_error("ResultReader: rows of unequal lengths");
-  }
-  state_->check_range(first, source.size(), clearances());
+  auto& datasets = state_->clearance;
+  if (!datasets) throw std::logic_error("ResultReader: no clearances");
+  check_lengths(source.size(), distance, pose);
+  check_lengths(datasets->xyz ? source.size() : 0, xyz);
+  check_range(first, source.size(), clearances());
   as_input(state_->name, [&] {
-    state_->clearance->source.read(first, source);
-    state_->clearance->distance.read(first, distance);
-    state_->clearance->pose.read(first, pose);
+    datasets->source.read(first, source);
+    if (datasets->xyz) datasets->xyz->read(first, as_numbers(xyz));
+    datasets->distance.read(first, distance);
+    datasets->pose.read(first, pose);
   });
-  state_->check_sources(names::kClearanceGroup, first, source);
-  state_->check_distances(first, distance);
-  state_->check_poses(names::kClearanceGroup, names::kPose, first, pose);
+  const RowChecks checks = state_->checks(names::kClearanceGroup, first);
+  checks.sources(source);
+  checks.points(xyz);
+  checks.clearances(distance);
+  checks.poses(names::kPose, pose);
+}
+
+std::uint64_t ResultReader::profile_rows() const {
+  return state_->profile ? state_->profile->distance.rows() : 0;
+}
+
+void ResultReader::read_profile(std::uint64_t first, std::span<double> distance,
+                                std::span<std::uint64_t> source, std::span<Vec3> xyz,
+                                std::span<double> chainage) const {
+  auto& datasets = state_->profile;
+  if (!datasets) throw std::logic_error("ResultReader: no profile");
+  check_lengths(distance.size(), source, xyz, chainage);
+  check_range(first, distance.size(), profile_rows());
+  as_input(state_->name, [&] {
+    datasets->distance.read(first, distance);
+    datasets->source.read(first, source);
+    datasets->xyz.read(first, as_numbers(xyz));
+    datasets->chainage.read(first, chainage);
+  });
+  const RowChecks checks = state_->checks(names::kProfileGroup, first);
+  checks.profile(distance, source, xyz);
+  checks.chainages(chainage);
 }
 
 }  // namespace clearway

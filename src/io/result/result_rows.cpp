@@ -56,21 +56,53 @@ bool ResultRowStream::read(ResultRows& rows) {
 bool ClearanceRowStream::read(ClearanceRows& rows) {
   const std::size_t count =
       std::min<std::uint64_t>(ResultRowStream::kBatchRows, reader_.clearances() - next_);
+  const bool has_xyz = reader_.header().has_clearance_xyz();
   rows.source.resize(count);
+  rows.xyz.resize(has_xyz ? count : 0);
   rows.distance.resize(count);
   rows.pose.resize(count);
   if (count == 0) {
     if (reader_.header().clearance > 0) {
-      check_hash(reader_, "clearance", columns_, reader_.clearances_hash());
+      // Version 2 has three columns, and the hash is of three.
+      check_hash(reader_, "clearance", std::span(columns_).subspan(has_xyz ? 0 : 1),
+                 reader_.clearances_hash());
     }
     return false;
   }
-  reader_.read_clearances(next_, rows.source, rows.distance, rows.pose);
-  add(columns_[0], rows.source);
-  add(columns_[1], rows.distance);
-  add(columns_[2], rows.pose);
+  reader_.read_clearances(next_, rows.source, rows.xyz, rows.distance, rows.pose);
+  add(columns_[has_xyz ? 0 : 1], rows.source);
+  if (has_xyz) add(columns_[1], rows.xyz);
+  add(columns_[2], rows.distance);
+  add(columns_[3], rows.pose);
   check_ascending(reader_, "/clearance/source", next_, last_source_, rows.source.front());
   last_source_ = rows.source.back();
+  next_ += count;
+  return true;
+}
+
+bool ProfileRowStream::read(ProfileRows& rows) {
+  const std::size_t count =
+      std::min<std::uint64_t>(ResultRowStream::kBatchRows, reader_.profile_rows() - next_);
+  rows.distance.resize(count);
+  rows.source.resize(count);
+  rows.xyz.resize(count);
+  rows.chainage.resize(count);
+  if (count == 0) {
+    if (reader_.header().profile > 0) {
+      check_hash(reader_, "profile", columns_, reader_.profile_hash());
+    }
+    return false;
+  }
+  reader_.read_profile(next_, rows.distance, rows.source, rows.xyz, rows.chainage);
+  add(columns_[0], rows.distance);
+  add(columns_[1], rows.source);
+  add(columns_[2], rows.xyz);
+  add(columns_[3], rows.chainage);
+  if (rows.chainage.front() < last_chainage_) {
+    throw InputError(reader_.name() + ": /profile/chainage, row " + std::to_string(next_) +
+                     ": expected metres, not below the row before");
+  }
+  last_chainage_ = rows.chainage.back();
   next_ += count;
   return true;
 }

@@ -19,13 +19,24 @@ struct ResultRows {
   std::size_t size() const { return source.size(); }
 };
 
-/// Consecutive rows of a result's clearances.
+/// Consecutive rows of a result's clearances. xyz is empty where the result has none.
 struct ClearanceRows {
   std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;
   std::vector<double> distance;
   std::vector<std::uint32_t> pose;
 
   std::size_t size() const { return source.size(); }
+};
+
+/// Consecutive rows of a result's profile, a row a pose.
+struct ProfileRows {
+  std::vector<double> distance;
+  std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;
+  std::vector<double> chainage;
+
+  std::size_t size() const { return distance.size(); }
 };
 
 /// A result's rows front to back in constant memory. The reader outlives the stream.
@@ -59,7 +70,22 @@ class ClearanceRowStream {
   const ResultReader& reader_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
-  std::array<Xxh64Stream, 3> columns_;  ///< of the rows read
+  std::array<Xxh64Stream, 4> columns_;  ///< of the rows read
+};
+
+/// The same for its profile, of which the chainage ascends; no rows where it has none.
+class ProfileRowStream {
+ public:
+  explicit ProfileRowStream(const ResultReader& reader) : reader_(reader) {}
+
+  /// As ResultRowStream's.
+  bool read(ProfileRows& rows);
+
+ private:
+  const ResultReader& reader_;
+  std::uint64_t next_ = 0;
+  double last_chainage_ = 0;
+  std::array<Xxh64Stream, 4> columns_;  ///< of the rows read
 };
 
 }  // namespace clearway

@@ -1,37 +1,47 @@
 #include "io/result/verify_result.hpp"
 
+#include <span>
+
 #include "clearway/error.hpp"
+#include "clearway/result.hpp"
 #include "io/formats/requantize.hpp"
 #include "io/result/result_rows.hpp"
 
 namespace clearway {
 namespace {
 
-void check_rows(const ResultReader& result, const ResultRows& rows) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+void check_points(const ResultReader& result, std::span<const std::uint64_t> source,
+                  std::span<const Vec3> xyz) {
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    if (source[i] == Profile::kNoPoint) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      if (!quantum_at(result.header().quantisation, axis, rows.xyz[i][axis])) {
+      if (!quantum_at(result.header().quantisation, axis, xyz[i][axis])) {
         throw InputError(result.name() + ": a coordinate of source point " +
-                         std::to_string(rows.source[i]) + " is not on the environment's scale");
+                         std::to_string(source[i]) + " is not on the environment's scale");
       }
     }
+  }
+}
+
+template <typename Rows, typename Stream>
+void check_table(const ResultReader& result, Progress& progress) {
+  Stream stream(result);
+  for (Rows rows; stream.read(rows);) {
+    check_points(result, rows.source, rows.xyz);
+    progress.advance(rows.size());
   }
 }
 
 }  // namespace
 
 std::optional<std::string> verify_result(const ResultReader& result, Progress& progress) {
-  ResultRowStream stream(result);
-  ResultRows rows;
-  progress.begin("verify", result.collisions() + result.clearances(), "points");
+  progress.begin("verify", result.collisions() + result.clearances() + result.profile_rows(),
+                 "rows");
   std::optional<std::string> fault;
   try {
-    while (stream.read(rows)) {
-      check_rows(result, rows);
-      progress.advance(rows.size());
-    }
-    ClearanceRowStream clearances(result);
-    for (ClearanceRows read; clearances.read(read);) progress.advance(read.size());
+    check_table<ResultRows, ResultRowStream>(result, progress);
+    check_table<ClearanceRows, ClearanceRowStream>(result, progress);
+    check_table<ProfileRows, ProfileRowStream>(result, progress);
   } catch (const InputError& error) {
     fault = error.what();
   }

@@ -10,7 +10,7 @@ namespace clearway {
 
 /// Re-reads a result and checks it: rows intact, source indices ascending and below the number of
 /// environment points, coordinates finite and on the result's scale, poses below their number,
-/// clearances within what was asked for. Gives the first fault found.
+/// distances within what was asked for, chainages ascending. Gives the first fault found.
 std::optional<std::string> verify_result(const ResultReader& result, Progress& progress);
 
 }  // namespace clearway

@@ -22,6 +22,7 @@ ClearanceRows read_all(const ResultReader& reader) {
   ClearanceRows all, batch;
   for (ClearanceRowStream stream(reader); stream.read(batch);) {
     all.source.insert(all.source.end(), batch.source.begin(), batch.source.end());
+    all.xyz.insert(all.xyz.end(), batch.xyz.begin(), batch.xyz.end());
     all.distance.insert(all.distance.end(), batch.distance.begin(), batch.distance.end());
     all.pose.insert(all.pose.end(), batch.pose.begin(), batch.pose.end());
   }
@@ -47,6 +48,7 @@ TEST_CASE("clearances are read as they were written") {
   CHECK(reader.clearances() == count);
   const ClearanceRows read = read_all(reader);
   CHECK(read.source == clearances.source);
+  CHECK(read.xyz == clearances.xyz);
   CHECK(read.distance == clearances.distance);
   CHECK(read.pose == clearances.pose);
   CHECK(same_rows(read_rows(reader), rows));
@@ -63,7 +65,7 @@ TEST_CASE("a result without clearances has none") {
   CHECK(reader.clearances() == 0);
   CHECK(read_all(reader).size() == 0);
   ResultWriter writer(folder / "b.h5", header, 0);
-  CHECK_THROWS_AS(writer.append_clearances({}, {}, {}), std::logic_error);
+  CHECK_THROWS_AS(writer.append_clearances({}, {}, {}, {}), std::logic_error);
 }
 
 TEST_CASE("a writer refuses clearances that do not belong to its result") {
@@ -71,9 +73,9 @@ TEST_CASE("a writer refuses clearances that do not belong to its result") {
   const ResultHeader header = header_with_clearance();
   const ClearanceRows rows = sample_clearances(header, 3);
   const auto append = [&](ResultWriter& writer, std::size_t first, std::size_t count) {
-    writer.append_clearances(std::span(rows.source).subspan(first, count),
-                             std::span(rows.distance).subspan(first, count),
-                             std::span(rows.pose).subspan(first, count));
+    writer.append_clearances(
+        std::span(rows.source).subspan(first, count), std::span(rows.xyz).subspan(first, count),
+        std::span(rows.distance).subspan(first, count), std::span(rows.pose).subspan(first, count));
   };
   ResultWriter writer(folder / "a.h5", header, 0, 2);
   CHECK_THROWS_AS(append(writer, 0, 3), std::logic_error);
@@ -93,6 +95,7 @@ TEST_CASE("clearances that no run can have found are faults") {
   SECTION("too far") { rows.distance[at] = std::nextafter(0.75, 1), expected = "distance"; }
   SECTION("negative") { rows.distance[at] = -1e-9, expected = "distance"; }
   SECTION("not a number") { rows.distance[at] = std::nan(""), expected = "distance"; }
+  SECTION("nowhere") { rows.xyz[at].y = std::nan(""), expected = "xyz"; }
   SECTION("a pose past the end") { rows.pose[at] = 4'000'000'000, expected = "pose"; }
   SECTION("a point past the end") {
     rows.source.back() = header.environment_points, expected = "/clearance/source";
@@ -110,7 +113,9 @@ TEST_CASE("clearances are compared where both results have them") {
   ClearanceRows b = a;
   b.distance[5] = std::nextafter(b.distance[5], 0);
   b.pose[7] ^= 1;
+  b.xyz[9].z += 0.01;
   b.source.erase(b.source.begin() + 3);
+  b.xyz.erase(b.xyz.begin() + 3);
   b.distance.erase(b.distance.begin() + 3);
   b.pose.erase(b.pose.begin() + 3);
   write_result(folder / "a.h5", header, {}, 1000, a);
@@ -122,7 +127,7 @@ TEST_CASE("clearances are compared where both results have them") {
   CHECK(compare_results(ra, ra, 9).equal());
   const Comparison differing = compare_results(ra, rb, 9);
   CHECK_FALSE(differing.equal());
-  CHECK(differing.clearances == ClearanceComparison{1000, 999, 999, 1, 0, 2});
+  CHECK(differing.clearances == ClearanceComparison{1000, 999, 999, 1, 0, 3});
   const Comparison one_sided = compare_results(ra, rc, 9);
   CHECK(one_sided.equal());
   CHECK_FALSE(one_sided.clearances);
@@ -133,7 +138,8 @@ TEST_CASE("clearances are compared where both results have them") {
 TEST_CASE("clearances are exported as CSV") {
   const ScratchFolder folder;
   ResultHeader header = header_with_clearance();
-  write_result(folder / "a.h5", header, {}, 1000, {{3, 9}, {0.5, 0.1}, {7, 0}});
+  const Vec3 at = position(header.quantisation, 1, 2, 3);
+  write_result(folder / "a.h5", header, {}, 1000, {{3, 9}, {at, at}, {0.5, 0.1}, {7, 0}});
   NoProgress progress;
   export_clearances(ResultReader(folder / "a.h5"), folder / "a.csv", false, progress);
   CHECK(bytes_of(folder / "a.csv") == "source,distance,pose\n3,0.5,7\n9,0.1,0\n");

@@ -40,6 +40,7 @@ ResultReader truth_of(const ScratchFolder& folder, const Distances& distances,
     if (distances[i] < kRadius) hits.push_back(i);
     if (distances[i] >= clearance) continue;
     clearances.source.push_back(i);
+    clearances.xyz.push_back({});
     clearances.distance.push_back(distances[i]);
     clearances.pose.push_back(0);
   }

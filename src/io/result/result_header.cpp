@@ -1,0 +1,138 @@
+#include "io/result/result_header.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "io/result/as_numbers.hpp"
+#include "io/result/result_names.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+namespace names = result_names;
+
+std::uint32_t read_version(const hdf5::Id& file, const std::string& name) {
+  if (!hdf5::has_attribute(file, "format", name) ||
+      hdf5::read_text_attribute(file, "format", name) != names::kFormat) {
+    throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
+                     "\"; this HDF5 file is not a result of clearway run");
+  }
+  const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
+  if (version < names::kOldestVersion || version > names::kVersion) {
+    throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
+                     std::to_string(names::kOldestVersion) + " to " +
+                     std::to_string(names::kVersion) + "; another release of clearway wrote it");
+  }
+  if (!hdf5::has_attribute(file, "complete", name) ||
+      hdf5::read_number<std::uint8_t>(file, "complete", name) != 1) {
+    throw InputError(name + ": not complete: the run that wrote it was interrupted");
+  }
+  return version;
+}
+
+void read_axes(const hdf5::Id& file, const std::string& attribute, const std::string& name,
+               double (&out)[3]) {
+  const auto values = hdf5::read_attribute<double>(file, attribute, 3, name);
+  for (int k = 0; k < 3; ++k) out[k] = values[k];
+}
+
+void check_tolerance(const ResultHeader& header, const std::string& name) {
+  if (header.tolerance > 0 && header.tolerance < header.radius) return;
+  throw InputError(name + ": attribute 'tolerance' is " + std::to_string(header.tolerance) +
+                   ", expected a length above 0 and below the radius");
+}
+
+/// Whether the file has the attribute, which has only this one value.
+bool has_value(const hdf5::Id& file, const char* attribute, const char* value,
+               const std::string& name) {
+  if (!hdf5::has_attribute(file, attribute, name)) return false;
+  const std::string found = hdf5::read_text_attribute(file, attribute, name);
+  if (found == value) return true;
+  refuse(name,
+         std::string("attribute '") + attribute + "' is " + excerpt(found) + ", expected " + value);
+}
+
+void read_model_box(const hdf5::Id& file, const std::string& name, Box& box) {
+  const auto numbers = hdf5::read_attribute<double>(file, names::kModelBox, 6, name);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(numbers[k] <= numbers[3 + k]) || !std::isfinite(numbers[k]) ||
+        !std::isfinite(numbers[3 + k])) {
+      refuse(name, "attribute 'model_box' goes from " + shown(numbers[k]) + " to " +
+                       shown(numbers[3 + k]) + ", expected two finite numbers that ascend");
+    }
+    box.lo[static_cast<int>(k)] = numbers[k];
+    box.hi[static_cast<int>(k)] = numbers[3 + k];
+  }
+}
+
+void read_profile_distance(const hdf5::Id& file, const std::string& name, double& profile) {
+  profile = hdf5::read_number<double>(file, names::kProfile, name);
+  if (profile >= 0 && std::isfinite(profile)) return;
+  refuse(name, "attribute 'profile' is " + shown(profile) + ", expected a length, or 0 for none");
+}
+
+}  // namespace
+
+void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
+  const Vec3 model_box[2] = {header.model_box.lo, header.model_box.hi};
+  hdf5::write_attribute(file, "format", std::string(names::kFormat));
+  hdf5::write_number(file, "version", names::kVersion);
+  hdf5::write_number(file, "environment_points", header.environment_points);
+  hdf5::write_number(file, "environment_hash", header.environment_hash);
+  hdf5::write_number(file, "model_points", header.model_points);
+  hdf5::write_number(file, "model_hash", header.model_hash);
+  hdf5::write_number(file, "poses", header.poses);
+  hdf5::write_number(file, "trajectory_hash", header.trajectory_hash);
+  hdf5::write_number(file, "radius", header.radius);
+  hdf5::write_number(file, "first_pose", static_cast<std::uint8_t>(header.first_pose));
+  hdf5::write_number(file, "clearance", header.clearance);
+  hdf5::write_number(file, names::kProfile, header.profile);
+  hdf5::write_number(file, "between_poses", static_cast<std::uint8_t>(header.between_poses));
+  hdf5::write_attribute(file, names::kModelBox, as_numbers(std::span(model_box)), 3);
+  hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
+  hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
+  hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
+  if (header.tolerance > 0) {
+    hdf5::write_number(file, names::kTolerance, header.tolerance);
+    hdf5::write_attribute(file, names::kEngine, header.engine);
+  }
+  if (header.float_precision) hdf5::write_attribute(file, names::kPrecision, names::kFloat);
+  if (header.has_poses_of_ways() && !header.ways_without_ends) {
+    hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
+  }
+}
+
+ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
+  ResultHeader header;
+  header.version = read_version(file, name);
+  header.environment_points = hdf5::read_number<std::uint64_t>(file, "environment_points", name);
+  header.environment_hash = hdf5::read_number<std::uint64_t>(file, "environment_hash", name);
+  header.model_points = hdf5::read_number<std::uint64_t>(file, "model_points", name);
+  header.model_hash = hdf5::read_number<std::uint64_t>(file, "model_hash", name);
+  header.poses = hdf5::read_number<std::uint64_t>(file, "poses", name);
+  header.trajectory_hash = hdf5::read_number<std::uint64_t>(file, "trajectory_hash", name);
+  header.radius = hdf5::read_number<double>(file, "radius", name);
+  header.first_pose = hdf5::read_number<std::uint8_t>(file, "first_pose", name) != 0;
+  header.clearance = hdf5::read_number<double>(file, "clearance", name);
+  header.between_poses = hdf5::read_number<std::uint8_t>(file, "between_poses", name) != 0;
+  read_axes(file, "scale", name, header.quantisation.scale);
+  read_axes(file, "offset", name, header.quantisation.offset);
+  header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
+  if (hdf5::has_attribute(file, names::kTolerance, name)) {
+    header.tolerance = hdf5::read_number<double>(file, names::kTolerance, name);
+    header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
+    check_tolerance(header, name);
+  }
+  header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
+  header.ways_without_ends =
+      header.has_poses_of_ways() && !has_value(file, names::kFirstPoseOf, names::kClosedWay, name);
+  if (header.version >= 3) {
+    read_model_box(file, name, header.model_box);
+    read_profile_distance(file, name, header.profile);
+  }
+  return header;
+}
+
+}  // namespace clearway

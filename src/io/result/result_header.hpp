@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "io/hdf5/hdf5.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway {
+
+/// The attributes of a new result but its hashes and `complete`.
+void write_result_header(const hdf5::Id& file, const ResultHeader& header);
+
+/// Throws InputError where the file is not a complete result, or is damaged. name: of the file.
+ResultHeader read_result_header(const hdf5::Id& file, const std::string& name);
+
+}  // namespace clearway

@@ -1,0 +1,107 @@
+#include <hdf5.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "io/hdf5/hdf5.hpp"
+#include "io/result/compare_results.hpp"
+#include "io/result/verify_result.hpp"
+#include "support/result_fixture.hpp"
+#include "support/result_version_2.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+ResultHeader header_of_3() {
+  ResultHeader header = sample_header(false);
+  header.poses = 3;
+  header.profile = 0.5;
+  return header;
+}
+
+/// Replaces an attribute behind the reader's back.
+template <typename Write>
+void replace(const std::filesystem::path& path, const char* name, Write write) {
+  const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "open");
+  REQUIRE(H5Adelete(file.get(), name) >= 0);
+  write(file);
+}
+
+}  // namespace
+
+TEST_CASE("a result of version 2 is read, and has no coordinates of clearances") {
+  const ScratchFolder folder;
+  write_version_2(folder / "a.h5");
+  const ResultReader reader(folder / "a.h5");
+  CHECK(reader.header().version == 2);
+  CHECK_FALSE(reader.header().has_clearance_xyz());
+  NoProgress progress;
+  CHECK(verify_result(reader, progress).value_or("") == "");
+  CHECK(read_rows(reader).source == std::vector<std::uint64_t>{3, 8});
+  ClearanceRows rows;
+  CHECK(ClearanceRowStream(reader).read(rows));
+  CHECK(rows.source == std::vector<std::uint64_t>{3, 5, 8});
+  CHECK(rows.distance == std::vector<double>{0.05, 0.3, 0.02});
+  CHECK(rows.xyz.empty());
+}
+
+TEST_CASE("a result of version 2 is compared with one of version 3") {
+  const ScratchFolder folder;
+  write_version_2(folder / "a.h5");
+  ResultHeader header = ResultReader(folder / "a.h5").header();
+  header.version = 3;
+  const std::vector<Vec3> xyz(3, Vec3{1, 2, 3});
+  write_result(folder / "b.h5", header, {{3, 8}, {{1, 2, 3}, {4, 5, 6}}, {2, 0}}, 1000,
+               {{3, 5, 8}, xyz, {0.05, 0.3, 0.02}, {3, 1, 0}});
+  const ResultReader a(folder / "a.h5"), b(folder / "b.h5");
+  CHECK(b.header().version == 3);
+  CHECK(compare_results(a, b, 9).equal());
+  CHECK(compare_results(b, a, 9).equal());
+}
+
+TEST_CASE("results of other versions are refused") {
+  const ScratchFolder folder;
+  write_result(folder / "a.h5", header_of_3(), {}, 1000, {}, sample_profile(header_of_3()));
+  const auto version = GENERATE(as<std::uint32_t>(), 0, 1, 4, 0xffffffff);
+  replace(folder / "a.h5", "version",
+          [&](const hdf5::Id& file) { hdf5::write_number(file, "version", version); });
+  CHECK_THROWS_WITH(ResultReader(folder / "a.h5"), Contains("version") && Contains("2 to 3"));
+}
+
+TEST_CASE("malformed attributes of a profile and a model box are refused") {
+  const ScratchFolder folder;
+  write_result(folder / "a.h5", header_of_3(), {}, 1000, {}, sample_profile(header_of_3()));
+  std::string expected;
+  SECTION("a negative length") {
+    replace(folder / "a.h5", "profile",
+            [](const hdf5::Id& file) { hdf5::write_number(file, "profile", -0.5); });
+    expected = "'profile'";
+  }
+  SECTION("no number") {
+    replace(folder / "a.h5", "profile",
+            [](const hdf5::Id& file) { hdf5::write_number(file, "profile", std::nan("")); });
+    expected = "'profile'";
+  }
+  SECTION("more poses than rows") {
+    replace(folder / "a.h5", "poses",
+            [](const hdf5::Id& file) { hdf5::write_number(file, "poses", std::uint64_t{4}); });
+    expected = "one for each of 4 poses";
+  }
+  SECTION("a box from high to low") {
+    replace(folder / "a.h5", "model_box", [](const hdf5::Id& file) {
+      hdf5::write_attribute<double>(file, "model_box", std::vector<double>{0, 0, 1, 0, 0, 0}, 3);
+    });
+    expected = "'model_box'";
+  }
+  SECTION("a box of five numbers") {
+    replace(folder / "a.h5", "model_box", [](const hdf5::Id& file) {
+      hdf5::write_attribute<double>(file, "model_box", std::vector<double>{0, 0, 1, 0, 0});
+    });
+    expected = "model_box";
+  }
+  CHECK_THROWS_WITH(ResultReader(folder / "a.h5"), Contains(expected));
+}
