@@ -1,14 +1,13 @@
 #include "cpu/sweep_engine.hpp"
 
+#include <algorithm>
+
 #include "core/cloud/kd_order.hpp"
 
 namespace clearway {
 SweepEngine::SweepEngine(const PackedCloud& cloud, const SweepFilter& filter,
                          const SlotLayout& layout)
-    : cloud_(cloud),
-      filter_(filter),
-      pool_(cloud, filter.query(), layout),
-      results_(layout.slots) {
+    : cloud_(cloud), filter_(filter), pool_(cloud, filter.query(), layout), results_(layout.slots) {
   if (!(filter.ref().profile > 0)) return;
   bests_.emplace(filter.ref());
   facts_.resize(layout.slots);
@@ -32,12 +31,14 @@ void SweepEngine::start(std::uint32_t slot, const PageShape& shape) {
 }
 
 void SweepEngine::search_profile(std::uint32_t slot, const PageRef& page) {
-  std::uint64_t most = 0;
+  std::uint64_t most_poses = 0;
   for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
     const PageCell& cell = page.cell(i);
     const std::span nodes(page.nodes(cell), cell.node_count);
-    most += HostProfile::most_facts(cloud_, pose_count(filter_.motion(), nodes));
+    most_poses = std::max(most_poses, pose_count(filter_.motion(), nodes));
   }
+  const std::uint64_t most = HostProfile::most_facts(cloud_, filter_.motion().poses().size(),
+                                                     page.shape.cells, most_poses);
   std::vector<ProfileFact>& facts = facts_[slot];
   facts.clear();
   if (facts.capacity() < most) facts = {};
@@ -53,8 +54,9 @@ std::uint64_t SweepEngine::profile_bytes(const PackedCloud& cloud, const Query& 
                                          const SlotLayout& layout, std::uint64_t most_poses) {
   if (!(query.profile > 0)) return 0;
   return ProfileBestValues::size_bytes(query.poses.size()) +
-         std::uint64_t{layout.slots} * layout.cells *
-             HostProfile::most_facts(cloud, most_poses) * sizeof(ProfileFact);
+         layout.slots *
+             HostProfile::most_facts(cloud, query.poses.size(), layout.cells, most_poses) *
+             sizeof(ProfileFact);
 }
 
 std::unique_ptr<CellSearch> SweepEngine::take_search() {

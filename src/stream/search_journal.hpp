@@ -27,7 +27,7 @@ class SearchJournal final : public PoseJournal {
                 const PackedCloud& cloud, const Query& query, double interval_seconds);
 
   /// Adds what the file held to `answer`, of the same cloud and query.
-  void restore(SearchResult& answer) const { 
+  void restore(SearchResult& answer) const {
     replay_all({&answer.hits, &answer.clearances, &answer.profile});
   }
   bool cell_finished(std::uint32_t cell) const { return finished_cells_[cell]; }

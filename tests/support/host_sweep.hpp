@@ -57,7 +57,7 @@ class HostSweep final : public PageEngine {
   void search_profile(std::uint32_t slot, const SweepPage& job) {
     std::vector<ProfileFact>& facts = facts_[slot];
     facts.assign(entries_, {});
-    ProfileList::Counts counts{};
+    ProfileCounts counts{};
     const ProfileList list{facts.data(), &counts, entries_};
     HostWarp::PerLane<SweepStatistics> statistics;
     ProfileTask<HostWarp>::Shared shared;

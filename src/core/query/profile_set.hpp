@@ -17,6 +17,12 @@ struct ProfileFact {
   std::uint32_t tied;   ///< 1: other points of the cell have the same d2, and no source was asked
 };
 
+/// Of a page that a device searches.
+struct ProfileCounts {
+  std::uint32_t facts;  ///< listed: more than the list holds where it was too short
+  std::uint32_t tasks;  ///< taken
+};
+
 /// The point nearest to the model at a pose, of several the one with the smallest source.
 struct ProfilePoint {
   double squared = std::numeric_limits<double>::infinity();

@@ -1,10 +1,10 @@
 #include "core/sweep/host_profile.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace clearway {
-
 ProfileBestValues::ProfileBestValues(const SweepRef& sweep)
     : limit_(rounded_product(sweep.profile, sweep.profile)),
       of_pose_(sweep.motion.pose_count, limit_),
@@ -35,7 +35,31 @@ void HostProfile::search(const PageRef& page, const ProfileBests& bests,
         search.search(page.nodes(cell)[node]);
       }
     }
+    if (page.shape.cells > 1) keep_least(page, true, found);
   }
+}
+
+void HostProfile::keep_least(const PageRef& page, bool one_each,
+                             std::vector<ProfileFact>& facts) const {
+  std::sort(facts.begin(), facts.end(), [](const ProfileFact& a, const ProfileFact& b) {
+    return std::tie(a.pose, a.squared, a.point) < std::tie(b.pose, b.squared, b.point);
+  });
+  const auto source_of = [&](const ProfileFact& fact) {
+    const std::uint32_t entries = cloud_.cell_entries();
+    return cloud_.source_of(page.cell(fact.point / entries).cell, fact.point % entries);
+  };
+  std::size_t kept = 0;
+  for (const ProfileFact& fact : facts) {
+    ProfileFact* const best = kept > 0 ? &facts[kept - 1] : nullptr;
+    if (best == nullptr || best->pose != fact.pose) {
+      facts[kept++] = fact;
+    } else if (best->squared == fact.squared && !one_each) {
+      facts[kept++] = fact;
+    } else if (best->squared == fact.squared && source_of(fact) < source_of(*best)) {
+      *best = fact;
+    }
+  }
+  facts.resize(kept);
 }
 
 void HostProfile::resolve(const PageRef& page, double limit, ProfileFact& fact) {
@@ -61,17 +85,7 @@ void HostProfile::complete(const PageRef& page, std::uint32_t found,
     return;
   }
   facts.resize(found);
-  std::sort(facts.begin(), facts.end(), [](const ProfileFact& a, const ProfileFact& b) {
-    return std::pair(a.pose, a.squared) < std::pair(b.pose, b.squared);
-  });
-  std::size_t kept = 0;
-  for (const ProfileFact& fact : facts) {  // the least of each pose come first
-    if (kept > 0 && facts[kept - 1].pose == fact.pose && facts[kept - 1].squared < fact.squared) {
-      continue;
-    }
-    facts[kept++] = fact;
-  }
-  facts.resize(kept);
+  keep_least(page, false, facts);
   const double limit = rounded_product(sweep_.profile, sweep_.profile);
   for (ProfileFact& fact : facts) {
     if (fact.tied != 0) resolve(page, limit, fact);
@@ -84,8 +98,11 @@ SweepStatistics HostProfile::take_statistics() {
   return sum;
 }
 
-std::uint64_t HostProfile::most_facts(const PackedCloud& cloud, std::uint64_t poses_of_cell) {
-  return Search::parts_of_cell(cloud.blocks_per_cell()) * poses_of_cell;
+std::uint64_t HostProfile::most_facts(const PackedCloud& cloud, std::uint64_t poses,
+                                      std::uint64_t cells, std::uint64_t poses_of_cell) {
+  const std::uint64_t of_cell =
+      Search::parts_of_cell(cloud.blocks_per_cell()) * poses_of_cell;  // one a pose and part
+  return std::min(cells * of_cell, poses + of_cell);
 }
 
 }  // namespace clearway

@@ -51,8 +51,7 @@ class HostProfile {
   /// All outlive it.
   HostProfile(const PackedCloud& cloud, const SweepRef& sweep) : cloud_(cloud), sweep_(sweep) {}
 
-  /// Appends to `found` what the cells of a page have that no other point known is better than: at
-  /// most once a pose for each part of a cell (most_facts).
+  /// Appends to `found` what the cells of a page have that no other point known is better than.
   void search(const PageRef& page, const ProfileBests& bests, std::vector<ProfileFact>& found);
 
   /// Finds the point with the smallest source among those of the fact's cell with the same d2.
@@ -65,10 +64,16 @@ class HostProfile {
 
   SweepStatistics take_statistics();
 
-  static std::uint64_t most_facts(const PackedCloud& cloud, std::uint64_t poses_of_cell);
+  /// Of a page of so many cells, none of whose nodes have more than `poses_of_cell` poses.
+  static std::uint64_t most_facts(const PackedCloud& cloud, std::uint64_t poses,
+                                  std::uint64_t cells, std::uint64_t poses_of_cell);
 
  private:
   using Search = ProfileSearch<HostWarp, SmallestSource>;
+
+  /// Of each pose those facts that no other betters; one_each: of several the one with the smallest
+  /// source.
+  void keep_least(const PageRef& page, bool one_each, std::vector<ProfileFact>& facts) const;
 
   const PackedCloud& cloud_;
   const SweepRef& sweep_;

@@ -19,13 +19,8 @@ struct ProfileBests {
 
 /// Of a page under search on a device: where found points go. What finds no room is counted.
 struct ProfileList {
-  struct Counts {
-    std::uint32_t facts;  ///< may exceed the capacity
-    std::uint32_t taken;  ///< tasks
-  };
-
   ProfileFact* facts;
-  Counts* counts;
+  ProfileCounts* counts;
   std::uint32_t capacity;
 };
 
