@@ -43,7 +43,7 @@ void add_query(CLI::App& command, RunOptions& options) {
       "example 0.5; engine sweep only");
   options.lengths.add(
       command, "--profile", options.query.profile,
-      "Also report of every pose the nearest point, where it is closer than this, for example 0.5; "
+      "Also report for every pose the least distance below this, and its point, for example 0.5; "
       "engine sweep only");
   command.add_flag("--between-poses", options.query.between_poses,
                    "Move every model point on a straight segment from each pose to the next");
