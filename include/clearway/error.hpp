@@ -40,6 +40,7 @@ enum class Remedy {
   kSameTrajectory,   ///< the file and options that the search had
   kSameModel,        ///< likewise
   kSameEnvironment,  ///< the store that was searched
+  kAskForProfile,
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kResume,        ///< the same call goes on from what was finished
 };

@@ -84,6 +84,8 @@ std::string advice_on(const Error& error) {
       return ". --model takes the file of the run, with the same --model-... options";
     case Remedy::kSameEnvironment:
       return ". --env takes the store of the run, or another one of the same scans";
+    case Remedy::kAskForProfile:
+      return "; run with --profile";
     case Remedy::kModelSpacing:
       return "; --model-spacing " +
              (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
