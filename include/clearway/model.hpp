@@ -24,7 +24,7 @@ struct ModelOptions {
   bool vertices_only = false;
 };
 
-/// Reads a model: points (LAS, PLY, XYZ text), or a mesh (STL, OBJ, PLY with faces, OFF), whose
+/// Reads a model: points, of a scan's formats, or a mesh (STL, OBJ, PLY with faces, OFF), whose
 /// surface is sampled to points. Throws InputError for malformed files, for a model without points,
 /// for coordinates that are not finite, and for a mesh without a spacing. messages: where given,
 /// notes and warnings are appended ("mesh-bent-faces", "mesh-crossing-faces").

@@ -76,9 +76,7 @@ std::string sure_endings() {
 void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
     case PointFormat::kMesh:
-      refuse(name,
-             "a mesh is read as a model alone; expected points. `clearway model` samples its "
-             "surface to points in PLY");
+      refuse(name, "a mesh is read as a model alone; expected points", Remedy::kSampleMesh);
     case PointFormat::kE57:
     case PointFormat::kLas:
     case PointFormat::kPly:

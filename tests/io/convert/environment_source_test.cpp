@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "read_environment.hpp"
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "clearway/model.hpp"
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

@@ -87,6 +87,21 @@ TEST_CASE("a file in the wrong place is refused with what it is and what to do")
   }
 }
 
+TEST_CASE("a refused scan comes with the command that reads it") {
+  const Files files;
+  const auto refusal = [&](const std::string& inputs) {
+    const Outcome outcome = files.run("convert " + inputs + " -o " + files.path("x.h5"));
+    CHECK(outcome.exit_code == 3);
+    return outcome.err;
+  };
+  CHECK_THAT(refusal(files.path("car.obj")),
+             Contains("expected points; clearway model samples its surface"));
+  CHECK_THAT(refusal(files.path("car.obj") + " " + files.path("scan.las")),
+             Contains("expected points; --skip-unreadable"));
+  CHECK_THAT(refusal("/dev/null"), Contains("is a pipe or device") &&
+                                       Contains("clearway convert - < FILE"));
+}
+
 TEST_CASE("info describes every input") {
   const Files files;
   const json las = files.info("scan.las");

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "support/mesh_bytes.hpp"
+#include "support/bytes/mesh_bytes.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/mesh_bytes.hpp"
+#include "support/bytes/mesh_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

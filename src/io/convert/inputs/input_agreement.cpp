@@ -1,4 +1,4 @@
-#include "io/convert/input_agreement.hpp"
+#include "io/convert/inputs/input_agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
