@@ -17,9 +17,11 @@ struct ModelOptions {
   /// that the search finds touches the surface, and one that it misses is between
   /// radius - spacing and radius away. 0: none given, and a mesh is refused.
   double spacing = 0;
-  /// Metres of a unit of the file. Coordinates are multiplied by it, or divided where it is one
-  /// part of a whole number.
-  double unit = 1;
+  /// Metres of a unit of the file; 0: as the file declares, and where it does not, coordinates are
+  /// taken as they are.
+  double unit = 0;
+  /// Metres of the environment's unit, into which a known unit is converted.
+  double environment_unit = 1;
   /// Takes the vertices of a mesh alone, and not its surface.
   bool vertices_only = false;
 };

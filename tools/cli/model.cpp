@@ -119,7 +119,7 @@ void run_model(const ModelCommand& options) {
     output.emplace(options.output, options.force);
   }
   const ModelInput input =
-      read_model_input(options.input, options.how.unit, !options.how.vertices_only);
+      read_model_input(options.input, options.how);
   ordered_json facts = describe(input);
   std::vector<Message> messages;
   const bool sampled = output || !input.is_mesh() || options.how.spacing > 0;

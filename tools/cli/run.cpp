@@ -166,7 +166,11 @@ void run(RunOptions& options) {
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
-  if (const auto metres = metres_of(store)) options.lengths.convert(*metres);
+  if (const auto metres = metres_of(store)) {
+    options.lengths.convert(*metres);
+    options.model_options.environment_unit = *metres;
+    options.trajectory_options.environment_unit = *metres;
+  }
   const Query query = read_query(options, store);
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);

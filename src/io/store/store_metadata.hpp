@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/geometry/quantisation.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/formats/length_unit.hpp"
 
 namespace clearway {
 
@@ -31,9 +31,5 @@ struct StoreMetadata {
   std::uint64_t points_hash = 0;
   std::vector<SourceFile> sources;
 };
-
-/// "metre", "foot", "us-survey-foot", "degree", "unknown".
-std::string to_string(LengthUnit unit);
-LengthUnit length_unit_of(const std::string& name);
 
 }  // namespace clearway

@@ -30,7 +30,7 @@ namespace {
 
 struct ChangeOptions {
   std::filesystem::path input, output, model;
-  double max_motion = 0, model_unit = 1;
+  double max_motion = 0, model_unit = 0;
   TrajectoryOptions trajectory;
   bool force = false;
   bool json = false;
