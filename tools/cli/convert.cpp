@@ -112,8 +112,8 @@ void add_convert(CLI::App& program) {
   command
       ->add_option(
           "INPUT", options->inputs,
-          "Scans (LAS, LAZ, PLY, XYZ text), folders of scans, or - for LAS or LAZ on standard "
-          "input")
+          "Scans (LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK, text), folders of scans, or - for LAS "
+          "or LAZ on standard input")
       ->required();
   command->add_option("-o,--output", options->output, "The store, an HDF5 file")
       ->type_name("FILE")

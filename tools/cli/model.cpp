@@ -148,7 +148,7 @@ void add_model(CLI::App& program) {
       "model", "Say what is in a model's file, and sample a mesh to the points that run takes");
   command
       ->add_option("IN", options->input,
-                   "A mesh in STL, OBJ, PLY or OFF, or points in LAS, PLY or XYZ text")
+                   "A mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", options->output, "The model's points in metres, a PLY file")
