@@ -10,6 +10,7 @@
 #include "clearway/error.hpp"
 #include "core/util/shorten_notes.hpp"
 #include "io/convert/checks/choose_scale.hpp"
+#include "io/convert/checks/lost_digits.hpp"
 #include "io/convert/inputs/spooled_reader.hpp"
 #include "io/system/input_error.hpp"
 
@@ -102,6 +103,7 @@ void EnvironmentSource::find_crs() {
 
 std::vector<Message> EnvironmentSource::remarks() const {
   std::vector<Message> all = crs_.warnings;
+  all.insert(all.end(), range_warnings_.begin(), range_warnings_.end());
   const std::vector<Message> of_files = inputs_.remarks();
   all.insert(all.end(), of_files.begin(), of_files.end());
   if (!shifts_.empty()) {
@@ -131,6 +133,7 @@ void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
   }
   progress.end();
   rewind();
+  range_warnings_ = warn_of_lost_digits(range.samples());
   quantisation_ = choose_scale(range, options_.scale, files(), how_to_read_);
 }
 

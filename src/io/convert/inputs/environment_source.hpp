@@ -92,6 +92,7 @@ class EnvironmentSource {
   Quantisation quantisation_{};
   std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
   CommonCrs crs_;
+  std::vector<Message> range_warnings_;  // of the coordinates as they are
   std::optional<std::uint64_t> declared_points_;
 
   std::unique_ptr<PointReader> stream_;   // standard input, spooled

@@ -182,11 +182,23 @@ TEST_CASE("PLY faces need their list, vertices before them and indices that exis
              Contains("faces before the vertices"));
   CHECK_THAT(refusal("a.ply", ply(vertex + "element tristrips 1\n" + list + "end_header\n")),
              Contains("triangle strips"));
+  CHECK(read("a.ply",
+             ply(vertex + "element polygon 1\n" + list + "end_header\n" + points + "3 0 1 2\n"))
+            .mesh.triangles.size() == 1);
+  CHECK_THAT(refusal("a.ply", ply(vertex + "element face 1\n" + list + "element faces 1\n" + list +
+                                  "end_header\n")),
+             Contains("two elements with faces, face and faces"));
   const std::string whole = vertex + "element face 1\n" + list + "end_header\n" + points;
   for (const std::string face : {"3 0 1 3\n", "3 0 1 -1\n", "3 0 1 1.5\n", "2 0 1\n"}) {
     CHECK_THAT(refusal("a.ply", ply(whole + face)), Contains("line 13"));
   }
   CHECK_THAT(refusal("a.ply", ply(whole + "3 0 1 2\n1 2 3\n")), Contains("more than the header"));
+}
+
+TEST_CASE("a face with more corners than any model has is refused before it is cut") {
+  std::string face = "f";
+  for (int i = 0; i < 1'000'001; ++i) face += " 1";
+  CHECK_THAT(refusal("a.obj", "v 0 0 0\n" + face + "\n"), Contains("expected at most 1,000,000"));
 }
 
 TEST_CASE("meshes and drawings of other formats are refused by name") {
