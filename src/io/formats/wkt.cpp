@@ -1,6 +1,7 @@
 #include "io/formats/wkt.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
@@ -124,11 +125,13 @@ StatedUnit horizontal(const std::vector<Node>& nodes) {
 }  // namespace
 
 StatedUnit unit_of_length(double metres) {
-  // The two feet differ by 2e-6 of their length. Some files have few digits.
-  const auto is = [metres](double length) { return std::abs(metres - length) < 1e-6 * length; };
-  for (const LengthUnit unit : {LengthUnit::kMetre, LengthUnit::kFoot, LengthUnit::kUsSurveyFoot}) {
-    if (is(metres_of(unit))) return {unit, {}};
-  }
+  // Some files have few digits. The two feet differ by 2e-6 of their length.
+  constexpr std::array kKnown{LengthUnit::kMetre, LengthUnit::kFoot, LengthUnit::kUsSurveyFoot};
+  const auto difference = [metres](LengthUnit unit) { return std::abs(metres - metres_of(unit)); };
+  const LengthUnit nearest =
+      *std::min_element(kKnown.begin(), kKnown.end(),
+                        [&](LengthUnit a, LengthUnit b) { return difference(a) < difference(b); });
+  if (difference(nearest) < 5e-6 * metres_of(nearest)) return {nearest, {}};
   return {LengthUnit::kUnknown, shown(metres) + " m"};
 }
 
@@ -137,17 +140,15 @@ CrsUnits crs_units(const StatedUnit& plane, const StatedUnit& heights) {
   const bool stated = heights.unit != LengthUnit::kUnknown || !heights.other.empty();
   const bool comparable = plane.unit != LengthUnit::kUnknown && plane.unit != LengthUnit::kDegree;
   if (!stated || !comparable || heights.unit == plane.unit) return {plane.unit, {}};
-  return {plane.unit,
-          "its heights are in " +
-              (heights.other.empty() ? to_string(heights.unit) : heights.other) +
-              ", its other coordinates in " + to_string(plane.unit)};
+  return {plane.unit, "its heights are in " +
+                          (heights.other.empty() ? to_string(heights.unit) : heights.other) +
+                          ", its other coordinates in " + to_string(plane.unit)};
 }
 
 CrsUnits units_of_wkt(std::string_view wkt) {
   const std::vector<Node> nodes = parse(wkt);
   const auto vertical = find(nodes, {"VERT_CS", "VERTCRS", "VERTICALCRS"});
-  return crs_units(horizontal(nodes),
-                   vertical ? unit_within(nodes, *vertical) : StatedUnit());
+  return crs_units(horizontal(nodes), vertical ? unit_within(nodes, *vertical) : StatedUnit());
 }
 
 }  // namespace clearway

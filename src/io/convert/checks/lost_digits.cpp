@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "io/system/input_error.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 /// Metres, the coarsest first. Text in whole centimetres is common, and no surprise.
 constexpr std::array<double, 14> kSteps{100,  10,    8,   4,      2,       1,        0.5,
                                         0.25, 0.125, 0.1, 0.0625, 0.03125, 0.015625, 0};
-constexpr double kFewSteps = 8;  // of the range: a flat scan has lost nothing
+constexpr std::size_t kFewValues = 8;  // a flat scan has lost nothing
 constexpr std::size_t kFewSamples = 64;
 
 bool all_are_multiples(std::span<const Vec3> samples, int axis, double step) {
@@ -22,14 +23,20 @@ bool all_are_multiples(std::span<const Vec3> samples, int axis, double step) {
   });
 }
 
+bool has_few_values(std::span<const Vec3> samples, int axis) {
+  std::set<double> values;
+  for (const Vec3& p : samples) {
+    values.insert(p[axis]);
+    if (values.size() > kFewValues) return false;
+  }
+  return true;
+}
+
 /// 0 where there is none.
 double step_of(std::span<const Vec3> samples, int axis) {
-  const auto [lo, hi] =
-      std::minmax_element(samples.begin(), samples.end(),
-                          [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-  const double range = (*hi)[axis] - (*lo)[axis];
+  if (has_few_values(samples, axis)) return 0;
   return *std::find_if(kSteps.begin(), kSteps.end(), [&](double step) {
-    return step == 0 || (range > kFewSteps * step && all_are_multiples(samples, axis, step));
+    return step == 0 || all_are_multiples(samples, axis, step);
   });
 }
 

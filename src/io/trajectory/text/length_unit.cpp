@@ -29,14 +29,9 @@ double metres_of(std::string_view text) {
 }  // namespace
 
 std::optional<double> unit_of_positions(std::span<const std::string> texts,
-                                        const TrajectoryOptions& options,
-                                        const std::string& name) {
+                                        const TrajectoryOptions& options, const std::string& name) {
   double declared = 0;
-  const bool any = std::any_of(texts.begin(), texts.end(), [](auto& text) { return !text.empty(); });
   for (const std::string& text : texts) {
-    if (any && text.empty()) {
-      refuse(name, "the header has a unit for some of the positions; expected one for all or none");
-    }
     if (text.empty()) continue;
     const double metres = metres_of(text);
     if (metres == 0) {
@@ -51,6 +46,11 @@ std::optional<double> unit_of_positions(std::span<const std::string> texts,
   if (declared != 0 && options.metres_per_unit != 0 && declared != options.metres_per_unit) {
     refuse(name, "the header has positions in units of " + brief(declared) + " m, but a unit of " +
                      brief(options.metres_per_unit) + " m was declared");
+  }
+  const bool all = std::none_of(texts.begin(), texts.end(),
+                                [](const std::string& text) { return text.empty(); });
+  if (declared != 0 && declared != 1 && !all) {
+    refuse(name, "the header has a unit for some of the positions; expected one for all or none");
   }
   if (declared == 0) declared = options.metres_per_unit;
   return declared == 0 ? std::nullopt : std::optional(declared);

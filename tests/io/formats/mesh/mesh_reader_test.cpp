@@ -196,9 +196,15 @@ TEST_CASE("PLY faces need their list, vertices before them and indices that exis
 }
 
 TEST_CASE("a face with more corners than any model has is refused before it is cut") {
-  std::string face = "f";
-  for (int i = 0; i < 1'000'001; ++i) face += " 1";
-  CHECK_THAT(refusal("a.obj", "v 0 0 0\n" + face + "\n"), Contains("expected at most 1,000,000"));
+  constexpr std::uint32_t kCorners = 1'000'001;
+  std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\n"
+      "property double y\nproperty double z\nelement face 1\n"
+      "property list uint uchar vertex_index\nend_header\n";
+  ply.append(3 * sizeof(double), '\0');
+  ply.append(reinterpret_cast<const char*>(&kCorners), sizeof kCorners);
+  ply.append(kCorners, '\0');
+  CHECK_THAT(refusal("a.ply", ply), Contains("expected at most 1,000,000"));
 }
 
 TEST_CASE("meshes and drawings of other formats are refused by name") {
