@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +10,7 @@
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
@@ -36,14 +36,14 @@ struct ConvertArguments {
 
 std::optional<double> regular_size_of(const std::string& layout) {
   const std::string regular = "regular:";
-  double size = 0;
   if (layout == "adaptive") return std::nullopt;
-  if (!layout.starts_with(regular) ||
-      !CLI::detail::lexical_cast(layout.substr(regular.size()), size) || !std::isfinite(size) ||
-      size <= 0) {
-    throw UsageError("--layout " + layout + ": expected adaptive or regular:SIZE (metres)");
+  const std::string expected = "expected adaptive or regular:SIZE, for example regular:2";
+  if (!layout.starts_with(regular)) throw UsageError("--layout " + layout + ": " + expected);
+  try {
+    return parse_length("--layout", layout.substr(regular.size())).value;
+  } catch (const CLI::ValidationError&) {
+    throw UsageError("--layout " + layout + ": " + expected + " or regular:50cm");
   }
-  return size;
 }
 
 nlohmann::ordered_json box_json(const StoreReader& store) {
@@ -129,8 +129,8 @@ void add_convert(CLI::App& program) {
   command
       ->add_option(
           "INPUT", options->inputs,
-          "Scans (LAS, LAZ, PLY, XYZ text), folders of scans, or - for LAS or LAZ on standard "
-          "input")
+          "Scans (LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK, text), folders of scans, or - for LAS "
+          "or LAZ on standard input")
       ->required();
   command->add_option("-o,--output", options->output, "The store, an HDF5 file")
       ->type_name("FILE")
@@ -146,7 +146,7 @@ void add_convert(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--layout", options->layout,
-                   "adaptive, or regular:SIZE for cubes of SIZE metres")
+                   "adaptive, or regular:SIZE for cubes of that size, for example regular:50cm")
       ->capture_default_str();
   add_memory_option(*command, conversion.memory_bytes);
   add_threads_option(*command, conversion.threads);

@@ -120,8 +120,7 @@ void run_model(const ModelCommand& options) {
     refuse_overwriting(options.output, {options.input});
     output.emplace(options.output, options.force);
   }
-  const ModelInput input =
-      read_model_input(options.input, options.how.unit, !options.how.vertices_only);
+  const ModelInput input = read_model_input(options.input, options.how);
   ordered_json facts = describe(input);
   std::vector<Message> messages;
   const bool sampled = output || !input.is_mesh() || options.how.spacing > 0;
@@ -148,17 +147,14 @@ void add_model(CLI::App& program) {
       "model", "Say what is in a model's file, and sample a mesh to the points that run takes");
   command
       ->add_option("IN", options->input,
-                   "A mesh in STL, OBJ, PLY or OFF, or points in LAS, PLY or XYZ text")
+                   "A mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", options->output, "The model's points in metres, a PLY file")
       ->type_name("FILE");
   CLI::Option* spacing =
-      command
-          ->add_option("--spacing,--model-spacing", options->how.spacing,
-                       "Of a mesh: no place of its surface is farther than this from a point")
-          ->type_name("METRES")
-          ->check(positive_length());
+      options->lengths.add(*command, "--spacing,--model-spacing", options->how.spacing,
+                           "Of a mesh: no place of its surface is farther than this from a point");
   add_model_unit(*command, "--unit,--model-unit", options->how.unit);
   command
       ->add_flag("--vertices,--model-vertices", options->how.vertices_only,

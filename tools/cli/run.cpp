@@ -158,13 +158,6 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   return {std::move(model), std::move(poses), options.query};
 }
 
-/// Of the environment's unit where it is a foot.
-std::optional<double> metres_of(const Store& store) {
-  if (store.length_unit() == "foot") return 0.3048;
-  if (store.length_unit() == "us-survey-foot") return 1200.0 / 3937;
-  return std::nullopt;
-}
-
 Store open_environment(const std::filesystem::path& path) {
   try {
     return Store(path);
@@ -190,7 +183,11 @@ bool run(RunOptions& options) {
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
-  if (const auto metres = metres_of(store)) options.lengths.convert(*metres);
+  if (const auto metres = metres_of_unit(store.length_unit())) {
+    options.lengths.convert(*metres);
+    options.model_options.environment_unit = *metres;
+    options.trajectory_options.environment_unit = *metres;
+  }
   Answer answer;
   const Query query = read_query(options, store, answer.labels);
   ProgramReport program{.inputs_seconds = total.seconds()};

@@ -17,7 +17,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       ->required();
   command
       .add_option("--model", options.model,
-                  "The model: a mesh in STL, OBJ, PLY or OFF, or points in LAS, PLY or XYZ text")
+                  "The model: a mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
       ->type_name("FILE")
       ->required();
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
@@ -31,7 +31,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       ->type_name("FILE")
       ->required();
   add_model_options(command, options.model_options, options.lengths);
-  add_trajectory_options(command, options.trajectory_options);
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
 void add_query(CLI::App& command, RunOptions& options) {

@@ -13,7 +13,7 @@
 #include "io/convert/checks/input_warnings.hpp"
 #include "io/convert/count/count.hpp"
 #include "io/convert/distribute.hpp"
-#include "io/convert/environment_source.hpp"
+#include "io/convert/inputs/environment_source.hpp"
 #include "io/convert/pack_unit.hpp"
 #include "io/convert/source_description.hpp"
 #include "io/convert/write_cells.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/geometry/quantisation.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/formats/length_unit.hpp"
 
 namespace clearway {
 
@@ -41,9 +41,5 @@ struct StoreMetadata {
     return sources.size() == 1 ? std::optional(input_points) : std::nullopt;
   }
 };
-
-/// "metre", "foot", "us-survey-foot", "degree", "unknown".
-std::string to_string(LengthUnit unit);
-LengthUnit length_unit_of(const std::string& name);
 
 }  // namespace clearway

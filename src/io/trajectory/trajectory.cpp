@@ -102,6 +102,14 @@ void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& 
   }
 }
 
+void convert_positions(const TrajectoryOptions& options, TrajectoryFile& found) {
+  if (options.environment_unit == 1 || !found.in_metres) return;
+  for (Pose& pose : found.poses) {
+    for (double& coordinate : pose.translation) coordinate /= options.environment_unit;
+  }
+  found.metres_per_unit = options.environment_unit;
+}
+
 /// The model's origin, where the file has the positions of another point of the model.
 void apply_lever_arm(const std::filesystem::path& path, const Vec3& lever,
                      std::vector<Pose>& poses) {
@@ -170,7 +178,10 @@ TrajectoryFile read_without_doubts(const std::filesystem::path& path,
     read_file(path, options, found);
   }
   refuse_useless(path, options, found);
-  apply_lever_arm(path, options.lever_arm, found.poses);
+  convert_positions(options, found);
+  const double unit = options.environment_unit;
+  const Vec3& lever = options.lever_arm;
+  apply_lever_arm(path, {lever.x / unit, lever.y / unit, lever.z / unit}, found.poses);
   remark_times(path, found);
   return found;
 }

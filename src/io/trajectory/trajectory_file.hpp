@@ -19,6 +19,7 @@ struct TrajectoryFile {
   TrajectoryFormat format = TrajectoryFormat::kAuto;
   std::string crs;             ///< that latitudes and longitudes were turned into, or empty
   double metres_per_unit = 1;  ///< of the positions, 1 but for a CRS in another unit
+  bool in_metres = false;      ///< surely: a unit was declared, or the format has it
   RotationSource rotations = RotationSource::kMatrices;
   std::vector<Message> remarks;  ///< notes and warnings
 

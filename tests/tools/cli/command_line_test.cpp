@@ -6,8 +6,8 @@
 #include "clearway/trajectory.hpp"
 #include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/clouds.hpp"
-#include "support/las_bytes.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/spawned.hpp"
 

@@ -52,6 +52,10 @@ std::string advice_on(const Error& error) {
       return "; --scale " + format_number(error.amount()) + " accepts that step";
     case Remedy::kColumns:
       return "; --columns says which ones hold x, y and z, for example --columns 2,3,4";
+    case Remedy::kStandardInput:
+      return "; clearway convert - < FILE takes it as standard input";
+    case Remedy::kSampleMesh:
+      return "; clearway model samples its surface to points in PLY";
     case Remedy::kSkipUnreadable:
       return "; --skip-unreadable leaves out the files that cannot be read";
     case Remedy::kIgnoreCrs:

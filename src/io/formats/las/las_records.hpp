@@ -8,6 +8,7 @@
 #include "io/formats/input_buffer.hpp"
 #include "io/formats/las/las_header.hpp"
 #include "io/formats/point_reader.hpp"
+#include "io/formats/wkt.hpp"
 
 namespace clearway {
 
@@ -15,7 +16,7 @@ namespace clearway {
 struct LasCrs {
   std::string wkt;          ///< of user LASF_Projection
   std::string foreign_wkt;  ///< the same record as liblas repeats it
-  LengthUnit geotiff_unit = LengthUnit::kUnknown;
+  CrsUnits geotiff;
 
   /// Sets info's CRS and unit; well-known text counts more than GeoTIFF keys.
   void describe(CloudInfo& info) const;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "support/written_bytes.hpp"
+#include "support/bytes/written_bytes.hpp"
 
 using namespace clearway;
 using Quanta = std::vector<std::array<std::int32_t, 3>>;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "support/written_bytes.hpp"
+#include "support/bytes/written_bytes.hpp"
 
 using namespace clearway;
 

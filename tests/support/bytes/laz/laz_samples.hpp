@@ -3,7 +3,7 @@
 #include <random>
 
 #include "io/formats/point_reader.hpp"
-#include "support/laz/laz_bytes.hpp"
+#include "support/bytes/laz/laz_bytes.hpp"
 
 namespace clearway::test {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "support/las_bytes.hpp"
-#include "support/laz/laz_items.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/bytes/laz/laz_items.hpp"
 
 namespace clearway::test {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "tools/cli/slow_hall.hpp"
+#include "tools/cli/resume/slow_hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

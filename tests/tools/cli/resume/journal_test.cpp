@@ -1,7 +1,7 @@
 // Journals of the program that are refused, damaged, torn or in use.
 #include <catch2/catch.hpp>
 
-#include "tools/cli/slow_hall.hpp"
+#include "tools/cli/resume/slow_hall.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/util/progress.hpp"
-#include "io/convert/file_state.hpp"
-#include "io/convert/input_agreement.hpp"
+#include "io/convert/inputs/input_agreement.hpp"
+#include "io/convert/inputs/input_files.hpp"
 #include "io/convert/quanta_batch.hpp"
 #include "io/formats/point_reader.hpp"
 
@@ -38,9 +38,11 @@ class EnvironmentSource {
   const Quantisation& quantisation() const { return quantisation_; }
   const std::string& crs_wkt() const { return crs_.wkt; }
   LengthUnit unit() const { return crs_.unit; }
-  const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-": stream
+  const std::vector<std::filesystem::path>& files() const {
+    return inputs_.files();
+  }  ///< "-": stream
   /// The files, and those that hold their poses.
-  const std::vector<std::filesystem::path>& read_files() const { return read_files_; }
+  const std::vector<std::filesystem::path>& read_files() const { return inputs_.read_files(); }
   /// Points that the inputs declare, where all do.
   std::optional<std::uint64_t> declared_points() const { return declared_points_; }
   /// Notes and warnings on the inputs; complete once read() has returned false.
@@ -61,7 +63,7 @@ class EnvironmentSource {
   std::optional<std::array<std::int32_t, 3>> origin_of(std::size_t file) const;
 
   /// Throws InputError, naming it, where a file is not as it was before the first of it was read.
-  void refuse_changed() const;
+  void refuse_changed() const { inputs_.refuse_changed(); }
 
   // Of what has been read since the last rewind:
   std::uint64_t input_points() const { return input_points_; }
@@ -76,7 +78,6 @@ class EnvironmentSource {
   double largest_change() const { return largest_change_; }
 
  private:
-  void list_inputs(const std::vector<std::filesystem::path>& inputs, Progress& progress);
   void open_inputs();
   void find_crs();
   void choose_offset_and_scale(Progress& progress);
@@ -88,15 +89,12 @@ class EnvironmentSource {
 
   EnvironmentOptions options_;
   PointReadOptions how_to_read_;
-  std::vector<std::filesystem::path> files_;
-  std::vector<std::filesystem::path> read_files_;
-  std::vector<std::string> skipped_;  // why, of the files left out
-  std::vector<FileState> states_;     // of the files read, at first; none of a stream
-  std::vector<Message> folder_remarks_;
+  InputFiles inputs_;
   std::vector<CloudInfo> infos_;  // of the files
   Quantisation quantisation_{};
   std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
   CommonCrs crs_;
+  std::vector<Message> range_warnings_;  // of the coordinates as they are
   std::optional<std::uint64_t> declared_points_;
 
   std::unique_ptr<PointReader> stream_;   // standard input, spooled

@@ -1,4 +1,4 @@
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -14,8 +14,8 @@
 #include "cpu/sweep_engine.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
-#include "support/grid_runs.hpp"
-#include "support/host_sweep.hpp"
+#include "support/engines/grid_runs.hpp"
+#include "support/engines/host_sweep.hpp"
 
 namespace clearway {
 namespace {

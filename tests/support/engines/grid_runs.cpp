@@ -1,4 +1,4 @@
-#include "support/grid_runs.hpp"
+#include "support/engines/grid_runs.hpp"
 
 #include "clearway/error.hpp"
 #include "cpu/grid_cpu_engine.hpp"

@@ -1,4 +1,4 @@
-#include "io/convert/spooled_reader.hpp"
+#include "io/convert/inputs/spooled_reader.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "support/laz/laz_coder.hpp"
+#include "support/bytes/laz/laz_coder.hpp"
 
 namespace clearway::test {
 

@@ -1,4 +1,4 @@
-#include "support/tolerance_runs.hpp"
+#include "support/engines/tolerance_runs.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cpu/brute_force.hpp"
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 
 namespace clearway {
 namespace {

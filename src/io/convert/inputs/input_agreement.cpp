@@ -1,4 +1,4 @@
-#include "io/convert/input_agreement.hpp"
+#include "io/convert/inputs/input_agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,12 @@ void warn(CommonCrs& common, const char* code, const std::string& text) {
 
 bool has_unit(const CloudInfo& info) { return info.unit != LengthUnit::kUnknown; }
 
-void refuse_degrees(const std::filesystem::path& file, const CloudInfo& info) {
+void refuse_units(const std::filesystem::path& file, const CloudInfo& info) {
+  if (!info.unit_trouble.empty()) {
+    refuse(file.string(),
+           info.unit_trouble + "; expected metres or feet for all of them. Convert the scan first",
+           Remedy::kIgnoreCrs);
+  }
   if (info.unit != LengthUnit::kDegree) return;
   refuse(file.string(),
          "its coordinate reference system is in degrees, expected lengths; project the scan first",
@@ -85,7 +90,7 @@ void choose_wkt(std::span<const std::filesystem::path> files, std::span<const Cl
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                      bool ignore) {
   CommonCrs common;
-  for (std::size_t i = 0; i < infos.size() && !ignore; ++i) refuse_degrees(files[i], infos[i]);
+  for (std::size_t i = 0; i < infos.size() && !ignore; ++i) refuse_units(files[i], infos[i]);
   const auto known = std::find_if(infos.begin(), infos.end(), has_unit);
   if (known != infos.end()) {
     common.unit = known->unit;
@@ -101,7 +106,8 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<con
   if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
     warn(common, "feet",
          "the coordinates are in feet (" + to_string(common.unit) +
-             "): radius, model and trajectory must be in feet too");
+             "): lengths, models and trajectories without a unit of their own are taken in feet "
+             "too");
   }
   return common;
 }

@@ -1,18 +1,17 @@
-#include "io/convert/environment_source.hpp"
+#include "io/convert/inputs/environment_source.hpp"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "core/util/shorten_notes.hpp"
 #include "io/convert/checks/choose_scale.hpp"
-#include "io/convert/checks/readable_files.hpp"
-#include "io/convert/spooled_reader.hpp"
+#include "io/convert/checks/lost_digits.hpp"
+#include "io/convert/inputs/spooled_reader.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -20,6 +19,7 @@ namespace {
 
 constexpr double kLeastQuantum = std::numeric_limits<std::int32_t>::min();
 constexpr double kGreatestQuantum = std::numeric_limits<std::int32_t>::max();
+
 bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
@@ -30,13 +30,11 @@ Vec3 point_of(const PointBatch& batch, const CloudInfo& info, std::size_t i) {
   return position(*info.quantisation, q[0], q[1], q[2]);
 }
 
-/// A pipe can be read only once.
-void refuse_pipe(const std::filesystem::path& file) {
-  if (std::filesystem::is_regular_file(file)) return;
-  throw InputError(
-      file.string() +
-      ": is a pipe or device, expected a file; LAS and LAZ can be piped to standard input: "
-      "clearway convert -");
+const EnvironmentOptions& checked(const EnvironmentOptions& options) {
+  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
+    throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
+  }
+  return options;
 }
 
 /// Calls `read`; where one of several files is refused, the error says that it can be skipped.
@@ -45,7 +43,10 @@ auto reading_one_of(std::size_t files, Read read) {
   try {
     return read();
   } catch (const InputError& error) {
-    if (files < 2 || error.remedy() != Remedy::kNone) throw;
+    const Remedy remedy = error.remedy();
+    const bool can_be_skipped = remedy == Remedy::kNone || remedy == Remedy::kStandardInput ||
+                                remedy == Remedy::kSampleMesh;
+    if (files < 2 || !can_be_skipped) throw;
     throw InputError(error.what(), Remedy::kSkipUnreadable);
   }
 }
@@ -54,14 +55,12 @@ auto reading_one_of(std::size_t files, Read read) {
 
 EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
                                      const EnvironmentOptions& options, Progress& progress)
-    : options_(options), how_to_read_{options.columns, true} {
-  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
-    throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
-  }
-  list_inputs(inputs, progress);
+    : options_(checked(options)),
+      how_to_read_{options.columns, true},
+      inputs_(inputs, options.skip_unreadable, how_to_read_, progress) {
   open_inputs();
   find_crs();
-  if (auto kept = common_quanta(files_, infos_, options_.scale)) {
+  if (auto kept = common_quanta(files(), infos_, options_.scale)) {
     quantisation_ = kept->quantisation;
     shifts_ = std::move(kept->shifts);
     return;
@@ -71,33 +70,14 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
 
 EnvironmentSource::~EnvironmentSource() = default;
 
-void EnvironmentSource::list_inputs(const std::vector<std::filesystem::path>& inputs,
-                                    Progress& progress) {
-  const bool streams = std::find(inputs.begin(), inputs.end(), "-") != inputs.end();
-  if (streams && inputs.size() > 1) {
-    throw UsageError("standard input (-) cannot be combined with other inputs");
-  }
-  if (streams) {
-    files_ = read_files_ = {"-"};
+void EnvironmentSource::open_inputs() {
+  if (inputs_.are_a_stream()) {
     stream_ = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
                               options_.temporary_folder);
     if (!stream_->can_rewind()) stream_ = spool(std::move(stream_), options_.temporary_folder);
-    return;
   }
-  files_ = list_point_files(inputs, &folder_remarks_);
-  std::for_each(files_.begin(), files_.end(), refuse_pipe);
-  if (options_.skip_unreadable) {
-    ReadableFiles readable = readable_files(files_, how_to_read_, progress);
-    files_ = std::move(readable.files);
-    skipped_ = std::move(readable.reasons);
-  }
-  read_files_ = with_pose_files(files_);
-  std::transform(read_files_.begin(), read_files_.end(), std::back_inserter(states_), state_of);
-}
-
-void EnvironmentSource::open_inputs() {
   declared_points_ = 0;
-  for (std::size_t i = 0; i < files_.size(); ++i) {
+  for (std::size_t i = 0; i < files().size(); ++i) {
     const CloudInfo& info = infos_.emplace_back(reader(i).info());
     if (declared_points_ && info.declared_points) {
       *declared_points_ += *info.declared_points;
@@ -112,21 +92,22 @@ void EnvironmentSource::open_inputs() {
 }
 
 void EnvironmentSource::find_crs() {
-  crs_ = common_crs(files_, infos_, options_.ignore_crs);
-  for (std::size_t i = 0; i < files_.size(); ++i) {
+  crs_ = common_crs(files(), infos_, options_.ignore_crs);
+  for (std::size_t i = 0; i < files().size(); ++i) {
     if (infos_[i].faces == 0) continue;
     crs_.warnings.push_back({Message::Severity::kWarning, "mesh-faces",
-                             files_[i].string() + ": its " + std::to_string(infos_[i].faces) +
+                             files()[i].string() + ": its " + std::to_string(infos_[i].faces) +
                                  " faces are not read, its vertices are"});
   }
 }
 
 std::vector<Message> EnvironmentSource::remarks() const {
   std::vector<Message> all = crs_.warnings;
-  all.insert(all.end(), folder_remarks_.begin(), folder_remarks_.end());
-  if (auto skipped = warning_on_skipped(skipped_)) all.push_back(std::move(*skipped));
+  all.insert(all.end(), range_warnings_.begin(), range_warnings_.end());
+  const std::vector<Message> of_files = inputs_.remarks();
+  all.insert(all.end(), of_files.begin(), of_files.end());
   if (!shifts_.empty()) {
-    const auto mixture = remark_on_mixture(files_, infos_, quantisation_);
+    const auto mixture = remark_on_mixture(files(), infos_, quantisation_);
     if (mixture) all.push_back(*mixture);
   }
   std::vector<Message> own;
@@ -152,14 +133,15 @@ void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
   }
   progress.end();
   rewind();
-  quantisation_ = choose_scale(range, options_.scale, files_, how_to_read_);
+  range_warnings_ = warn_of_lost_digits(range.samples());
+  quantisation_ = choose_scale(range, options_.scale, files(), how_to_read_);
 }
 
 PointReader& EnvironmentSource::reader(std::size_t file) {
   if (stream_) return *stream_;
   if (!current_ || open_file_ != file) {
-    current_ =
-        reading_one_of(files_.size(), [&] { return open_point_file(files_[file], how_to_read_); });
+    current_ = reading_one_of(files().size(),
+                              [&] { return open_point_file(files()[file], how_to_read_); });
     open_file_ = file;
   }
   return *current_;
@@ -175,18 +157,10 @@ void EnvironmentSource::rewind() {
   current_.reset();
 }
 
-void EnvironmentSource::refuse_changed() const {
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    if (state_of(read_files_[i]) == states_[i]) continue;
-    refuse(read_files_[i].string(),
-           "changed during its conversion, expected the same file in every pass over it");
-  }
-}
-
 bool EnvironmentSource::next_batch(PointBatch& batch) {
-  for (; file_ < files_.size(); ++file_, file_points_ = 0) {
+  for (; file_ < files().size(); ++file_, file_points_ = 0) {
     PointReader& from = reader(file_);
-    if (!reading_one_of(files_.size(), [&] { return from.read(batch); })) {
+    if (!reading_one_of(files().size(), [&] { return from.read(batch); })) {
       infos_[file_].remarks = from.info().remarks;
       points_of_files_.push_back(file_points_);
       continue;
@@ -228,7 +202,7 @@ void EnvironmentSource::append_kept(const PointBatch& batch, QuantaBatch& out) {
       const std::int64_t shifted = q[k] + shifts_[file_][k];
       if (shifted < std::numeric_limits<std::int32_t>::min() ||
           shifted > std::numeric_limits<std::int32_t>::max()) {
-        throw InputError(files_[file_].string() + ": too far from " + files_[0].string() +
+        throw InputError(files()[file_].string() + ": too far from " + files()[0].string() +
                              " for 32-bit integers of " + brief(own.scale[k]),
                          Remedy::kScale);
       }
@@ -275,8 +249,8 @@ void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out
 }
 
 void EnvironmentSource::refuse_beyond_quanta() const {
-  if (shifts_.empty()) refuse(files_[file_].string(), "changed while it was read");
-  refuse(files_[file_].string(),
+  if (shifts_.empty()) refuse(files()[file_].string(), "changed while it was read");
+  refuse(files()[file_].string(),
          "too far from the other files for 32-bit integers of " + brief(quantisation_.scale[0]),
          Remedy::kScale);
 }
