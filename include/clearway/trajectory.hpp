@@ -51,7 +51,8 @@ struct TrajectoryOptions {
   double metres_per_unit = 0;
   /// Metres of the environment's unit, into which a known unit is converted.
   double environment_unit = 1;
-  /// Where the point whose positions the file holds lies in the model's frame, metres.
+  /// Where the point whose positions the file holds lies in the model's frame, in the
+  /// environment's unit.
   Vec3 lever_arm{0, 0, 0};
 };
 

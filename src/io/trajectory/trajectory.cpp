@@ -179,9 +179,7 @@ TrajectoryFile read_without_doubts(const std::filesystem::path& path,
   }
   refuse_useless(path, options, found);
   convert_positions(options, found);
-  const double unit = options.environment_unit;
-  const Vec3& lever = options.lever_arm;
-  apply_lever_arm(path, {lever.x / unit, lever.y / unit, lever.z / unit}, found.poses);
+  apply_lever_arm(path, options.lever_arm, found.poses);
   remark_times(path, found);
   return found;
 }

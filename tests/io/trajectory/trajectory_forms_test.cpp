@@ -76,8 +76,8 @@ TEST_CASE("positions of a known unit are converted into the environment's") {
   CHECK(poses_of(row, metres).at(0).translation[1] == Approx(10));
   const std::string named = "x_ft,y_ft,z_ft,qx,qy,qz,qw\n10,20,30,0,0,0,1\n";
   CHECK(poses_of(named, {.environment_unit = 0.3048}).at(0).translation[2] == Approx(30));
-  const TrajectoryOptions arm{.environment_unit = 0.3048, .lever_arm = {0, 3.048, 0}};
-  CHECK(poses_of(named, arm).at(0).translation[1] == Approx(10));
+  const TrajectoryOptions arm{.environment_unit = 0.3048, .lever_arm = {0, 4, 0}};
+  CHECK(poses_of(named, arm).at(0).translation[1] == Approx(16));
   // 9 mm are the double nearest to 0.009, as for models.
   CHECK(poses_of(row, {.metres_per_unit = 0.001}).at(0).translation[0] == 0.009);
   CHECK_THAT(refusal("x_ft,y_ft,z,qx,qy,qz,qw\n10,20,30,0,0,0,1\n"),

@@ -25,7 +25,7 @@ namespace {
 
 struct InfoOptions {
   std::filesystem::path input, environment, model;
-  double radius = 0, model_unit = 1;
+  double radius = 0, model_unit = 0;
   LengthOptions lengths;
   TrajectoryOptions trajectory;
   bool json = false;
@@ -88,7 +88,10 @@ Description describe(InfoOptions& options) {
   Description what;
   if (!options.environment.empty()) {
     const Store store(options.environment);
-    if (const auto metres = metres_of_unit(store.length_unit())) options.lengths.convert(*metres);
+    if (const auto metres = metres_of_unit(store.length_unit())) {
+      options.lengths.convert(*metres);
+      options.trajectory.environment_unit = *metres;
+    }
     options.trajectory.default_crs = store.crs_wkt();
     if (store.point_count() > 0) what.scan = store.box();
   }
@@ -99,7 +102,9 @@ Description describe(InfoOptions& options) {
   if (!options.model.empty()) {
     // No other place of a mesh is farther out than its vertices.
     const Box model =
-        box_of(read_model(options.model, {.unit = options.model_unit, .vertices_only = true}));
+        box_of(read_model(options.model, {.unit = options.model_unit,
+                                          .environment_unit = options.trajectory.environment_unit,
+                                          .vertices_only = true}));
     what.motion = motion_of(poses, model, options.radius);
   }
   warn_of_axes(options.input.string(), what);
