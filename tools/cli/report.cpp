@@ -66,8 +66,7 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
   return {std::move(model), std::move(poses), result.parameters()};
 }
 
-void log_summary(const ReportCommand& options, const ReportSummary& summary,
-                 const Result& result) {
+void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {
   spdlog::info("{}: {}, {} colliding points, {} conflicts, {}", options.output.string(),
                summary.clear ? "clear" : "conflict", format_count(result.size()),
                format_count(summary.conflicts.listed.size()), format_size(summary.bytes));
@@ -91,8 +90,8 @@ void run_report(ReportCommand& options) {
   MessageLog log(quiet, options.report.warnings);
   warn_of_query(store.reader(), query, log);
   name_files(options);
-  const ReportSummary summary = write_report(result, store, query.model, query.poses,
-                                             options.output, options.report);
+  const ReportSummary summary =
+      write_report(result, store, query.model, query.poses, options.output, options.report);
   log_summary(options, summary, result);
   if (options.json) print(summary.facts + "\n");
 }
