@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 namespace clearway {
@@ -30,7 +31,11 @@ struct Placed {
   std::uint64_t key;
   PagePoint point;
   friend bool operator<(const Placed& a, const Placed& b) {
-    return a.key != b.key ? a.key < b.key : a.point < b.point;
+    const auto all = [](const Placed& placed) {
+      const PagePoint& p = placed.point;
+      return std::tuple(placed.key, p.q[0], p.q[1], p.q[2], p.tag);
+    };
+    return all(a) < all(b);
   }
 };
 

@@ -172,7 +172,7 @@ class Report {
     if (least_) {
       shown_.push_back(least_->pose);
       std::ranges::sort(shown_);
-      shown_.erase(std::ranges::unique(shown_).begin(), shown_.end());
+      shown_.erase(std::unique(shown_.begin(), shown_.end()), shown_.end());
     }
     model_lattice_ = lattice_for(model_box_, path_.half_diagonal() / 0x1p15);
     model_lattice_.origin = box_centre_at(model_box_, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}});
