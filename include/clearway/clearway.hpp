@@ -9,6 +9,7 @@
 #include "clearway/model.hpp"       // IWYU pragma: export
 #include "clearway/progress.hpp"    // IWYU pragma: export
 #include "clearway/query.hpp"       // IWYU pragma: export
+#include "clearway/report.hpp"      // IWYU pragma: export
 #include "clearway/result.hpp"      // IWYU pragma: export
 #include "clearway/search.hpp"      // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export

@@ -17,7 +17,7 @@ namespace clearway {
 
 struct ReportOptions {
   std::string title = {};  ///< empty: made of the names below
-  std::string date = {};   ///< as it is to stand on the page; nothing else in it depends on the time
+  std::string date = {};  ///< as it is to stand on the page; nothing else in it depends on the time
   /// Names of the files for people; empty ones are left out.
   std::string result_name = {}, environment_name = {}, model_name = {}, trajectory_name = {};
   /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.

@@ -138,8 +138,8 @@ class Sampler {
   void add(const Vec3& xyz, const std::vector<std::uint32_t>& places,
            std::vector<PagePoint>& out) const {
     const double above = 10 * (xyz.z - path_.nearest(xyz, places).top) + 128;
-    out.push_back(page_point(lattice_, xyz,
-                             static_cast<std::uint8_t>(std::clamp(above, 0.0, 255.0))));
+    out.push_back(
+        page_point(lattice_, xyz, static_cast<std::uint8_t>(std::clamp(above, 0.0, 255.0))));
   }
 
   const StoreReader& store_;

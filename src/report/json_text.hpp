@@ -45,9 +45,7 @@ class JsonText {
   JsonText& value(bool flag) { return raw(flag ? "true" : "false"); }
   JsonText& value(std::unsigned_integral auto number) { return raw(std::to_string(number)); }
   JsonText& value(double number) { return raw(std::isfinite(number) ? digits(number) : "null"); }
-  JsonText& value(const Vec3& p) {
-    return begin('[').value(p.x).value(p.y).value(p.z).end(']');
-  }
+  JsonText& value(const Vec3& p) { return begin('[').value(p.x).value(p.y).value(p.z).end(']'); }
   template <typename Value>
   JsonText& value(const std::optional<Value>& value_or_none) {
     return value_or_none ? value(*value_or_none) : raw("null");

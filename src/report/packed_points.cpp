@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 namespace clearway {
@@ -30,7 +31,11 @@ struct Placed {
   std::uint64_t key;
   PagePoint point;
   friend bool operator<(const Placed& a, const Placed& b) {
-    return a.key != b.key ? a.key < b.key : a.point < b.point;
+    const auto all = [](const Placed& placed) {
+      const PagePoint& p = placed.point;
+      return std::tuple(placed.key, p.q[0], p.q[1], p.q[2], p.tag);
+    };
+    return all(a) < all(b);
   }
 };
 
@@ -71,8 +76,8 @@ void sort_along_curve(std::vector<PagePoint>& points) {
   if (points.empty()) return;
   std::int64_t lo[3], extent = 1;
   for (int k = 0; k < 3; ++k) {
-    const auto [least, most] = std::ranges::minmax(
-        points, {}, [k](const PagePoint& point) { return point.q[k]; });
+    const auto [least, most] =
+        std::ranges::minmax(points, {}, [k](const PagePoint& point) { return point.q[k]; });
     lo[k] = least.q[k];
     extent = std::max<std::int64_t>(extent, std::int64_t{most.q[k]} - lo[k]);
   }
@@ -97,8 +102,8 @@ std::string delta_planes(std::span<const std::int32_t> values) {
   for (std::size_t i = 0; i < n; ++i) {
     const auto value = static_cast<std::uint32_t>(values[i]);
     const auto delta = static_cast<std::int32_t>(value - previous);
-    const auto zigzag = static_cast<std::uint32_t>(delta) << 1 ^
-                        static_cast<std::uint32_t>(delta >> 31);
+    const auto zigzag =
+        static_cast<std::uint32_t>(delta) << 1 ^ static_cast<std::uint32_t>(delta >> 31);
     for (std::size_t plane = 0; plane < 4; ++plane) {
       out[plane * n + i] = static_cast<char>(zigzag >> (8 * plane) & 0xff);
     }

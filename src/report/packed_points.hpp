@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,7 +23,6 @@ PageLattice lattice_for(const Box& box, double finest);
 struct PagePoint {
   std::int32_t q[3];
   std::uint8_t tag;  ///< of an environment point its height, of others their class
-  friend auto operator<=>(const PagePoint&, const PagePoint&) = default;
 };
 
 PagePoint page_point(const PageLattice& lattice, const Vec3& xyz, std::uint8_t tag);

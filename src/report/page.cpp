@@ -52,7 +52,7 @@ void write_place(PageFile& file, std::string_view name, const std::string& title
   if (name == "FACTS") file.write(facts);
   if (name != "COLUMNS") return;
   for (const PageColumn& column : columns) {
-    file.write("<script type=\"text/plain\" data-column=\"" + column.name + "\">");
+    file.write(R"(<script type="text/plain" data-column=")" + column.name + R"(">)");
     file.write(column.base64);
     file.write("</script>\n");
   }

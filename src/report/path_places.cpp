@@ -38,7 +38,7 @@ double path_length(std::span<const Vec3> centres) {
 
 Vec3 box_centre_at(const Box& model, const Pose& pose) {
   return transform(pose, {(model.lo.x + model.hi.x) / 2, (model.lo.y + model.hi.y) / 2,
-                      (model.lo.z + model.hi.z) / 2});
+                          (model.lo.z + model.hi.z) / 2});
 }
 
 PathPlaces::PathPlaces(const Box& model, std::span<const Pose> poses)
@@ -52,7 +52,8 @@ PathPlaces::PathPlaces(const Box& model, std::span<const Pose> poses)
   const double step =
       std::max(reach_ / 12, path_length(centres) / static_cast<double>(kMostPlaces));
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (places_.empty() || i + 1 == poses.size() || length(places_.back().centre, centres[i]) >= step) {
+    if (places_.empty() || i + 1 == poses.size() ||
+        length(places_.back().centre, centres[i]) >= step) {
       places_.push_back({centres[i], top_at(model, poses[i])});
     }
   }

@@ -72,10 +72,12 @@ void write_conflict(JsonText& json, const Conflict& conflict, const ShownPoints&
   json.field("first_pose", std::uint64_t{conflict.first_pose});
   json.field("last_pose", std::uint64_t{conflict.last_pose});
   json.field("chainage_from", conflict.chainage_from).field("chainage_to", conflict.chainage_to);
-  json.field("least_distance", conflict.least_distance).field("nearest_pose", conflict.nearest_pose);
-  json.field("nearest_source", conflict.nearest_source).field("encroachment", conflict.encroachment);
-  const auto place = conflict.nearest_source ? points.places.find(*conflict.nearest_source)
-                                             : points.places.end();
+  json.field("least_distance", conflict.least_distance)
+      .field("nearest_pose", conflict.nearest_pose);
+  json.field("nearest_source", conflict.nearest_source)
+      .field("encroachment", conflict.encroachment);
+  const auto place =
+      conflict.nearest_source ? points.places.find(*conflict.nearest_source) : points.places.end();
   json.key("nearest_point");
   if (place == points.places.end()) {
     json.raw("null");

@@ -23,11 +23,11 @@ struct ReportFacts {
   const Conflicts* conflicts = nullptr;  ///< none where the result has no first poses
   const ShownPoints& points;
   const EnvironmentSample& environment;
-  double reach = 0, dense_reach = 0;       ///< of the environment points, from the model's middle
+  double reach = 0, dense_reach = 0;  ///< of the environment points, from the model's middle
   std::size_t shown_poses = 0, shown_model_points = 0;
-  std::optional<LeastDistance> least;      ///< of clearances or profile
+  std::optional<LeastDistance> least;  ///< of clearances or profile
   double least_chainage = 0;
-  const char* least_of = nullptr;          ///< "clearance" or "profile"
+  const char* least_of = nullptr;  ///< "clearance" or "profile"
   PageLattice lattice, environment_lattice, model_lattice;
 };
 

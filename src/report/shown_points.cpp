@@ -60,10 +60,10 @@ class PointReader {
     ClearanceCursor clearance(result_);
     std::uint64_t done = 0;
     while (!row.at_end() || !clearance.at_end()) {
-      const bool collides = !row.at_end() &&
-                            (clearance.at_end() || row.source() <= clearance.source());
-      const bool measured = !clearance.at_end() &&
-                            (!collides || row.source() == clearance.source());
+      const bool collides =
+          !row.at_end() && (clearance.at_end() || row.source() <= clearance.source());
+      const bool measured =
+          !clearance.at_end() && (!collides || row.source() == clearance.source());
       if (measured) note_least(row, clearance, collides);
       if (collides) add_colliding(row, measured ? clearance.distance() : radius_);
       if (measured && !collides) add_other(clearance);

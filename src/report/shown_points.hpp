@@ -24,11 +24,12 @@ struct LeastDistance {
 /// Points of the result for the page: colliding ones, and others closer than the last class.
 struct ShownPoints {
   static constexpr std::size_t kMostClasses = 3;
-  std::vector<PagePoint> points;  ///< along the curve; their tag is the class
-  std::array<std::uint64_t, kMostClasses> of_class{};     ///< in the result
+  std::vector<PagePoint> points;                       ///< along the curve; their tag is the class
+  std::array<std::uint64_t, kMostClasses> of_class{};  ///< in the result
   std::array<std::uint64_t, kMostClasses> shown_class{};  ///< and on the page
-  std::uint64_t without_place = 0;  ///< closer than the last class, of a result without their places
-  std::optional<LeastDistance> least;   ///< of the clearances
+  std::uint64_t without_place =
+      0;  ///< closer than the last class, of a result without their places
+  std::optional<LeastDistance> least;    ///< of the clearances
   std::map<std::uint64_t, Vec3> places;  ///< of the sources asked for that collide
 };
 

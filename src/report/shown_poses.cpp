@@ -98,7 +98,7 @@ std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& prof
     if (conflict.nearest_pose) shown.push_back(*conflict.nearest_pose);
   }
   std::ranges::sort(shown);
-  shown.erase(std::ranges::unique(shown).begin(), shown.end());
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
   return shown;
 }
 

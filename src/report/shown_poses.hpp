@@ -27,7 +27,7 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
                          std::vector<PageColumn>& columns);
 
 /// What the integers of these columns count.
-inline constexpr double kRotationStep = 1.0 / (1 << 17), kDistanceStep = 1e-4,
-                        kChainageStep = 1e-3, kTimeStep = 1e-3;
+inline constexpr double kRotationStep = 1.0 / (1 << 17), kDistanceStep = 1e-4, kChainageStep = 1e-3,
+                        kTimeStep = 1e-3;
 
 }  // namespace clearway

@@ -53,7 +53,8 @@ std::vector<double> classes_of(const Result& result, const std::vector<double>& 
     if (query.clearance > query.radius) return {query.radius, query.clearance};
     return {query.radius};
   }
-  if (asked.size() > ShownPoints::kMostClasses || !std::ranges::is_sorted(asked, std::less_equal{})) {
+  if (asked.size() > ShownPoints::kMostClasses ||
+      !std::ranges::is_sorted(asked, std::less_equal{})) {
     throw UsageError("classes: expected one to three distances, each larger than the one before");
   }
   if (asked.back() < query.radius) {
@@ -120,8 +121,8 @@ class Report {
     find_least();
     environment_lattice_.step = std::max(kEnvironmentStep, lattice_.step);
     environment_lattice_.origin = lattice_.origin;
-    environment_ = sample_environment(store_, path_, environment_lattice_, options_.max_points,
-                                      progress_);
+    environment_ =
+        sample_environment(store_, path_, environment_lattice_, options_.max_points, progress_);
     std::vector<PageColumn> columns = make_columns(summary.conflicts);
     summary.facts = facts(summary.conflicts);
     summary.clear = result_.size() == 0;
@@ -141,10 +142,8 @@ class Report {
     if (result_.parameters().first_pose) {
       conflicts = find_conflicts(result_, poses_, options_.conflicts, &conflict_of);
     }
-    PointSelection selection{.classes = classes_,
-                             .conflicts = &conflicts,
-                             .conflict_of = &conflict_of,
-                             .wanted = {}};
+    PointSelection selection{
+        .classes = classes_, .conflicts = &conflicts, .conflict_of = &conflict_of, .wanted = {}};
     for (const Conflict& conflict : conflicts.listed) {
       if (conflict.nearest_source) selection.wanted.push_back(*conflict.nearest_source);
     }
@@ -173,7 +172,7 @@ class Report {
     if (least_) {
       shown_.push_back(least_->pose);
       std::ranges::sort(shown_);
-      shown_.erase(std::ranges::unique(shown_).begin(), shown_.end());
+      shown_.erase(std::unique(shown_.begin(), shown_.end()), shown_.end());
     }
     model_lattice_ = lattice_for(model_box_, path_.half_diagonal() / 0x1p15);
     model_lattice_.origin = box_centre_at(model_box_, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}});

@@ -11,6 +11,7 @@
 
 #include "clearway/clearway.hpp"
 #include "cli/commands.hpp"
+#include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
@@ -29,10 +30,9 @@ namespace {
 
 constexpr double kReportSpacingsInRadius = 4;  // as run samples a mesh
 
-struct ReportCommand {
+struct ReportCommand : ConflictCommand {
   std::filesystem::path result, environment, model, trajectory, output;
   ModelOptions model_options;
-  TrajectoryOptions trajectory_options;
   ReportOptions report;
   bool json = false;
 };
@@ -66,8 +66,7 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
   return {std::move(model), std::move(poses), result.parameters()};
 }
 
-void log_summary(const ReportCommand& options, const ReportSummary& summary,
-                 const Result& result) {
+void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {
   spdlog::info("{}: {}, {} colliding points, {} conflicts, {}", options.output.string(),
                summary.clear ? "clear" : "conflict", format_count(result.size()),
                format_count(summary.conflicts.listed.size()), format_size(summary.bytes));
@@ -76,23 +75,23 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary,
 
 void run_report(ReportCommand& options) {
   ConsoleProgress progress;
-  options.report.conflicts.progress = [&progress](const ProgressUpdate& update) {
-    progress.update(update);
-  };
-  options.report.conflicts.stop = &stop_flag();
+  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
+  options.find.stop = &stop_flag();
   refuse_overwriting(options.output,
                      {options.result, options.environment, options.model, options.trajectory});
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
   const Store store(options.environment);
+  convert_lengths(options.lengths, result);
+  options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);
   const MessageCallback quiet = nullptr;
   MessageLog log(quiet, options.report.warnings);
   warn_of_query(store.reader(), query, log);
   name_files(options);
-  const ReportSummary summary = write_report(result, store, query.model, query.poses,
-                                             options.output, options.report);
+  const ReportSummary summary =
+      write_report(result, store, query.model, query.poses, options.output, options.report);
   log_summary(options, summary, result);
   if (options.json) print(summary.facts + "\n");
 }
@@ -113,8 +112,7 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
   command.add_option("-o,--output", options.output, "The page, an HTML file")
       ->type_name("FILE")
       ->required();
-  add_model_options(command, options.model_options);
-  add_trajectory_options(command, options.trajectory_options);
+  add_model_options(command, options.model_options, options.lengths);
 }
 
 void add_page_options(CLI::App& command, ReportOptions& options) {
@@ -152,8 +150,8 @@ void add_report(CLI::App& program) {
       "report", "Write a page that shows what a run found: one HTML file for any browser");
   add_report_inputs(*command, *options);
   add_page_options(*command, options->report);
-  add_memory_option(*command, options->report.conflicts.memory_bytes);
-  add_threads_option(*command, options->report.conflicts.threads);
+  add_conflict_options(*command, *options);
+  add_axis_options(*command, options->find);
   command->add_flag("--json", options->json, "Print what the page says as one JSON object");
   command->footer(
       "Store, model and trajectory are those of the run: they are compared by their hashes.\n"

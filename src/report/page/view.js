@@ -28,7 +28,7 @@ function painterCamera(canvas) {
 function cutPlane(camera) {
   const { toViewer, target, distance } = camera, size = page.vehicleSize;
   if (!view.cutFront || distance > 6 * size) return undefined;  // of an overview nothing
-  const margin = Math.min(0.6 * size, 0.45 * distance);
+  const margin = Math.min(0.4 * size, 0.45 * distance);
   return [...toViewer, -dot(toViewer, target) - margin];
 }
 

@@ -1,7 +1,9 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
@@ -29,6 +31,18 @@ std::optional<double> metres_of(LengthUnit unit) {
   }
 }
 
+void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char* description) {
+  static const std::map<std::string, Axis> kAxes{
+      {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
+      {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
+      {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
+  command
+      .add_option_function<std::string>(
+          name, [&axis](const std::string& text) { axis = kAxes.at(text); }, description)
+      ->type_name("AXIS")
+      ->check(CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
+}
+
 }  // namespace
 
 void add_conflict_options(CLI::App& command, ConflictCommand& options) {
@@ -47,6 +61,13 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options) {
   add_memory_option(command, options.find.memory_bytes);
   add_threads_option(command, options.find.threads);
   add_trajectory_options(command, options.trajectory_options);
+}
+
+void add_axis_options(CLI::App& command, ConflictOptions& options) {
+  add_axis(command, "--forward", options.forward,
+           "Axis of the model that points ahead, for example +y (default: +x)");
+  add_axis(command, "--up", options.up,
+           "Axis of the model that points up, for example -z (default: +z)");
 }
 
 void convert_lengths(const LengthOptions& lengths, const Result& result) {

@@ -26,6 +26,9 @@ struct ConflictCommand {
 /// --gap, --min-points, --split, --memory, --threads and the options of trajectories.
 void add_conflict_options(CLI::App& command, ConflictCommand& options);
 
+/// --forward and --up.
+void add_axis_options(CLI::App& command, ConflictOptions& options);
+
 /// Turns lengths that were given with a unit into the result's.
 void convert_lengths(const LengthOptions& lengths, const Result& result);
 

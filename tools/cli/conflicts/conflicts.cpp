@@ -117,23 +117,8 @@ std::string full_date(const std::string& text) {
                                            "as 2025-03-31T12:00:00Z");
 }
 
-void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char* description) {
-  static const std::map<std::string, Axis> kAxes{
-      {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
-      {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
-      {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
-  command
-      .add_option_function<std::string>(
-          name, [&axis](const std::string& text) { axis = kAxes.at(text); }, description)
-      ->type_name("AXIS")
-      ->check(CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
-}
-
 void add_sides(CLI::App& command, ConflictsCommand& options) {
-  add_axis(command, "--forward", options.find.forward,
-           "Axis of the model that points ahead, for example +y (default: +x)");
-  add_axis(command, "--up", options.find.up,
-           "Axis of the model that points up, for example -z (default: +z)");
+  add_axis_options(command, options.find);
   command
       .add_option("--model", options.model, "The model of the run: for the sides of older results")
       ->type_name("FILE");
