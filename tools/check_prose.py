@@ -5,7 +5,9 @@ It fails, with file and line, on
 - a sentence of more than 30 words,
 - a relative link or anchor in any Markdown file that leads nowhere,
 - an option in README.md or docs/guide that the program does not have,
-- an option of a program that docs/guide does not describe.
+- an option of a program that docs/guide does not describe,
+- a code of a warning or note that the sources have and docs/guide/warnings.md does not list, or
+  the other way round.
 It prints the mean number of words per sentence.
 
 Words: a code span is one word. Tables, code blocks and headings are left out; a list item is a
@@ -24,7 +26,7 @@ import sys
 from pathlib import Path
 from urllib.parse import unquote
 
-from prose import markdown
+from prose import codes, markdown
 from prose.program import OPTION, Program
 
 MOST_WORDS = 30
@@ -66,6 +68,7 @@ class Checker:
             for text, where in {text: where for where, text in reversed(program.prose)}.items():
                 self._check_sentences(f"{program.name} --help", where, 0, text)
             self._check_described(program)
+        self.problems.extend(codes.problems(self.root, self.files))
 
     def _check_sentences(self, group, where, line, text):
         for at, sentence in markdown.sentences(markdown.plain(text), line):

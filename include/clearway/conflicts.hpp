@@ -28,6 +28,8 @@ struct ConflictOptions {
   /// Metres along the path: longer groups are cut at multiples of it; 0: never.
   double split = 25;
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;  ///< of the model; not along one line
+  /// Of the model's points, for results that do not hold it. Without any, sides are unknown.
+  std::optional<Box> model_box = {};
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;  ///< 0: all cores
   ProgressCallback progress = nullptr;

@@ -49,9 +49,10 @@ struct ConvertReport {
   std::vector<Message> warnings = {};
 };
 
-/// Turns scans (LAS, LAZ, PLY, XYZ text; files and folders, or "-" alone for LAS or LAZ on standard
-/// input) into a store. Throws UsageError, InputError, ResourceError; Interrupted when asked to
-/// stop. Whatever happens, nothing stands under the output's name that is not complete.
+/// Turns scans into a store: LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK and text; files and folders,
+/// or "-" alone for LAS or LAZ on standard input. Throws UsageError, InputError, ResourceError;
+/// Interrupted when asked to stop. Whatever happens, nothing stands under the output's name that is
+/// not complete.
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options = {});
 

@@ -24,6 +24,8 @@ enum class Remedy {
   kOneScale,        ///< for all inputs; amount: a step in metres, 0: the caller's choice
   kAcceptScale,     ///< amount: the step in metres that the range needs, if that is accepted
   kColumns,         ///< of a text, which the caller can name
+  kStandardInput,   ///< where the file can be read from, to its end
+  kSampleMesh,      ///< the file is a mesh where points are expected; its surface gives some
   kSkipUnreadable,  ///< one of several inputs; the others can be converted without it
   kIgnoreCrs,
   kOverwrite,           ///< the output exists
@@ -36,6 +38,11 @@ enum class Remedy {
   kDeclareLength,       ///< unit of the trajectory's positions
   kAllowNonRigid,
   kAskForClearance,
+  kAskForFirstPose,
+  kSameTrajectory,   ///< the file and options that the search had
+  kSameModel,        ///< likewise
+  kSameEnvironment,  ///< the store that was searched
+  kAskForProfile,
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kResume,        ///< the same call goes on from what was finished
 };

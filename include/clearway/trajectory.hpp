@@ -49,7 +49,10 @@ struct TrajectoryOptions {
   std::string datum = {};
   /// Length of the unit of positions; 0: metres, unless the file declares another.
   double metres_per_unit = 0;
-  /// Where the point whose positions the file holds lies in the model's frame.
+  /// Metres of the environment's unit, into which a known unit is converted.
+  double environment_unit = 1;
+  /// Where the point whose positions the file holds lies in the model's frame, in the
+  /// environment's unit.
   Vec3 lever_arm{0, 0, 0};
 };
 

@@ -78,7 +78,9 @@ class Search {
 
   /// Before anything is searched, and of a result that is there already too.
   void check() {
-    report_.warnings = options_.input_warnings;
+    for (const Message& told : options_.input_warnings) {
+      if (told.severity == Message::Severity::kWarning) report_.warnings.push_back(told);
+    }
     check_sizes(query_);
     warn_of_query(store_, query_, log_);
     if (options_.strict) refuse_warnings(report_.warnings);

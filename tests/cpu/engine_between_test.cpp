@@ -5,7 +5,7 @@
 
 #include "core/geometry/predicate.hpp"
 #include "cpu/brute_force.hpp"
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

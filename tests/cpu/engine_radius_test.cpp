@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

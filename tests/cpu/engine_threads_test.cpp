@@ -1,7 +1,7 @@
 // Every engine where threads get in each other's way.
 #include <catch2/catch.hpp>
 
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/geometry/predicate.hpp"
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 #include "support/exact_way.hpp"
 #include "support/scenes.hpp"
 

@@ -7,7 +7,7 @@
 #include "core/grid/grid_search.hpp"
 #include "core/grid/grid_size.hpp"
 #include "cpu/brute_force.hpp"
-#include "support/grid_runs.hpp"
+#include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "support/engines.hpp"
+#include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
 namespace clearway::test {

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/engines/tolerance_runs.hpp"
 #include "support/scenes.hpp"
-#include "support/tolerance_runs.hpp"
 
 using namespace clearway;
 

@@ -3,7 +3,7 @@
 // content, which is put into pages with right checksums and file size.
 #include "io/formats/e57/e57_reader.hpp"
 #include "read_points.hpp"
-#include "support/e57_bytes.hpp"
+#include "support/bytes/e57_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

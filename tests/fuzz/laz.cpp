@@ -3,7 +3,7 @@
 
 #include "io/formats/las/las_reader.hpp"
 #include "read_points.hpp"
-#include "support/laz/laz_bytes.hpp"
+#include "support/bytes/laz/laz_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

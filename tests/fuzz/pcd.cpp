@@ -7,6 +7,10 @@ using namespace clearway::test;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile input({data, size});
-  may_refuse([&] { read_twice(*read_pcd(InputBuffer(input.open(), InputBuffer::Access::kSeek))); });
+  may_refuse([&] {
+    const auto reader = read_pcd(InputBuffer(input.open(), InputBuffer::Access::kSeek));
+    read_twice(*reader);
+    tell_lines(*reader);
+  });
   return 0;
 }

@@ -11,17 +11,22 @@ using namespace clearway::test;
 
 namespace {
 
+void read_and_tell(PointReader& reader) {
+  read_twice(reader);
+  tell_lines(reader);
+}
+
 void read_as(unsigned what, InputBuffer input) {
   static const ReaderScratch empty;  // where a scan is alone, and needs no pose
   switch (what) {
     case 0:
-      return read_twice(*read_ptx(std::move(input)));
+      return read_and_tell(*read_ptx(std::move(input)));
     case 1:
-      return read_twice(*read_pts(std::move(input)));
+      return read_and_tell(*read_scan_text(std::move(input), true));
     case 2:
-      return read_twice(*read_scan_text(std::move(input), TextEnding::kXyz));
+      return read_and_tell(*read_scan_text(std::move(input), false));
     case 3:
-      return read_twice(*read_threedtk(std::move(input), empty.folder() / "scan000.3d"));
+      return read_and_tell(*read_threedtk(std::move(input), empty.folder() / "scan000.3d"));
     case 4:
       read_threedtk_pose(input);
       return;

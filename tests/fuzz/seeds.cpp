@@ -4,13 +4,13 @@
 
 #include "core/cloud/packed_chunk.hpp"
 #include "io/journal/journal.hpp"
+#include "support/bytes/e57_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
+#include "support/bytes/mesh_bytes.hpp"
+#include "support/bytes/pcd_bytes.hpp"
+#include "support/bytes/sbet_bytes.hpp"
 #include "support/clouds.hpp"
-#include "support/e57_bytes.hpp"
-#include "support/las_bytes.hpp"
-#include "support/laz/laz_samples.hpp"
-#include "support/mesh_bytes.hpp"
-#include "support/pcd_bytes.hpp"
-#include "support/sbet_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

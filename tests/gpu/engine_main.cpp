@@ -5,8 +5,8 @@
 #include "gpu/devices.hpp"
 #include "gpu/grid_engine.hpp"
 #include "gpu/sweep_engine.hpp"
-#include "support/engines.hpp"
-#include "support/grid_runs.hpp"
+#include "support/engines/engines.hpp"
+#include "support/engines/grid_runs.hpp"
 
 namespace clearway {
 namespace {

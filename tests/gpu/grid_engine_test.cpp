@@ -5,7 +5,7 @@
 
 #include "clearway/error.hpp"
 #include "cpu/brute_force.hpp"
-#include "support/grid_runs.hpp"
+#include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 

@@ -4,6 +4,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/comparison_text.hpp"
+#include "cli/conflicts/conflict_comparison.hpp"
+#include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "io/result/compare_results.hpp"
 
@@ -14,9 +16,19 @@ struct CompareOptions {
   std::filesystem::path a, b;
   std::size_t show = 10;
   bool json = false;
+  bool conflicts = false;
+  ConflictComparison places;
 };
 
-bool run_compare(const CompareOptions& options) {
+bool run_compare(CompareOptions& options) {
+  if (options.conflicts) {
+    bool none_new = false;
+    run_stoppable(options.b, kStartsAgain, [&] {
+      none_new =
+          compare_conflicts(options.places, options.a, options.b, options.show, options.json);
+    });
+    return none_new;
+  }
   const ResultReader a(options.a), b(options.b);
   const Comparison comparison = compare_results(a, b, options.show);
   print(options.json ? comparison_json(comparison, a.name(), b.name())
@@ -35,11 +47,16 @@ void add_compare(CLI::App& program, int& exit_code) {
       ->type_name("FILE")
       ->required();
   command
-      ->add_option("--show", options->show, "Print the first N differing points with coordinates")
+      ->add_option("--show", options->show,
+                   "Print the first N differing points, or new and gone conflicts")
       ->type_name("N")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print one JSON object");
+  CLI::Option* conflicts = command->add_flag(
+      "--conflicts", options->conflicts,
+      "Say instead which conflicts are new, gone and the same; of any environments");
+  add_conflict_comparison(*command, options->places, conflicts);
   command->footer(
       "Prints how many colliding points are only in A, only in B and in both. Where both "
       "results\n"
@@ -47,6 +64,9 @@ void add_compare(CLI::App& program, int& exit_code) {
       "differs in the queries: model, trajectory, radius in metres.\n"
       "Exit code 0: the same points, first poses and clearances, even of different queries.\n"
       "Exit code 1: they differ.\n"
+      "With --conflicts, exit code 1 says that B has new ones. Conflicts are the same where their "
+      "boxes\n"
+      "overlap, grown by the gap. Each is matched once, the largest overlaps first.\n"
       "Exit code 3: a file is not a result, or the results are about different environments.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");
   command->callback([options, &exit_code] { exit_code = run_compare(*options) ? 0 : 1; });

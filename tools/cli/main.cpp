@@ -10,12 +10,14 @@ using namespace clearway::tool;
 
 void add_commands(CLI::App& program, int& exit_code) {
   add_convert(program);
-  add_run(program);
+  add_run(program, exit_code);
   add_export(program);
+  add_conflicts(program);
   add_compare(program, exit_code);
   add_info(program);
   add_verify(program, exit_code);
   add_model(program);
+  add_report(program);
   add_scene(program);
   add_trajectory(program);
   program.add_subcommand("bench")->group("")->prefix_command()->callback(

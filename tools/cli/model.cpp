@@ -12,6 +12,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
@@ -31,6 +32,7 @@ using nlohmann::ordered_json;
 struct ModelCommand {
   std::filesystem::path input, output;
   ModelOptions how;
+  LengthOptions lengths;
   bool force = false;
   bool json = false;
 };
@@ -118,8 +120,7 @@ void run_model(const ModelCommand& options) {
     refuse_overwriting(options.output, {options.input});
     output.emplace(options.output, options.force);
   }
-  const ModelInput input =
-      read_model_input(options.input, options.how.unit, !options.how.vertices_only);
+  const ModelInput input = read_model_input(options.input, options.how);
   ordered_json facts = describe(input);
   std::vector<Message> messages;
   const bool sampled = output || !input.is_mesh() || options.how.spacing > 0;
@@ -146,22 +147,21 @@ void add_model(CLI::App& program) {
       "model", "Say what is in a model's file, and sample a mesh to the points that run takes");
   command
       ->add_option("IN", options->input,
-                   "A mesh in STL, OBJ, PLY or OFF, or points in LAS, PLY or XYZ text")
+                   "A mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", options->output, "The model's points in metres, a PLY file")
       ->type_name("FILE");
   CLI::Option* spacing =
-      command
-          ->add_option("--spacing,--model-spacing", options->how.spacing,
-                       "Of a mesh: no place of its surface is farther than this from a point")
-          ->type_name("METRES")
-          ->check(positive_length());
+      options->lengths.add(*command, "--spacing,--model-spacing", options->how.spacing,
+                           "Of a mesh: no place of its surface is farther than this from a point");
   add_model_unit(*command, "--unit,--model-unit", options->how.unit);
   command
       ->add_flag("--vertices,--model-vertices", options->how.vertices_only,
                  "Take the vertices of a mesh alone, not its surface")
       ->excludes(spacing);
+  options->lengths.add(*command, "--above,--model-above", options->how.above,
+                       "Leave out the points whose z is below this", LengthRange::kAny);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(

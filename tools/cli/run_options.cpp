@@ -17,7 +17,7 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       ->required();
   command
       .add_option("--model", options.model,
-                  "The model: a mesh in STL, OBJ, PLY or OFF, or points in LAS, PLY or XYZ text")
+                  "The model: a mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
       ->type_name("FILE")
       ->required();
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
@@ -30,8 +30,8 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
-  add_model_options(command, options.model_options);
-  add_trajectory_options(command, options.trajectory_options);
+  add_model_options(command, options.model_options, options.lengths);
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
 void add_query(CLI::App& command, RunOptions& options) {
@@ -129,6 +129,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->capture_default_str();
   command.add_flag("--strict", options.search.strict,
                    "Refuse to search where anything is warned of (exit code 3)");
+  command.add_flag("--fail-on-collision", options.fail_on_collision,
+                   "Exit with code 1 where a point collides");
   command.add_flag("--json", options.json, "Print one JSON object about the run");
 }
 

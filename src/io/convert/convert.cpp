@@ -13,7 +13,7 @@
 #include "io/convert/checks/input_warnings.hpp"
 #include "io/convert/count/count.hpp"
 #include "io/convert/distribute.hpp"
-#include "io/convert/environment_source.hpp"
+#include "io/convert/inputs/environment_source.hpp"
 #include "io/convert/pack_unit.hpp"
 #include "io/convert/source_description.hpp"
 #include "io/convert/write_cells.hpp"
@@ -161,7 +161,12 @@ class Conversion {
                         .unit = environment.unit(),
                         .crs_wkt = environment.crs_wkt(),
                         .points_hash = counted.points_hash,
-                        .sources = std::move(sources)};
+                        .sources = std::move(sources),
+                        .source_points = {}};
+    if (environment.files().size() > 1) {
+      report_.metadata.source_points = environment.points_of_files();
+      report_.metadata.source_points.resize(report_.metadata.sources.size());  // files of poses
+    }
     report_.absent_points = environment.absent_points();
     report_.non_finite_points = environment.non_finite_points();
     const Quantisation& quanta = environment.quantisation();

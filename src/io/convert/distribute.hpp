@@ -6,7 +6,7 @@
 
 #include "core/util/progress.hpp"
 #include "io/convert/checks/same_place.hpp"
-#include "io/convert/environment_source.hpp"
+#include "io/convert/inputs/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
 #include "io/system/file.hpp"
 

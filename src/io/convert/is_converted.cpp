@@ -6,6 +6,7 @@
 #include "io/convert/convert.hpp"
 #include "io/convert/source_description.hpp"
 #include "io/formats/point_reader.hpp"
+#include "io/formats/wkt.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/store/verify_store.hpp"
 
@@ -31,7 +32,8 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          found.layout == layout_name(options.regular_size) &&
          std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
          (!options.strict || found.point_count == found.input_points) &&
-         (options.ignore_crs || found.unit != LengthUnit::kDegree);
+         (options.ignore_crs ||
+          (found.unit != LengthUnit::kDegree && units_of_wkt(found.crs_wkt).trouble.empty()));
 }
 
 }  // namespace

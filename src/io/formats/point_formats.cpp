@@ -17,7 +17,7 @@ struct Ending {
 constexpr Ending kEndings[] = {
     {".las", PointFormat::kLas, true},   {".laz", PointFormat::kLas, true},
     {".ply", PointFormat::kPly, true},   {".xyz", PointFormat::kXyz, true},
-    {".pts", PointFormat::kPts, true},   {".asc", PointFormat::kXyz, true},
+    {".pts", PointFormat::kXyz, true},   {".asc", PointFormat::kXyz, true},
     {".txt", PointFormat::kXyz, false},  {".csv", PointFormat::kXyz, false},
     {".e57", PointFormat::kE57, true},   {".pcd", PointFormat::kPcd, true},
     {".ptx", PointFormat::kPtx, true},   {".3d", PointFormat::k3dtk, true},
@@ -76,14 +76,11 @@ std::string sure_endings() {
 void refuse_unless_read(PointFormat format, const std::string& name) {
   switch (format) {
     case PointFormat::kMesh:
-      refuse(name,
-             "a mesh is read as a model alone; expected points. `clearway model` samples its "
-             "surface to points in PLY");
+      refuse(name, "a mesh is read as a model alone; expected points", Remedy::kSampleMesh);
     case PointFormat::kE57:
     case PointFormat::kLas:
     case PointFormat::kPly:
     case PointFormat::kXyz:
-    case PointFormat::kPts:
     case PointFormat::kPcd:
     case PointFormat::kPtx:
     case PointFormat::k3dtk:

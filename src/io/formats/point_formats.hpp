@@ -7,7 +7,7 @@
 
 namespace clearway {
 
-enum class PointFormat { kLas, kPly, kXyz, kPts, kE57, kPcd, kPtx, k3dtk, kMesh };
+enum class PointFormat { kLas, kPly, kXyz, kE57, kPcd, kPtx, k3dtk, kMesh };
 
 /// The format that a file's first bytes tell; none where they do not.
 std::optional<PointFormat> format_of_content(std::span<const std::byte> first_bytes);

@@ -49,14 +49,10 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
       return read_ply(std::move(input));
     case PointFormat::kPcd:
       return read_pcd(std::move(input));
-    case PointFormat::kPts:
-      return read_scan_text(std::move(input), TextEnding::kPts);
-    case PointFormat::kPtx:
-      return read_scan_text(std::move(input), TextEnding::kPtx);
     case PointFormat::k3dtk:
       return read_threedtk(std::move(input), path);
     default:
-      return read_scan_text(std::move(input), TextEnding::kXyz, options);
+      return read_scan_text(std::move(input), format == PointFormat::kPtx, options);
   }
 }
 

@@ -12,11 +12,10 @@
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/system/file.hpp"
 
 namespace clearway {
-
-enum class LengthUnit { kUnknown, kMetre, kFoot, kUsSurveyFoot, kDegree };
 
 /// What a point cloud file says of itself before its points. Bounds in headers are not among it:
 /// they are never trusted.
@@ -25,6 +24,7 @@ struct CloudInfo {
   std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
   std::string crs_wkt;                           ///< as found; empty where there is none
   LengthUnit unit = LengthUnit::kUnknown;        ///< of the horizontal coordinates
+  std::string unit_trouble;  ///< why they cannot be taken as they are; empty where they can
   std::uint64_t faces = 0;                       ///< of a mesh, which are not read
   bool text_table = false;                       ///< whose columns can be chosen
   std::vector<Message> remarks;  ///< on the whole file; complete once read() has returned false

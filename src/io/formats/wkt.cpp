@@ -1,12 +1,15 @@
 #include "io/formats/wkt.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
@@ -79,20 +82,16 @@ std::optional<std::size_t> find(const std::vector<Node>& nodes,
   return std::nullopt;
 }
 
-LengthUnit unit_of(const Node& node) {
-  double metres = 0;
-  if (node.values.empty()) return LengthUnit::kUnknown;
+StatedUnit unit_of(const Node& node) {
+  if (node.values.empty()) return {};
   const std::string_view text = node.values.front();
+  double metres = 0;
   std::from_chars(text.data(), text.data() + text.size(), metres);
-  const auto is = [&](double factor) { return std::abs(metres - factor) < 1e-8 * factor; };
-  if (is(1)) return LengthUnit::kMetre;
-  if (is(0.3048)) return LengthUnit::kFoot;
-  if (is(1200.0 / 3937.0)) return LengthUnit::kUsSurveyFoot;
-  return LengthUnit::kUnknown;
+  return unit_of_length(metres);
 }
 
 /// The unit that stands in the system itself, or else in its first axis that has one.
-LengthUnit unit_within(const std::vector<Node>& nodes, std::size_t system) {
+StatedUnit unit_within(const std::vector<Node>& nodes, std::size_t system) {
   for (const Node& node : nodes) {
     if (node.parent == system && is_one_of(node, {"UNIT", "LENGTHUNIT"})) return unit_of(node);
   }
@@ -101,7 +100,7 @@ LengthUnit unit_within(const std::vector<Node>& nodes, std::size_t system) {
     const Node& axis = nodes[node.parent];
     if (axis.keyword == "AXIS" && axis.parent == system) return unit_of(node);
   }
-  return LengthUnit::kUnknown;
+  return {};
 }
 
 bool has_cartesian_axes(const std::vector<Node>& nodes, std::size_t system) {
@@ -111,17 +110,45 @@ bool has_cartesian_axes(const std::vector<Node>& nodes, std::size_t system) {
   });
 }
 
-}  // namespace
-
-LengthUnit horizontal_unit(std::string_view wkt) {
-  const std::vector<Node> nodes = parse(wkt);
+StatedUnit horizontal(const std::vector<Node>& nodes) {
   const auto metric = find(nodes, {"PROJCS", "PROJCRS", "PROJECTEDCRS", "GEOCCS", "LOCAL_CS",
                                    "ENGCRS", "ENGINEERINGCRS"});
   if (metric) return unit_within(nodes, *metric);
   const auto geodetic = find(nodes, {"GEODCRS", "GEODETICCRS"});
   if (geodetic && has_cartesian_axes(nodes, *geodetic)) return unit_within(nodes, *geodetic);
-  if (geodetic || find(nodes, {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS"})) return LengthUnit::kDegree;
-  return LengthUnit::kUnknown;
+  if (geodetic || find(nodes, {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS"})) {
+    return {LengthUnit::kDegree, {}};
+  }
+  return {};
+}
+
+}  // namespace
+
+StatedUnit unit_of_length(double metres) {
+  // Some files have few digits. The two feet differ by 2e-6 of their length.
+  constexpr std::array kKnown{LengthUnit::kMetre, LengthUnit::kFoot, LengthUnit::kUsSurveyFoot};
+  const auto difference = [metres](LengthUnit unit) { return std::abs(metres - metres_of(unit)); };
+  const LengthUnit nearest =
+      *std::min_element(kKnown.begin(), kKnown.end(),
+                        [&](LengthUnit a, LengthUnit b) { return difference(a) < difference(b); });
+  if (difference(nearest) < 5e-6 * metres_of(nearest)) return {nearest, {}};
+  return {LengthUnit::kUnknown, shown(metres) + " m"};
+}
+
+CrsUnits crs_units(const StatedUnit& plane, const StatedUnit& heights) {
+  if (!plane.other.empty()) return {plane.unit, "its unit is " + plane.other};
+  const bool stated = heights.unit != LengthUnit::kUnknown || !heights.other.empty();
+  const bool comparable = plane.unit != LengthUnit::kUnknown && plane.unit != LengthUnit::kDegree;
+  if (!stated || !comparable || heights.unit == plane.unit) return {plane.unit, {}};
+  return {plane.unit, "its heights are in " +
+                          (heights.other.empty() ? to_string(heights.unit) : heights.other) +
+                          ", its other coordinates in " + to_string(plane.unit)};
+}
+
+CrsUnits units_of_wkt(std::string_view wkt) {
+  const std::vector<Node> nodes = parse(wkt);
+  const auto vertical = find(nodes, {"VERT_CS", "VERTCRS", "VERTICALCRS"});
+  return crs_units(horizontal(nodes), vertical ? unit_within(nodes, *vertical) : StatedUnit());
 }
 
 }  // namespace clearway

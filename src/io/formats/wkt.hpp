@@ -1,14 +1,33 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
-#include "io/formats/point_reader.hpp"
+#include "io/formats/length_unit.hpp"
 
 namespace clearway {
 
-/// The unit of the horizontal coordinates of a coordinate reference system in well-known text 1 or
-/// 2; kUnknown where the text does not say or cannot be parsed.
-/// Source: OGC 01-009 and OGC 18-010.
-LengthUnit horizontal_unit(std::string_view wkt);
+/// A unit as a file names it.
+struct StatedUnit {
+  LengthUnit unit = LengthUnit::kUnknown;
+  std::string other;  ///< where one is named that is none of ours: which one
+};
+
+/// metres: of the unit.
+StatedUnit unit_of_length(double metres);
+
+/// What a coordinate reference system says of lengths.
+struct CrsUnits {
+  LengthUnit horizontal = LengthUnit::kUnknown;
+  /// Why coordinates cannot be taken as they are, "its unit is 1000 m"; empty where they can.
+  std::string trouble;
+};
+
+/// Of a coordinate reference system in well-known text 1 or 2; unknown where the text does not say
+/// or cannot be parsed. Source: OGC 01-009 and OGC 18-010.
+CrsUnits units_of_wkt(std::string_view wkt);
+
+/// Of a system with these units.
+CrsUnits crs_units(const StatedUnit& plane, const StatedUnit& heights);
 
 }  // namespace clearway

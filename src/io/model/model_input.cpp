@@ -1,9 +1,12 @@
 #include "io/model/model_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "clearway/error.hpp"
 #include "core/util/format.hpp"
+#include "core/util/unit_factor.hpp"
 #include "io/formats/mesh/mesh_reader.hpp"
 #include "io/formats/point_reader.hpp"
 #include "io/model/sample_mesh.hpp"
@@ -50,6 +53,7 @@ void read_points(ModelInput& input) {
     append(batch, reader->info(), first, input.path.string(), input.mesh.vertices);
   }
   input.messages = reader->info().remarks;
+  input.declared_unit = metres_of(reader->info().unit);
   if (reader->info().faces > 0) {
     tell(input.messages, input,
          "its " + format_count(reader->info().faces) + " faces are left out");
@@ -69,20 +73,26 @@ bool read_as_mesh(ModelInput& input, bool with_faces) {
   return true;
 }
 
-void scale(ModelInput& input, double unit) {
-  if (unit == 1) return;
-  const double parts = std::round(1 / unit);  // 1000 of a millimetre: rounded once, not twice
-  const bool divided = 1 / parts == unit;
+/// Into the environment's unit, where the file's is known.
+void scale(ModelInput& input, const ModelOptions& options) {
+  const double unit = options.unit > 0 ? options.unit : input.declared_unit;
+  if (unit == 0 || unit == options.environment_unit) return;
+  const UnitFactor scaled(unit, options.environment_unit);
   for (Vec3& p : input.mesh.vertices) {
-    const Vec3 metres = divided ? Vec3{p.x / parts, p.y / parts, p.z / parts}
-                                : Vec3{p.x * unit, p.y * unit, p.z * unit};
-    if (!std::isfinite(metres.x) || !std::isfinite(metres.y) || !std::isfinite(metres.z)) {
+    const Vec3 place{scaled(p.x), scaled(p.y), scaled(p.z)};
+    if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
       refuse(input.path.string(), "(" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) +
-                                      ") is too large in metres; expected finite coordinates");
+                                      ") is too large in the environment's unit; expected finite "
+                                      "coordinates");
     }
-    p = metres;
+    p = place;
   }
-  input.remarks.largest_bend *= unit;
+  input.remarks.largest_bend *= scaled.factor();
+  if (options.unit > 0) return;
+  tell(input.messages, input,
+       "its unit is " + shown(unit) + " m, the environment's " + shown(options.environment_unit) +
+           " m: its coordinates are converted",
+       {{"metres", unit}});
 }
 
 /// Of a mesh and of vertices that stand alone in a mesh's file.
@@ -149,9 +159,36 @@ std::vector<Vec3> sampled(const ModelInput& input, double spacing, std::vector<M
   return points;
 }
 
+void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& points,
+                     std::vector<Message>& messages) {
+  const std::size_t all = points.size();
+  if (!std::isfinite(above)) {
+    throw UsageError(input.path.string() + ": " + shown(above) +
+                     " m as the lowest height of the model; expected a finite number");
+  }
+  const double highest = std::ranges::max_element(points, {}, [](const Vec3& p) { return p.z; })->z;
+  std::erase_if(points, [above](const Vec3& p) { return p.z < above; });
+  if (points.empty()) {
+    refuse(input.path.string(), "all " + format_count(all) +
+                                    " points of the model are below z = " + format_number(above) +
+                                    " m, the highest at " + format_number(highest) +
+                                    " m; expected one at least that is not left out");
+  }
+  const std::size_t left_out = all - points.size();
+  tell(messages, input,
+       format_count(left_out) + " of " + format_count(all) +
+           " model points are below z = " + format_number(above) + " m, and are left out",
+       {{"left_out", static_cast<double>(left_out)}, {"above", above}});
+}
+
 }  // namespace
 
-ModelInput read_model_input(const std::filesystem::path& path, double unit, bool with_faces) {
+ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options) {
+  if (!(options.unit >= 0) || !(options.environment_unit > 0)) {
+    throw UsageError(path.string() + ": units of " + shown(options.unit) + " m and " +
+                     shown(options.environment_unit) + " m; expected numbers above 0");
+  }
+  const bool with_faces = !options.vertices_only;
   ModelInput input;
   input.path = path;
   const bool mesh = read_as_mesh(input, with_faces);
@@ -159,7 +196,7 @@ ModelInput read_model_input(const std::filesystem::path& path, double unit, bool
   if (input.mesh.vertices.empty()) {
     refuse(path.string(), "the model has no points; expected one at least");
   }
-  scale(input, unit);
+  scale(input, options);
   tell_remarks(input);
   if (mesh && !input.is_mesh()) {
     tell(input.messages, input,
@@ -172,8 +209,11 @@ ModelInput read_model_input(const std::filesystem::path& path, double unit, bool
 std::vector<Vec3> points_of(const ModelInput& input, const ModelOptions& options,
                             std::vector<Message>& messages) {
   messages.insert(messages.end(), input.messages.begin(), input.messages.end());
-  if (input.is_mesh() && !options.vertices_only) return sampled(input, options.spacing, messages);
-  return input.mesh.vertices;
+  const bool as_surface = input.is_mesh() && !options.vertices_only;
+  std::vector<Vec3> points =
+      as_surface ? sampled(input, options.spacing, messages) : input.mesh.vertices;
+  if (options.above) leave_out_below(input, *options.above, points, messages);
+  return points;
 }
 
 }  // namespace clearway

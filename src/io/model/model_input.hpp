@@ -8,19 +8,20 @@
 
 namespace clearway {
 
-/// What a model's file holds, in metres: vertices and triangles of a mesh, or points alone.
+/// What a model's file holds, in the environment's unit: vertices and triangles of a mesh, or points alone.
 struct ModelInput {
   std::filesystem::path path;
   TriangleMesh mesh;  ///< no triangles: the vertices are points
   MeshRemarks remarks;
   std::vector<Message> messages;  ///< on the file as a whole
+  double declared_unit = 0;       ///< metres; 0 where the file does not say
 
   bool is_mesh() const { return !mesh.triangles.empty(); }
 };
 
-/// Reads a file that has one vertex or point at least; everything is finite in metres too. unit:
-/// metres of a unit of the file. with_faces: false leaves the faces out. Throws InputError.
-ModelInput read_model_input(const std::filesystem::path& path, double unit, bool with_faces);
+/// Reads a file that has one vertex or point at least; everything is finite in the environment's
+/// unit too. Throws InputError, and UsageError for units that are not above 0.
+ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options);
 
 /// Its points as the options ask: samples of a mesh, or all its vertices. Throws InputError as
 /// sample_mesh does, and for a mesh without a spacing. Notes and warnings are appended.

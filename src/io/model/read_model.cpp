@@ -1,17 +1,11 @@
-#include "clearway/error.hpp"
 #include "clearway/model.hpp"
 #include "io/model/model_input.hpp"
-#include "io/system/input_error.hpp"
 
 namespace clearway {
 
 std::vector<Vec3> read_model(const std::filesystem::path& path, const ModelOptions& options,
                              std::vector<Message>* messages) {
-  if (!(options.unit > 0)) {
-    throw UsageError(path.string() + ": a unit of " + shown(options.unit) +
-                     " m; expected a number above 0");
-  }
-  const ModelInput input = read_model_input(path, options.unit, !options.vertices_only);
+  const ModelInput input = read_model_input(path, options);
   std::vector<Message> told;
   std::vector<Vec3> points = points_of(input, options, told);
   if (messages) messages->insert(messages->end(), told.begin(), told.end());

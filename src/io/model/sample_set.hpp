@@ -19,17 +19,19 @@ class SampleSet {
 
   void add(const Vec3& point);
 
-  /// Calls use(point) for points until it returns true: for all within the reach of `place`, but
-  /// for a few whose distance is the reach but for rounding, and for some farther ones. Whether it
-  /// returned true.
+  /// Calls use(point) for points until it returns true: for those within the reach of `place`, but
+  /// for a few whose distance is the reach but for rounding, and for some farther ones; the last
+  /// added first, and at most kMostLooks of them. Whether it returned true.
   template <typename Use>
   bool any_near(const Vec3& place, Use use) const {
     const Cell middle = cell_of(place);
+    std::uint32_t looks = 0;
     for (std::int64_t x = middle.x - 1; x <= middle.x + 1; ++x) {
       for (std::int64_t y = middle.y - 1; y <= middle.y + 1; ++y) {
         for (std::int64_t z = middle.z - 1; z <= middle.z + 1; ++z) {
           for (std::uint32_t i = heads_[slot_of({x, y, z})]; i != kNone; i = next_[i]) {
             if (use(points_[i])) return true;
+            if (++looks == kMostLooks) return false;
           }
         }
       }
@@ -39,6 +41,9 @@ class SampleSet {
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// Without it, the vertices of a fine part that a coarse triangle passes would all be looked at
+  /// for each of its places.
+  static constexpr std::uint32_t kMostLooks = 1024;
 
   struct Cell {
     std::int64_t x, y, z;

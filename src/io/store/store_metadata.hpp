@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry/quantisation.hpp"
-#include "io/formats/point_reader.hpp"
+#include "io/formats/length_unit.hpp"
 
 namespace clearway {
 
@@ -30,10 +31,15 @@ struct StoreMetadata {
   std::string crs_wkt;
   std::uint64_t points_hash = 0;
   std::vector<SourceFile> sources;
-};
+  /// Source points of each of them, 0 for files of poses. Empty where the scan is one, and in
+  /// stores of 0.1.0.
+  std::vector<std::uint64_t> source_points;
 
-/// "metre", "foot", "us-survey-foot", "degree", "unknown".
-std::string to_string(LengthUnit unit);
-LengthUnit length_unit_of(const std::string& name);
+  /// Of one of the sources, where that is known.
+  std::optional<std::uint64_t> points_of_source(std::size_t source) const {
+    if (!source_points.empty()) return source_points[source];
+    return sources.size() == 1 ? std::optional(input_points) : std::nullopt;
+  }
+};
 
 }  // namespace clearway

@@ -62,6 +62,7 @@ void read_one(const std::filesystem::path& path, TrajectoryFormat format, Trajec
   InputBuffer input = open(path);
   out.poses.push_back(format == TrajectoryFormat::kThreedtkFrames ? read_threedtk_frames(input)
                                                                   : read_threedtk_pose(input));
+  out.names.push_back(path.filename().string());
 }
 
 }  // namespace
@@ -69,6 +70,7 @@ void read_one(const std::filesystem::path& path, TrajectoryFormat format, Trajec
 void read_threedtk_file(const std::filesystem::path& path, const TrajectoryOptions& options,
                         TrajectoryFile& out) {
   out.format = options.format;
+  out.in_metres = true;
   read_one(path, out.format, out);
   note_frame(path.string(), out);
 }
@@ -77,6 +79,7 @@ void read_threedtk_folder(const std::filesystem::path& folder, const TrajectoryO
                           TrajectoryFile& out) {
   const Files poses = files_of(folder, ".pose");
   const Files frames = files_of(folder, ".frames");
+  out.in_metres = true;
   out.format = options.format != TrajectoryFormat::kAuto ? options.format
                : frames.empty()                          ? TrajectoryFormat::kThreedtkPose
                                                          : TrajectoryFormat::kThreedtkFrames;

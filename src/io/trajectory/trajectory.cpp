@@ -102,6 +102,14 @@ void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& 
   }
 }
 
+void convert_positions(const TrajectoryOptions& options, TrajectoryFile& found) {
+  if (options.environment_unit == 1 || !found.in_metres) return;
+  for (Pose& pose : found.poses) {
+    for (double& coordinate : pose.translation) coordinate /= options.environment_unit;
+  }
+  found.metres_per_unit = options.environment_unit;
+}
+
 /// The model's origin, where the file has the positions of another point of the model.
 void apply_lever_arm(const std::filesystem::path& path, const Vec3& lever,
                      std::vector<Pose>& poses) {
@@ -170,6 +178,7 @@ TrajectoryFile read_without_doubts(const std::filesystem::path& path,
     read_file(path, options, found);
   }
   refuse_useless(path, options, found);
+  convert_positions(options, found);
   apply_lever_arm(path, options.lever_arm, found.poses);
   remark_times(path, found);
   return found;
@@ -187,9 +196,11 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 
 std::vector<Pose> read_trajectory(const std::filesystem::path& path,
                                   const TrajectoryOptions& options, std::vector<Message>* remarks,
-                                  PoseLabels* /*labels*/) {
-  if (remarks == nullptr) return read_without_doubts(path, options).poses;
-  TrajectoryFile found = read_trajectory_file(path, options);
+                                  PoseLabels* labels) {
+  TrajectoryFile found =
+      remarks == nullptr ? read_without_doubts(path, options) : read_trajectory_file(path, options);
+  if (labels != nullptr) *labels = {std::move(found.times), std::move(found.names)};
+  if (remarks == nullptr) return std::move(found.poses);
   remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
                   std::make_move_iterator(found.remarks.end()));
   return std::move(found.poses);

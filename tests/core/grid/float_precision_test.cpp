@@ -4,7 +4,7 @@
 
 #include "core/grid/float_predicate.hpp"
 #include "cpu/brute_force.hpp"
-#include "support/grid_runs.hpp"
+#include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 

@@ -1,7 +1,7 @@
 // LAZ is read within a conversion's pipeline, whose threads it shares.
 #include <catch2/catch.hpp>
 
-#include "support/laz/laz_samples.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
 #include "support/store_fixture.hpp"
 
 using namespace clearway;

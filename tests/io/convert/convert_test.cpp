@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "io/hdf5/hdf5.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/clouds.hpp"
-#include "support/las_bytes.hpp"
 #include "support/store_order.hpp"
 
 using namespace clearway;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "read_environment.hpp"
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -101,6 +101,18 @@ TEST_CASE("degrees are refused, unless they are to be taken as they are") {
   CHECK_THAT(refusal({folder / "a.las"}), Contains("degrees"));
   CHECK(refused({folder / "a.las"})->remedy() == Remedy::kIgnoreCrs);
   CHECK(read_environment({folder / "a.las"}, {.ignore_crs = true}).points.size() == 3);
+}
+
+TEST_CASE("units that cannot be taken as they are are refused, unless that is accepted") {
+  const ScratchFolder folder;
+  put_bytes(folder / "km.las", las_with_wkt("LOCAL_CS[\"far\",UNIT[\"kilometre\",1000]]"));
+  const auto open = [&](bool ignore) {
+    ConversionOptions options = conversion_of({folder / "km.las"}, folder / "out.h5");
+    options.ignore_crs = ignore;
+    return convert_quietly(options);
+  };
+  CHECK_THROWS_WITH(open(false), Contains("its unit is 1000 m"));
+  CHECK(open(true).points > 0);
 }
 
 TEST_CASE("feet are reported, other units than the first file's refused") {

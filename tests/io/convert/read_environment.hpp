@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "io/convert/environment_source.hpp"
+#include "io/convert/inputs/environment_source.hpp"
 #include "support/store_fixture.hpp"
 
 namespace clearway::test {

@@ -1,6 +1,8 @@
 // What a conversion warns of, where something is wrong with the inputs, and only there.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
+#include <functional>
 #include <random>
 
 #include "core/util/format.hpp"
@@ -251,4 +253,40 @@ TEST_CASE("a strict conversion tells all warnings and leaves nothing behind") {
   CHECK(told == std::vector<std::string>{"same-scan", "same-place"});
   CHECK_FALSE(fs::exists(options.output));
   CHECK_FALSE(fs::exists(folder.folder / "out.h5.partial"));
+}
+
+TEST_CASE("coordinates that lost their digits are warned of with their step") {
+  const Folder folder;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> metres(0, 90);
+  const auto text = [&](double east, double north, const std::function<double(double)>& lose) {
+    std::string lines;
+    for (int i = 0; i < 500; ++i) {
+      lines += format_number(lose(east + metres(random))) + " " +
+               format_number(lose(north + metres(random))) + " " +
+               format_number(metres(random) / 30) + "\n";
+    }
+    put_bytes(folder.folder / "a.xyz", lines);
+    return folder.warnings({folder.folder / "a.xyz"});
+  };
+  const auto to = [](double step) {
+    return [step](double v) { return std::round(v / step) * step; };
+  };
+  const Message whole = only(text(500'000, 5.4e6, to(1)), "lost-digits");
+  CHECK_THAT(whole.text, Contains("coordinates x, y are multiples of 1 m, 1 m"));
+  CHECK(number(only(text(500'000, 5.4e6, to(10)), "lost-digits"), "step") == 10);
+  const auto single = [](double v) { return static_cast<double>(static_cast<float>(v)); };
+  const Message floats = only(text(500'000, 5.4e6, single), "lost-digits");
+  CHECK_THAT(floats.text, Contains("x, y are multiples of 0.03125 m, 0.5 m"));
+  CHECK(text(500'000, 5.4e6, to(0.01)).empty());
+  CHECK(text(0, 0, single).empty());
+  // A flat scan has lost nothing along its height.
+  put_bytes(folder.folder / "flat.xyz", [&] {
+    std::string lines;
+    for (int i = 0; i < 500; ++i) {
+      lines += format_number(metres(random)) + " " + format_number(metres(random)) + " 0\n";
+    }
+    return lines;
+  }());
+  CHECK(folder.warnings({folder.folder / "flat.xyz"}).empty());
 }

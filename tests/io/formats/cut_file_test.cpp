@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "support/e57_bytes.hpp"
-#include "support/las_bytes.hpp"
-#include "support/pcd_bytes.hpp"
+#include "support/bytes/e57_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/bytes/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
 #include "io/formats/point_reader.hpp"
-#include "support/e57_bytes.hpp"
-#include "support/las_bytes.hpp"
-#include "support/laz/laz_samples.hpp"
+#include "support/bytes/e57_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -32,7 +32,7 @@ TEST_CASE("what is not read is refused by the name of its format, with advice") 
     return message;
   };
   CHECK_THAT(refusal("c.e57", ""), Contains("E57 header"));
-  CHECK_THAT(refusal("c.obj", "v 1 2 3\n"), Contains("mesh") && Contains("PLY"));
+  CHECK_THAT(refusal("c.obj", "v 1 2 3\n"), Contains("mesh") && Contains("expected points"));
   CHECK_THAT(refusal("c.las", "1 2 3\n"), Contains("LAS header"));
   CHECK_THAT(refusal("d.las", std::string(500, ' ')), Contains("LASF"));
   CHECK_THAT(refusal("c.ply", "1 2 3\n"), Contains("`ply`"));

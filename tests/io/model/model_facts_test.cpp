@@ -2,7 +2,7 @@
 
 #include "io/model/mesh_facts.hpp"
 #include "io/model/point_gaps.hpp"
-#include "support/mesh_bytes.hpp"
+#include "support/bytes/mesh_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

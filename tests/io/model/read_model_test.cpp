@@ -1,7 +1,8 @@
 #include <catch2/catch.hpp>
 
+#include "clearway/error.hpp"
 #include "clearway/model.hpp"
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -34,4 +35,26 @@ TEST_CASE("a model without points or with a point that is not finite is refused"
   CHECK_THAT(refusal_of_model(scratch.write("a.xyz", "# none\n")), Contains("no points"));
   CHECK_THAT(refusal_of_model(scratch.write("a.xyz", "1 2 3\n1 nan 3\n")),
              Contains("model point 1") && Contains("finite"));
+}
+
+TEST_CASE("a unit that the file or the caller names is converted into the environment's") {
+  ReaderScratch scratch;
+  LasBytes las;
+  las.vlrs = {{"LASF_Projection", 2112, "LOCAL_CS[\"feet\",UNIT[\"foot\",0.3048]]"}};
+  const auto feet = scratch.write("a.las", las.build());
+  const double x = 1 * 0.001 + 100;
+  std::vector<Message> messages;
+  CHECK(read_model(feet, &messages)[0].x == x * 0.3048);
+  REQUIRE(messages.size() == 1);
+  CHECK(messages[0].severity == Message::Severity::kNote);
+  CHECK_THAT(messages[0].text, Contains("its unit is 0.3048 m"));
+  CHECK(read_model(feet, {.environment_unit = 0.3048})[0].x == x);
+  CHECK(read_model(feet, {.unit = 1})[0].x == x);
+
+  const auto unknown = scratch.write("a.xyz", "914.4 2 3\n");
+  CHECK(read_model(unknown, {.environment_unit = 0.3048})[0].x == 914.4);
+  CHECK(read_model(unknown, {.unit = 0.001})[0].x == 0.9144);
+  CHECK(read_model(unknown, {.unit = 0.001, .environment_unit = 0.3048})[0].x == Approx(3));
+  CHECK_THROWS_AS(read_model(unknown, {.unit = -1}), UsageError);
+  CHECK_THROWS_AS(read_model(unknown, {.environment_unit = 0}), UsageError);
 }

@@ -8,7 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/model_tree.hpp"
-#include "support/mesh_bytes.hpp"
+#include "support/bytes/mesh_bytes.hpp"
 #include "support/surface_places.hpp"
 #include "support/triangle_distance.hpp"
 

@@ -1,4 +1,5 @@
 // Forms of poses beside the plain text formats: unit, lever arm, quaternions without time, 3DTK.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -66,6 +67,35 @@ TEST_CASE("a unit scales positions alone") {
   CHECK_THAT(refusal("x[px],y[px],z[px]" + quaternion), Contains("px"));
   CHECK_THAT(refusal("x[mm],y[mm],z[mm]" + quaternion, {.metres_per_unit = 1}),
              Contains("was declared"));
+}
+
+TEST_CASE("positions of a known unit are converted into the environment's") {
+  const std::string row = "1 0 0 9 0 1 0 3.048 0 0 1 0\n";
+  CHECK(poses_of(row, {.environment_unit = 0.3048}).at(0).translation[1] == 3.048);
+  const TrajectoryOptions metres{.metres_per_unit = 1, .environment_unit = 0.3048};
+  CHECK(poses_of(row, metres).at(0).translation[1] == Approx(10));
+  const std::string named = "x_ft,y_ft,z_ft,qx,qy,qz,qw\n10,20,30,0,0,0,1\n";
+  CHECK(poses_of(named, {.environment_unit = 0.3048}).at(0).translation[2] == Approx(30));
+  const TrajectoryOptions arm{.environment_unit = 0.3048, .lever_arm = {0, 4, 0}};
+  CHECK(poses_of(named, arm).at(0).translation[1] == Approx(16));
+  // 9 mm are the double nearest to 0.009, as for models.
+  CHECK(poses_of(row, {.metres_per_unit = 0.001}).at(0).translation[0] == 0.009);
+  CHECK_THAT(refusal("x_ft,y_ft,z,qx,qy,qz,qw\n10,20,30,0,0,0,1\n"),
+             Contains("some of the positions"));
+}
+
+TEST_CASE("a last number that ends with its point is warned of") {
+  const ReaderScratch scratch;
+  const std::string row = "1 0 0 9 0 1 0 3 0 0 1 3";
+  std::vector<Message> remarks;
+  read_trajectory(scratch.write("a.txt", row + "\n" + row), {}, &remarks);
+  const auto cut = [&] {
+    return std::any_of(remarks.begin(), remarks.end(),
+                       [](const Message& m) { return m.code == "cut-text"; });
+  };
+  CHECK_FALSE(cut());
+  read_trajectory(scratch.write("b.txt", row + "\n" + row + "."), {}, &remarks);
+  CHECK(cut());
 }
 
 TEST_CASE("a lever arm leads from the trajectory's point back to the model's origin") {

@@ -11,7 +11,7 @@
 #include "io/formats/las/las_writer.hpp"
 #include "io/formats/point_reader.hpp"
 #include "scene/random.hpp"
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

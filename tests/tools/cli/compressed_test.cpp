@@ -1,8 +1,8 @@
 // The built program on LAZ, and on LAS whose writer crashed: as files and from standard input.
 #include <catch2/catch.hpp>
 
+#include "support/bytes/laz/laz_samples.hpp"
 #include "support/clouds.hpp"
-#include "support/laz/laz_samples.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/spawned.hpp"
 

@@ -87,6 +87,21 @@ TEST_CASE("a file in the wrong place is refused with what it is and what to do")
   }
 }
 
+TEST_CASE("a refused scan comes with the command that reads it") {
+  const Files files;
+  const auto refusal = [&](const std::string& inputs) {
+    const Outcome outcome = files.run("convert " + inputs + " -o " + files.path("x.h5"));
+    CHECK(outcome.exit_code == 3);
+    return outcome.err;
+  };
+  CHECK_THAT(refusal(files.path("car.obj")),
+             Contains("expected points; clearway model samples its surface"));
+  CHECK_THAT(refusal(files.path("car.obj") + " " + files.path("scan.las")),
+             Contains("expected points; --skip-unreadable"));
+  CHECK_THAT(refusal("/dev/null"),
+             Contains("is a pipe or device") && Contains("clearway convert - < FILE"));
+}
+
 TEST_CASE("info describes every input") {
   const Files files;
   const json las = files.info("scan.las");
@@ -142,6 +157,41 @@ TEST_CASE("a length may have a unit, which is read exactly") {
     CAPTURE(text);
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, Contains("mm, cm, m, km, in or ft"));
+  }
+}
+
+TEST_CASE("every option that is a length takes a unit") {
+  const Files files;
+  const std::string info =
+      "trajectory info --json " + files.path("tum.txt") + " --model " + files.path("model.xyz");
+  const std::string run = "run --force --json --env " + files.path("site.h5") + " --model " +
+                          files.path("car.obj") + " --trajectory " + files.path("path.txt") +
+                          " --radius 0.1 -o " + files.path("r.h5");
+  const auto same = [&](const std::string& command, const std::string& plain,
+                        const std::string& with_unit, const char* what) {
+    const Outcome outcomes[] = {files.run(command + plain), files.run(command + with_unit)};
+    CAPTURE(command, outcomes[0].err, outcomes[1].err);
+    REQUIRE(outcomes[0].exit_code == 0);
+    REQUIRE(outcomes[1].exit_code == 0);
+    CHECK(json::parse(outcomes[0].out)[what] == json::parse(outcomes[1].out)[what]);
+  };
+  const std::string model = "model --json " + files.path("car.obj");
+  same(model, " --spacing 0.1", " --spacing 10cm", "points");
+  same(run, " --model-spacing 0.05", " --model-spacing 50mm", "model_points");
+  same(run, " --lever-arm 1,0,-1", " --lever-arm +100cm,0,-1m", "colliding_points");
+  same(info, " --radius 0.5", " --radius 50cm", "motion");
+  same(info, " --lever-arm 1,0,-1.016", " --lever-arm '1000 mm,0,-40in'", "first_pose");
+  const std::string convert =
+      "convert --force --json " + files.path("scan.xyz") + " -o " + files.path("c.h5");
+  same(convert, " --layout regular:0.5", " --layout regular:50cm", "cells");
+  same(convert, " --scale 0.01", " --scale 1cm", "scale");
+  const std::string resample = "trajectory resample --force --json " + files.path("tum.txt") +
+                               " --model " + files.path("model.xyz") + " -o " +
+                               files.path("dense.txt");
+  same(resample, " --max-motion 0.1", " --max-motion 10cm", "poses_out");
+  for (const char* lever : {"1,2", "1,2,3,4", "1,2,x", "1,2,3parsecs", "nan,0,0", ""}) {
+    CAPTURE(lever);
+    CHECK(files.run(info + " --lever-arm '" + std::string(lever) + "'").exit_code == 2);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "support/mesh_bytes.hpp"
+#include "support/bytes/mesh_bytes.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
@@ -69,6 +69,9 @@ TEST_CASE("run of a mesh is run of the points that model wrote") {
   CHECK(json::parse(mesh.out)["model_points"] == points.size());
   CHECK(json::parse(mesh.out)["colliding_points"] > 0);
   CHECK_THAT(mesh.err, Contains("a mesh of 12 triangles, sampled to"));
+  for (const json& warning : json::parse(mesh.out)["warnings"]) {
+    CHECK(warning["code"] != "");  // that is a note
+  }
   REQUIRE(meshes.run("car.ply", "points.h5", "").exit_code == 0);
   CHECK(meshes.work.bytes("mesh.h5") == meshes.work.bytes("points.h5"));
 }

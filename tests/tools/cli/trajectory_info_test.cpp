@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "clearway/trajectory.hpp"
-#include "support/sbet_bytes.hpp"
+#include "support/bytes/sbet_bytes.hpp"
 #include "support/scenes.hpp"
 #include "tools/cli/support/program.hpp"
 

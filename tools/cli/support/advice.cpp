@@ -52,6 +52,10 @@ std::string advice_on(const Error& error) {
       return "; --scale " + format_number(error.amount()) + " accepts that step";
     case Remedy::kColumns:
       return "; --columns says which ones hold x, y and z, for example --columns 2,3,4";
+    case Remedy::kStandardInput:
+      return "; clearway convert - < FILE takes it as standard input";
+    case Remedy::kSampleMesh:
+      return "; clearway model samples its surface to points in PLY";
     case Remedy::kSkipUnreadable:
       return "; --skip-unreadable leaves out the files that cannot be read";
     case Remedy::kIgnoreCrs:
@@ -76,6 +80,16 @@ std::string advice_on(const Error& error) {
       return "; --allow-non-rigid accepts any invertible matrix";
     case Remedy::kAskForClearance:
       return "; run with --clearance";
+    case Remedy::kAskForFirstPose:
+      return "; run with --first-pose";
+    case Remedy::kSameTrajectory:
+      return ". --trajectory takes the file of the run, with the same options";
+    case Remedy::kSameModel:
+      return ". --model takes the file of the run, with the same --model-... options";
+    case Remedy::kSameEnvironment:
+      return ". --env takes the store of the run, or another one of the same scans";
+    case Remedy::kAskForProfile:
+      return "; run with --profile";
     case Remedy::kModelSpacing:
       return "; --model-spacing " +
              (error.amount() > 0 ? format_number(error.amount()) : "METRES") +
@@ -89,6 +103,9 @@ std::string advice_on(const Error& error) {
 std::string advice_on(const Message& message) {
   if (message.code == "large-steps") {
     return ". --between-poses searches the way too; clearway trajectory resample adds poses";
+  }
+  if (message.code == "one-long-conflict") {
+    return ". clearway run --model-above leaves out the lowest part of the model";
   }
   return "";
 }

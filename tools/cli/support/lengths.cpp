@@ -1,21 +1,31 @@
 #include "cli/support/lengths.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <string_view>
+
+#include "clearway/model.hpp"
+#include "io/formats/text/column_names.hpp"
 
 namespace clearway::tool {
 namespace {
 
 struct Unit {
   std::string_view name;
+  double metres;
   int power;      ///< of ten, metres
   int ten_thous;  ///< of a metre, where it is no power of ten; otherwise 0
+  bool of_files;  ///< files are written in it
 };
-constexpr Unit kUnits[] = {{"m", 0, 0},  {"mm", -3, 0},  {"cm", -2, 0},
-                           {"km", 3, 0}, {"in", 0, 254}, {"ft", 0, 3048}};
+constexpr Unit kUnits[] = {{"mm", kMetresPerMillimetre, -3, 0, true},
+                           {"cm", kMetresPerCentimetre, -2, 0, true},
+                           {"m", 1, 0, 0, true},
+                           {"in", kMetresPerInch, 0, 254, true},
+                           {"ft", kMetresPerFoot, 0, 3048, true},
+                           {"km", 1000, 3, 0, false}};
 
 std::optional<double> number_of(std::string_view text) {
   double value = 0;
@@ -49,7 +59,8 @@ std::optional<ParsedLength> parse(std::string_view text) {
   const std::size_t last_digit = text.find_last_of("0123456789.");
   if (last_digit == std::string_view::npos) return std::nullopt;
   std::string_view unit = text.substr(last_digit + 1);
-  const std::string_view digits = text.substr(0, last_digit + 1);
+  std::string_view digits = text.substr(0, last_digit + 1);
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
   while (unit.starts_with(' ')) unit.remove_prefix(1);
   if (unit.empty()) {
     const auto value = number_of(digits);
@@ -63,29 +74,104 @@ std::optional<ParsedLength> parse(std::string_view text) {
   return std::nullopt;
 }
 
+std::array<ParsedLength, 3> parse_three(const std::string& option, const std::string& text) {
+  std::array<ParsedLength, 3> out{};
+  std::vector<std::string_view> fields;
+  split_fields(text, ',', fields);
+  bool good = fields.size() == out.size();
+  for (std::size_t k = 0; good && k < out.size(); ++k) {
+    const auto length = parse(fields[k]);
+    good = length && std::isfinite(length->value);
+    if (good) out[k] = *length;
+  }
+  if (good) return out;
+  throw CLI::ValidationError(option, text +
+                                         ": expected three numbers of metres, for example "
+                                         "1.2,0,1.5, or with units, for example 120cm,0,1.5m");
+}
+
 }  // namespace
 
-ParsedLength parse_length(const std::string& option, const std::string& text) {
+ParsedLength parse_length(const std::string& option, const std::string& text, LengthRange range) {
   const auto length = parse(text);
-  if (length && std::isfinite(length->value) && length->value > 0) return *length;
+  if (length && std::isfinite(length->value)) {
+    const double value = length->value;
+    if (range == LengthRange::kAny || value > 0) return *length;
+    if (range == LengthRange::kFromZero && value == 0) return *length;
+  }
+  const char* limit = range == LengthRange::kAboveZero  ? " above 0"
+                      : range == LengthRange::kFromZero ? ", 0 or more"
+                                                        : "";
   throw CLI::ValidationError(option,
-                             text +
-                                 ": expected a finite number of metres above 0, for example 0.1, "
-                                 "or a number with mm, cm, m, km, in or ft, for example 10cm");
+                             text + ": expected a finite number of metres" + limit +
+                                 ", for example 0.1, or a number with mm, cm, m, km, in or ft, "
+                                 "for example 10cm");
+}
+
+std::optional<double> metres_of_unit(const std::string& length_unit) {
+  if (length_unit == "foot") return kMetresPerFoot;
+  if (length_unit == "us-survey-foot") return 1200.0 / 3937;
+  return std::nullopt;
+}
+
+CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,
+                             const std::string& description) {
+  std::vector<std::string> known;
+  for (const Unit& unit : kUnits) {
+    if (unit.of_files) known.emplace_back(unit.name);
+  }
+  return command
+      .add_option_function<std::string>(
+          names,
+          [&metres](const std::string& name) {
+            metres = std::ranges::find(kUnits, name, &Unit::name)->metres;
+          },
+          description)
+      ->type_name("UNIT")
+      ->check(CLI::IsMember(known));
 }
 
 CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, double& length,
+                                const std::string& description, LengthRange range) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [this, &length, name, range](const std::string& text) {
+            set(length, parse_length(name, text, range));
+          },
+          description)
+      ->type_name("METRES");
+}
+
+CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
+                                std::optional<double>& length, const std::string& description,
+                                LengthRange range) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [this, &length, name, range](const std::string& text) {
+            set(length.emplace(), parse_length(name, text, range));
+          },
+          description)
+      ->type_name("METRES");
+}
+
+CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, Vec3& lengths,
                                 const std::string& description) {
   return command
       .add_option_function<std::string>(
           name,
-          [this, &length, name](const std::string& text) {
-            const ParsedLength parsed = parse_length(name, text);
-            length = parsed.value;
-            if (parsed.has_unit) in_metres_.push_back(&length);
+          [this, &lengths, name](const std::string& text) {
+            const auto parsed = parse_three(name, text);
+            for (int k = 0; k < 3; ++k) set(lengths[k], parsed[static_cast<std::size_t>(k)]);
           },
           description)
-      ->type_name("METRES");
+      ->type_name("X,Y,Z");
+}
+
+void LengthOptions::set(double& length, const ParsedLength& parsed) {
+  length = parsed.value;
+  if (parsed.has_unit) in_metres_.push_back(&length);
 }
 
 void LengthOptions::convert(double metres) const {

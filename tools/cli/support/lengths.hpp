@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "clearway/vec3.hpp"
 
 namespace CLI {
 class App;
@@ -10,27 +13,47 @@ class Option;
 
 namespace clearway::tool {
 
-/// What a text says of a length above 0: "0.1", "10cm", "4 in".
+/// What a text says of a length: "0.1", "10cm", "4 in".
 struct ParsedLength {
   double value = 0;       ///< metres where a unit was given
   bool has_unit = false;  ///< otherwise the unit is that of the file it is compared with
 };
 
-/// Throws CLI::ValidationError naming the option where the text is no finite length above 0. A
+/// Which lengths an option takes.
+enum class LengthRange { kAboveZero, kFromZero, kAny };
+
+/// Throws CLI::ValidationError naming the option where the text is no finite length of the range. A
 /// decimal becomes the nearest double, "10cm" the same as "0.1".
-ParsedLength parse_length(const std::string& option, const std::string& text);
+ParsedLength parse_length(const std::string& option, const std::string& text,
+                          LengthRange range = LengthRange::kAboveZero);
+
+/// Metres of the unit of a store's coordinates, by its name there; none where it is the metre.
+std::optional<double> metres_of_unit(const std::string& length_unit);
+
+/// An option that takes the name of a unit of a file. metres: receives its length.
+CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,
+                             const std::string& description);
 
 /// Lengths of a command line that were given with a unit, for an environment that is not in metres.
 class LengthOptions {
  public:
   /// An option that takes a length; both outlive the command.
   CLI::Option* add(CLI::App& command, const std::string& name, double& length,
+                   const std::string& description, LengthRange range = LengthRange::kAboveZero);
+  /// The same of one that need not be given.
+  CLI::Option* add(CLI::App& command, const std::string& name, std::optional<double>& length,
+                   const std::string& description, LengthRange range);
+
+  /// The same for three lengths X,Y,Z, which may be 0 or negative.
+  CLI::Option* add(CLI::App& command, const std::string& name, Vec3& lengths,
                    const std::string& description);
 
   /// Turns those that were given in metres into units of `metres` metres.
   void convert(double metres) const;
 
  private:
+  void set(double& length, const ParsedLength& parsed);
+
   std::vector<double*> in_metres_;
 };
 

@@ -75,32 +75,23 @@ void add_threads_option(CLI::App& command, int& threads) {
 }
 
 void add_model_unit(CLI::App& command, const std::string& names, double& unit) {
-  const std::map<std::string, double> units{{"mm", kMetresPerMillimetre},
-                                            {"cm", kMetresPerCentimetre},
-                                            {"m", 1},
-                                            {"in", kMetresPerInch},
-                                            {"ft", kMetresPerFoot}};
-  command
-      .add_option_function<std::string>(
-          names, [units, &unit](const std::string& name) { unit = units.at(name); },
-          "Unit of the model's file: mm, cm, m, in or ft (default: m)")
-      ->type_name("UNIT")
-      ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
+  add_unit_option(command, names, unit,
+                  "Unit of the model's file: mm, cm, m, in or ft (default: m)");
 }
 
-void add_model_options(CLI::App& command, ModelOptions& options) {
+void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths) {
   CLI::Option* spacing =
-      command
-          .add_option("--model-spacing", options.spacing,
-                      "Of a mesh: no place of its surface is farther than this from a model point "
-                      "(default: a quarter of the radius)")
-          ->type_name("METRES")
-          ->check(positive_length());
+      lengths.add(command, "--model-spacing", options.spacing,
+                  "Of a mesh: no place of its surface is farther than this from a model point "
+                  "(default: a quarter of the radius)");
   add_model_unit(command, "--model-unit", options.unit);
   command
       .add_flag("--model-vertices", options.vertices_only,
                 "Take the vertices of a mesh alone as the model, not its surface")
       ->excludes(spacing);
+  lengths.add(command, "--model-above", options.above,
+              "Leave out the model's points whose z is below this, such as wheels on the ground",
+              LengthRange::kAny);
 }
 
 }  // namespace clearway::tool

@@ -12,6 +12,8 @@ class Validator;
 
 namespace clearway::tool {
 
+class LengthOptions;
+
 /// Accepts a finite length above 0, of which it makes metres. For Option::transform.
 CLI::Validator positive_length();
 
@@ -31,8 +33,8 @@ void add_threads_option(CLI::App& command, int& threads);
 /// --model-unit; `names` where it is called otherwise too.
 void add_model_unit(CLI::App& command, const std::string& names, double& unit);
 
-/// --model-spacing, --model-unit and --model-vertices.
-void add_model_options(CLI::App& command, ModelOptions& options);
+/// --model-spacing, --model-unit, --model-vertices and --model-above.
+void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths);
 
 /// Bytes of "512M", "1.5G", "4GiB" or "300000000"; throws CLI::ValidationError naming the option.
 std::uint64_t parse_size(const std::string& option, const std::string& text);

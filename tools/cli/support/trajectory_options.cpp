@@ -3,14 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli/support/lengths.hpp"
 #include "io/formats/text/column_names.hpp"
-#include "io/formats/text/text_number.hpp"
 #include "io/trajectory/trajectory_file.hpp"
 
 namespace clearway::tool {
@@ -68,20 +66,6 @@ void set_angles(TrajectoryOptions& options, const std::string& text) {
   }
 }
 
-void set_lever_arm(Vec3& lever, const std::string& text) {
-  const auto parts = parts_of(text);
-  bool good = parts.size() == 3;
-  for (int k = 0; good && k < 3; ++k) {
-    const auto number = parse_whole_number(parts[k]);
-    good = number && std::isfinite(*number);
-    if (good) lever[k] = *number;
-  }
-  if (!good) {
-    throw CLI::ValidationError("--lever-arm",
-                               text + ": expected three numbers of metres, for example 1.2,0,1.5");
-  }
-}
-
 void add_angles(CLI::App& command, TrajectoryOptions& options) {
   command
       .add_option_function<std::string>(
@@ -104,36 +88,23 @@ void add_map(CLI::App& command, TrajectoryOptions& options) {
       ->type_name("CRS");
 }
 
-void add_lengths(CLI::App& command, TrajectoryOptions& options) {
-  static const std::map<std::string, double> kMetresPerUnit{
-      {"mm", 0.001}, {"cm", 0.01}, {"m", 1}, {"in", 0.0254}, {"ft", 0.3048}};
-  command
-      .add_option_function<std::string>(
-          "--trajectory-unit",
-          [&options](const std::string& name) {
-            options.metres_per_unit = kMetresPerUnit.at(name);
-          },
-          "Unit of the positions: mm, cm, m, in or ft (default: m, or what a header says)")
-      ->type_name("UNIT")
-      ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
-  command
-      .add_option_function<std::string>(
-          "--lever-arm",
-          [&lever = options.lever_arm](const std::string& text) { set_lever_arm(lever, text); },
-          "Where the point that the trajectory gives, such as an antenna, lies in the model's "
-          "frame, in metres")
-      ->type_name("X,Y,Z");
+void add_lengths(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths) {
+  add_unit_option(command, "--trajectory-unit", options.metres_per_unit,
+                  "Unit of the positions: mm, cm, m, in or ft (default: m, or what a header says)");
+  lengths.add(command, "--lever-arm", options.lever_arm,
+              "Where the point that the trajectory gives, such as an antenna, lies in the model's "
+              "frame, in metres");
 }
 
 }  // namespace
 
-void add_trajectory_options(CLI::App& command, TrajectoryOptions& options) {
+void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths) {
   add_format(command, options);
   command.add_flag("--allow-non-rigid", options.allow_non_rigid,
                    "Accept matrices that scale or shear");
   add_angles(command, options);
   add_map(command, options);
-  add_lengths(command, options);
+  add_lengths(command, options, lengths);
 }
 
 }  // namespace clearway::tool

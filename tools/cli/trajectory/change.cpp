@@ -12,6 +12,7 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
@@ -30,7 +31,8 @@ namespace {
 
 struct ChangeOptions {
   std::filesystem::path input, output, model;
-  double max_motion = 0, model_unit = 1;
+  double max_motion = 0, model_unit = 0;
+  LengthOptions lengths;
   TrajectoryOptions trajectory;
   bool force = false;
   bool json = false;
@@ -64,8 +66,14 @@ void write_changed(const ChangeOptions& options, const Change& change) {
   refuse_overwriting(options.output, {options.input, options.model});
   PendingFile output(options.output, options.force);
   std::vector<Message> remarks;
-  const std::vector<Pose> before = read_trajectory(options.input, options.trajectory, &remarks);
+  PoseLabels labels;
+  const std::vector<Pose> before =
+      read_trajectory(options.input, options.trajectory, &remarks, &labels);
   for (const Message& remark : remarks) log_message(remark);
+  if (!labels.time.empty() || !labels.name.empty()) {
+    spdlog::info("{}: its times and names are left out, as the output has matrices only",
+                 options.input.string());
+  }
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   // No other place of a mesh is farther out than its vertices.
   const Box model =
@@ -103,17 +111,14 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
                   "The new trajectory: 16 numbers a line, a row-major 4x4 matrix")
       ->type_name("FILE")
       ->required();
-  command.add_option("--max-motion", options->max_motion, max_motion_help)
-      ->type_name("METRES")
-      ->required()
-      ->transform(positive_length());
+  options->lengths.add(command, "--max-motion", options->max_motion, max_motion_help)->required();
   command
       .add_option("--model", options->model,
                   "The model, as clearway run reads it; its bounding box is what moves")
       ->type_name("FILE")
       ->required();
   add_model_unit(command, "--model-unit", options->model_unit);
-  add_trajectory_options(command, options->trajectory);
+  add_trajectory_options(command, options->trajectory, options->lengths);
   command.add_flag("--force", options->force, "Overwrite an existing output");
   command.add_flag("--json", options->json, "One JSON object on standard output");
   command.callback([options, change] {

@@ -10,6 +10,7 @@
 #include "clearway/model.hpp"
 #include "clearway/store.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
@@ -24,7 +25,8 @@ namespace {
 
 struct InfoOptions {
   std::filesystem::path input, environment, model;
-  double radius = 0;
+  double radius = 0, model_unit = 0;
+  LengthOptions lengths;
   TrajectoryOptions trajectory;
   bool json = false;
 };
@@ -86,6 +88,10 @@ Description describe(InfoOptions& options) {
   Description what;
   if (!options.environment.empty()) {
     const Store store(options.environment);
+    if (const auto metres = metres_of_unit(store.length_unit())) {
+      options.lengths.convert(*metres);
+      options.trajectory.environment_unit = *metres;
+    }
     options.trajectory.default_crs = store.crs_wkt();
     if (store.point_count() > 0) what.scan = store.box();
   }
@@ -94,7 +100,12 @@ Description describe(InfoOptions& options) {
   what.summary = summarize_trajectory(poses);
   if (what.scan && !poses.empty()) what.overlap = overlap_of(poses, what.summary.box, *what.scan);
   if (!options.model.empty()) {
-    what.motion = motion_of(poses, box_of(read_model(options.model)), options.radius);
+    // No other place of a mesh is farther out than its vertices.
+    const Box model =
+        box_of(read_model(options.model, {.unit = options.model_unit,
+                                          .environment_unit = options.trajectory.environment_unit,
+                                          .vertices_only = true}));
+    what.motion = motion_of(poses, model, options.radius);
   }
   warn_of_axes(options.input.string(), what);
   warn_of_scan(options, what);
@@ -124,13 +135,12 @@ void add_trajectory_info(CLI::App& trajectory) {
                            ->add_option("--model", options->model,
                                         "The model: says how far it moves from pose to pose")
                            ->type_name("FILE");
-  command
-      ->add_option("--radius", options->radius,
-                   "Count the steps that move the model by more than this; needs --model")
-      ->type_name("METRES")
-      ->check(positive_length())
+  add_model_unit(*command, "--model-unit", options->model_unit);
+  options->lengths
+      .add(*command, "--radius", options->radius,
+           "Count the steps that move the model by more than this; needs --model")
       ->needs(model);
-  add_trajectory_options(*command, options->trajectory);
+  add_trajectory_options(*command, options->trajectory, options->lengths);
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer("Example: clearway trajectory info path.csv --angles deg --env site.h5");
   command->callback([options] { run_info(*options); });

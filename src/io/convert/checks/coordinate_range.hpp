@@ -39,6 +39,8 @@ class CoordinateRange {
   }
 
   Far far_points(double reach) const;
+  /// Every n-th point.
+  const std::vector<Vec3>& samples() const { return samples_; }
 
  private:
   static constexpr std::size_t kKept = 16;  // on each side of each axis

@@ -7,7 +7,7 @@
 #include "core/util/progress.hpp"
 #include "io/convert/checks/file_boxes.hpp"
 #include "io/convert/checks/same_place.hpp"
-#include "io/convert/environment_source.hpp"
+#include "io/convert/inputs/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
 
 namespace clearway {

@@ -69,7 +69,9 @@ class E57Reader final : public PointReader {
     refuse_points_from_nothing(pages_.name(), scans_);
     info_.declared_points = points;
     info_.crs_wkt = std::move(document.crs);
-    info_.unit = horizontal_unit(info_.crs_wkt);
+    const CrsUnits units = units_of_wkt(info_.crs_wkt);
+    info_.unit = units.horizontal;
+    info_.unit_trouble = units.trouble;
     if (info_.unit == LengthUnit::kUnknown) info_.unit = LengthUnit::kMetre;
   }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 #include "io/formats/byte_load.hpp"
+#include "io/formats/las/epsg_unit.hpp"
 
 namespace clearway {
 namespace {
@@ -13,6 +15,8 @@ constexpr std::uint16_t kGeodeticSystem = 2048;
 constexpr std::uint16_t kGeodeticLinearUnit = 2052;
 constexpr std::uint16_t kProjectedSystem = 3072;
 constexpr std::uint16_t kProjectedLinearUnit = 3076;
+constexpr std::uint16_t kVerticalUnit = 4099;
+constexpr std::uint16_t kUserDefined = 32767;
 
 /// The value of a key that holds one short; 0 where it is missing.
 std::uint16_t value_of(std::span<const std::byte> directory, std::uint16_t wanted) {
@@ -27,31 +31,41 @@ std::uint16_t value_of(std::span<const std::byte> directory, std::uint16_t wante
   return 0;
 }
 
-LengthUnit unit_of(std::uint16_t code) {
+/// 0: no unit is named.
+StatedUnit unit_of(std::uint16_t code) {
   switch (code) {
+    case 0:
+      return {};
     case 9001:
-      return LengthUnit::kMetre;
+      return {LengthUnit::kMetre, {}};
     case 9002:
-      return LengthUnit::kFoot;
+      return {LengthUnit::kFoot, {}};
     case 9003:
-      return LengthUnit::kUsSurveyFoot;
+      return {LengthUnit::kUsSurveyFoot, {}};
     default:
-      return LengthUnit::kUnknown;
+      return {LengthUnit::kUnknown, "the GeoTIFF unit " + std::to_string(code)};
   }
+}
+
+StatedUnit plane_unit(std::span<const std::byte> keys) {
+  const std::uint16_t model = value_of(keys, kModelType);
+  const std::uint16_t unit = value_of(keys, kProjectedLinearUnit);
+  const std::uint16_t projection = value_of(keys, kProjectedSystem);
+  if (model == 2) return {LengthUnit::kDegree, {}};
+  if (model == 3) return unit_of(value_of(keys, kGeodeticLinearUnit));
+  if (model == 0 && unit == 0 && projection == 0 && value_of(keys, kGeodeticSystem) != 0) {
+    return {LengthUnit::kDegree, {}};
+  }
+  if (unit == 0 && projection != 0 && projection != kUserDefined) {
+    if (const auto metres = unit_of_epsg(projection)) return unit_of_length(*metres);
+  }
+  return unit_of(unit);
 }
 
 }  // namespace
 
-LengthUnit horizontal_unit(std::span<const std::byte> key_directory) {
-  const std::uint16_t model = value_of(key_directory, kModelType);
-  const std::uint16_t projected_unit = value_of(key_directory, kProjectedLinearUnit);
-  if (model == 2) return LengthUnit::kDegree;
-  if (model == 3) return unit_of(value_of(key_directory, kGeodeticLinearUnit));
-  if (model == 0 && projected_unit == 0 && value_of(key_directory, kProjectedSystem) == 0 &&
-      value_of(key_directory, kGeodeticSystem) != 0) {
-    return LengthUnit::kDegree;
-  }
-  return unit_of(projected_unit);
+CrsUnits units_of_geotiff(std::span<const std::byte> key_directory) {
+  return crs_units(plane_unit(key_directory), unit_of(value_of(key_directory, kVerticalUnit)));
 }
 
 }  // namespace clearway

@@ -67,12 +67,13 @@ class LasReader final : public PointReader {
     const std::uint64_t end = header_.tail_count > 0 ? header_.tail_offset : *input_.size();
     const std::uint64_t more = surplus(end);
     if (more == 0) return;
-    refuse(input_.name(), "declares " + std::to_string(header_.points) + " points, but holds " +
-                              std::to_string(header_.points + more) + " records of " +
-                              std::to_string(header_.record_bytes) + " bytes before byte " +
-                              std::to_string(end) + "; expected as many as declared. " + kWhyMore +
-                              ". To read all of them, give it as standard input: clearway convert "
-                              "- < FILE");
+    refuse(input_.name(),
+           "declares " + std::to_string(header_.points) + " points, but holds " +
+               std::to_string(header_.points + more) + " records of " +
+               std::to_string(header_.record_bytes) + " bytes before byte " + std::to_string(end) +
+               "; expected as many as declared. " + kWhyMore +
+               ". As standard input all of them are read",
+           Remedy::kStandardInput);
   }
 
   std::span<const std::byte> take_records(std::size_t records) {

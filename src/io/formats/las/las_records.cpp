@@ -6,7 +6,6 @@
 
 #include "io/formats/byte_load.hpp"
 #include "io/formats/las/geotiff_keys.hpp"
-#include "io/formats/wkt.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -23,12 +22,27 @@ void note_record(std::string_view user, unsigned id, std::span<const std::byte> 
                  LasCrs& crs) {
   constexpr unsigned kWkt = 2112;
   constexpr unsigned kGeoKeys = 34735;
-  if (user == "LASF_Projection" && id == kGeoKeys) crs.geotiff_unit = horizontal_unit(payload);
+  if (user == "LASF_Projection" && id == kGeoKeys) crs.geotiff = units_of_geotiff(payload);
   if (id != kWkt) return;
   std::string* wkt = user == "LASF_Projection" ? &crs.wkt
                      : user == "liblas"        ? &crs.foreign_wkt
                                                : nullptr;
   if (wkt && wkt->empty()) *wkt = padded_text(payload);
+}
+
+/// The first record of each kind that copies of points need.
+void keep_record(const std::string& user, unsigned id, std::span<const std::byte> payload,
+                 LasRecords& records) {
+  constexpr unsigned kExtraBytes = 4, kGeoKeys = 34735, kGeoTexts = 34737;
+  if (user == "LASF_Spec" && id == kExtraBytes && records.extra_bytes.empty()) {
+    records.extra_bytes.assign(payload.begin(), payload.end());
+  }
+  if (user != "LASF_Projection" || id < kGeoKeys || id > kGeoTexts) return;
+  for (const LasRecord& kept : records.geotiff) {
+    if (kept.id == id) return;
+  }
+  records.geotiff.push_back(
+      {user, static_cast<std::uint16_t>(id), {payload.begin(), payload.end()}});
 }
 
 bool is_about_crs(std::string_view user, unsigned id) {
@@ -39,8 +53,10 @@ bool is_about_crs(std::string_view user, unsigned id) {
 
 void LasCrs::describe(CloudInfo& info) const {
   info.crs_wkt = wkt.empty() ? foreign_wkt : wkt;
-  info.unit = horizontal_unit(std::string_view(info.crs_wkt));
-  if (info.unit == LengthUnit::kUnknown) info.unit = geotiff_unit;
+  CrsUnits units = units_of_wkt(info.crs_wkt);
+  if (units.horizontal == LengthUnit::kUnknown && units.trouble.empty()) units = geotiff;
+  info.unit = units.horizontal;
+  info.unit_trouble = units.trouble;
 }
 
 void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords& records) {
@@ -69,6 +85,7 @@ void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords
     const auto payload = input.take(length);
     if (payload.size() != length) refuse_cut_las(input, which);
     if (user == "laszip encoded") records.laz.assign(payload.begin(), payload.end());
+    keep_record(user, id, payload, records);
     note_record(user, id, payload, records.crs);
   }
   if (!input.skip(header.points_offset - input.position())) {

@@ -28,6 +28,10 @@ void MeshBuilder::add_face(std::span<const std::int64_t> corners, const FilePlac
   if (corners.size() < 3) {
     refuse_at(at, "a face with " + std::to_string(corners.size()) + " corners; expected 3 or more");
   }
+  if (corners.size() > kMostCorners) {
+    refuse_at(at, "a face with " + format_count(corners.size()) + " corners; expected at most " +
+                      format_count(kMostCorners) + ". Export the mesh as triangles");
+  }
   corners_.clear();
   for (const std::int64_t corner : corners) {
     if (corner < 0 || corner >= static_cast<std::int64_t>(vertices())) {

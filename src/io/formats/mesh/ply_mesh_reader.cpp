@@ -165,25 +165,34 @@ class PlyMeshParser {
                "triangle strips are not read; expected the element face. Export the mesh with "
                "faces");
       }
-      if (element.name != "face") continue;
+      if (element.name != "face" && !corners_of(element)) continue;
       if (face_ != header_.elements.size()) {
-        refuse(input_.name(), "two elements named face; expected one");
+        refuse(input_.name(), "two elements with faces, " + header_.elements[face_].name + " and " +
+                                  element.name + "; expected one");
       }
       face_ = i;
     }
   }
 
-  void find_corners(const PlyElement& face) {
-    for (std::size_t i = 0; i < face.properties.size(); ++i) {
-      const PlyProperty& property = face.properties[i];
+  /// The property that lists the corners of faces; none where the element has none.
+  static std::optional<std::size_t> corners_of(const PlyElement& element) {
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
       if ((property.name == "vertex_indices" || property.name == "vertex_index") &&
           property.list_count) {
-        corners_at_ = i;
-        return;
+        return i;
       }
     }
-    refuse(input_.name(),
-           "the element face has no list vertex_indices or vertex_index; expected one of them");
+    return std::nullopt;
+  }
+
+  void find_corners(const PlyElement& face) {
+    const auto found = corners_of(face);
+    if (!found) {
+      refuse(input_.name(),
+             "the element face has no list vertex_indices or vertex_index; expected one of them");
+    }
+    corners_at_ = *found;
   }
 
   void read_body(PlyNumbers& numbers) {

@@ -18,6 +18,8 @@ struct CutPolygon {
 
 /// Corners of a polygon that is not convex; more would take too long.
 inline constexpr std::size_t kMostCornersToCut = 1024;
+/// Of any face.
+inline constexpr std::size_t kMostCorners = 1'000'000;
 
 /// Whether all of a fan's triangles about the first corner turn the same way.
 bool is_fan(std::span<const Vec3> corners);

@@ -2,7 +2,8 @@
 #include <utility>
 
 #include "io/formats/pcd/pcd_body_reader.hpp"
-#include "io/formats/ptx/scan_lines.hpp"
+#include "io/formats/text/open_end.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
 
@@ -23,6 +24,12 @@ class AsciiPcdReader final : public PcdBodyReader {
     }
     words_ = words;
     check_room();
+  }
+
+  std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
+    rewind();
+    std::string_view line;
+    return lines_of_points(points, input_, [&] { return next_line(line); });
   }
 
  private:
@@ -53,7 +60,7 @@ class AsciiPcdReader final : public PcdBodyReader {
     }
   }
 
-  void start_again() override { open_end_ = {}; }
+  void start_again() override { open_end_ = OpenEnd(); }
 
   void check_end() override {
     std::string_view line;

@@ -5,6 +5,7 @@
 
 #include "io/formats/ply/ply_body_reader.hpp"
 #include "io/formats/ply/ply_reader.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
 
@@ -34,12 +35,11 @@ class AsciiPlyReader final : public PlyBodyReader {
 
   std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
     rewind();
-    std::vector<std::uint64_t> lines;
-    for (; lines.size() < points.size() && next_ < header_.vertices().count; ++next_) {
-      next_row(header_.vertices(), next_);
-      if (next_ == points[lines.size()]) lines.push_back(input_.line());
-    }
-    return lines;
+    return lines_of_points(points, input_, [this] {
+      if (next_ == header_.vertices().count) return false;
+      next_row(header_.vertices(), next_++);
+      return true;
+    });
   }
 
  private:

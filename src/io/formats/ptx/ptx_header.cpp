@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/geometry/rigid.hpp"
-#include "io/formats/ptx/scan_lines.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
 
@@ -21,7 +21,7 @@ constexpr double kNoise = 1e-9;                     // of 0 and 1 in the last co
 
 std::string_view next(InputBuffer& input, const char* expected) {
   std::string_view line;
-  if (next_scan_line(input, line)) return line;
+  if (next_data_line(input, line)) return line;
   refuse(input.name(), "ends after line " + std::to_string(input.line()) +
                            " within the ten lines before a scan; expected " + expected);
 }
@@ -84,7 +84,7 @@ Vec3 PtxHeader::place(const Vec3& p) const {
 
 std::optional<PtxHeader> read_ptx_header(InputBuffer& input) {
   std::string_view line;
-  if (!next_scan_line(input, line)) return std::nullopt;
+  if (!next_data_line(input, line)) return std::nullopt;
   PtxHeader header;
   header.line = input.line();
   const std::uint64_t columns = side(input, line, "columns");

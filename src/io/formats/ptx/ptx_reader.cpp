@@ -6,7 +6,8 @@
 
 #include "core/util/format.hpp"
 #include "io/formats/ptx/ptx_header.hpp"
-#include "io/formats/ptx/scan_lines.hpp"
+#include "io/formats/text/open_end.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -120,8 +121,20 @@ class PtxReader final : public PointReader {
   void rewind() override {
     input_.return_to(start_);
     findings_ = {};
-    open_end_ = {};
+    open_end_ = OpenEnd();
     left_ = 0;
+  }
+
+  std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
+    rewind();
+    Vec3 point{};
+    return lines_of_points(points, input_, [&] {
+      while (left_ == 0) {
+        if (!next_scan()) return false;
+      }
+      read_point(point);
+      return true;
+    });
   }
 
  private:
@@ -136,7 +149,7 @@ class PtxReader final : public PointReader {
   }
 
   void check_room(const PtxHeader& header) const {
-    if (header.points <= most_scan_points(input_)) return;
+    if (header.points <= most_points_in_rest(input_)) return;
     refuse_line(input_.name(), header.line,
                 "a scan of " + format_count(header.points) + " points, for which the file of " +
                     format_count(*input_.size()) + " bytes is too short; expected a line for each");
@@ -150,11 +163,11 @@ class PtxReader final : public PointReader {
   /// False for a record without a point.
   bool read_point(Vec3& point) {
     std::string_view line;
-    if (!next_scan_line(input_, line)) {
+    if (!next_data_line(input_, line)) {
       refuse(input_.name(), "ends after line " + std::to_string(input_.line()) + " with " +
                                 place() + "; expected all of them");
     }
-    if (!parse_scan_point(line, point)) {
+    if (!parse_point(line, point)) {
       refuse_line(
           input_.name(), input_.line(),
           excerpt(line) + " after " + place() + "; expected three numbers, the coordinates x y z");

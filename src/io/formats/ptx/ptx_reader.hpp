@@ -14,14 +14,9 @@ namespace clearway {
 /// to seek.
 std::unique_ptr<PointReader> read_ptx(InputBuffer input, std::vector<Message> remarks = {});
 
-/// Reads PTS: the number of points, then so many lines `x y z` with anything behind, maybe again
-/// and again. `remarks` come first. The input must be able to seek.
-std::unique_ptr<PointReader> read_pts(InputBuffer input, std::vector<Message> remarks = {});
-
-/// Reads the text that the count lines tell: PTX, PTS or XYZ, whatever its name says. A remark says
-/// so where the name says otherwise. ending: of the name, for that.
-enum class TextEnding { kXyz, kPts, kPtx };
-std::unique_ptr<PointReader> read_scan_text(InputBuffer input, TextEnding ending,
+/// Reads the text that the count lines tell: PTX, or XYZ with or without a count, whatever its name
+/// says. A remark says so where the name says otherwise. named_ptx: it does so by its ending.
+std::unique_ptr<PointReader> read_scan_text(InputBuffer input, bool named_ptx,
                                             const PointReadOptions& options = {});
 
 }  // namespace clearway

@@ -1,11 +1,23 @@
 #include <utility>
 
 #include "io/formats/ptx/ptx_reader.hpp"
-#include "io/formats/ptx/scan_lines.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/formats/text/xyz_reader.hpp"
 
 namespace clearway {
 namespace {
+
+/// How many lines of one whole number each the input starts with, up to two. Goes back to the
+/// start.
+int count_lines(InputBuffer& input) {
+  const InputBuffer::Mark start = input.mark();
+  input.skip_byte_order_mark();
+  int found = 0;
+  std::string_view line;
+  while (found < 2 && next_data_line(input, line) && count_in(line)) ++found;
+  input.return_to(start);
+  return found;
+}
 
 std::vector<Message> named_otherwise(const InputBuffer& input, const char* format,
                                      const char* counts) {
@@ -15,20 +27,17 @@ std::vector<Message> named_otherwise(const InputBuffer& input, const char* forma
 
 }  // namespace
 
-std::unique_ptr<PointReader> read_scan_text(InputBuffer input, TextEnding ending,
+std::unique_ptr<PointReader> read_scan_text(InputBuffer input, bool named_ptx,
                                             const PointReadOptions& options) {
-  const CountLines counts = find_count_lines(input);
+  const int counts = count_lines(input);
   std::vector<Message> remarks;
-  if (counts == CountLines::kTwo) {
-    if (ending != TextEnding::kPtx) remarks = named_otherwise(input, "PTX", "two counts");
+  if (counts == 2) {
+    if (!named_ptx) remarks = named_otherwise(input, "PTX", "two counts");
     return read_ptx(std::move(input), std::move(remarks));
   }
-  if (counts == CountLines::kOne && ending != TextEnding::kXyz) {
-    if (ending == TextEnding::kPtx) remarks = named_otherwise(input, "PTS", "one count");
-    return read_pts(std::move(input), std::move(remarks));
-  }
-  return ending == TextEnding::kPtx ? read_ptx(std::move(input))
-                                    : read_xyz(std::move(input), options);
+  if (counts == 0 && named_ptx) return read_ptx(std::move(input));
+  if (named_ptx) remarks = named_otherwise(input, "PTS", "one count");
+  return read_xyz(std::move(input), options, std::move(remarks));
 }
 
 }  // namespace clearway

@@ -1,27 +1,13 @@
 #include "io/formats/text/point_line.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 #include "io/formats/text/column_names.hpp"
 #include "io/formats/text/text_number.hpp"
 
 namespace clearway {
 namespace {
-
-/// x y z in the first three columns of a line; false where it is anything else.
-bool parse_first_three(std::string_view line, Vec3& point) {
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  char first = 0;
-  if (!parse_number(at, end, point.x) || (first = skip_separator(at, end)) == 0 ||
-      !parse_number(at, end, point.y) || skip_separator(at, end) != first ||
-      !parse_number(at, end, point.z)) {
-    return false;
-  }
-  if (at == end) return true;
-  const char behind = skip_separator(at, end);
-  return behind == first || behind == ' ';
-}
 
 /// Digits with one comma between them, a sign in front perhaps.
 bool has_decimal_comma(std::string_view field) {
@@ -35,8 +21,36 @@ bool has_decimal_comma(std::string_view field) {
 
 }  // namespace
 
+bool parse_point(std::string_view line, Vec3& point) {
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  char first = 0;
+  if (!parse_number(at, end, point.x) || (first = skip_separator(at, end)) == 0 ||
+      !parse_number(at, end, point.y) || skip_separator(at, end) != first ||
+      !parse_number(at, end, point.z)) {
+    return false;
+  }
+  if (at == end) return true;
+  const char behind = skip_separator(at, end);
+  return behind == first || behind == ' ';
+}
+
+std::optional<std::uint64_t> count_in(std::string_view line) {
+  while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+  std::uint64_t value = 0;
+  const char* const end = line.data() + line.size();
+  const auto [stop, error] = std::from_chars(line.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+std::uint64_t most_points_in_rest(const InputBuffer& input) {
+  constexpr std::uint64_t kShortest = 6;  // bytes of "0 0 0" and a line break, which may lack
+  return (*input.size() - input.position() + 1) / kShortest;
+}
+
 bool PointLine::parse(std::string_view line, Vec3& point) {
-  if (columns_ == kFirstThree) return parse_first_three(line, point);
+  if (columns_ == kFirstThree) return parse_point(line, point);
   split_fields(line, separator_, fields_);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (columns_[axis] >= fields_.size()) return false;

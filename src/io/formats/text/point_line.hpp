@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +32,28 @@ class PointLine {
   char separator_ = ' ';  ///< not used for the first three columns
   std::vector<std::string_view> fields_;
 };
+
+/// x y z in the first three columns and anything behind them, in blanks, commas or semicolons;
+/// false for anything else. line: without leading blanks.
+bool parse_point(std::string_view line, Vec3& point);
+
+/// A line of nothing but a whole number from 0. line: without leading blanks.
+std::optional<std::uint64_t> count_in(std::string_view line);
+
+/// At most as many points can stand in the rest of the input: each takes a line.
+std::uint64_t most_points_in_rest(const InputBuffer& input);
+
+/// The line of each of `points`, ascending numbers from 0 on. next_point: goes on by one point of
+/// the input, which stands at the first; false at the end.
+template <typename NextPoint>
+std::vector<std::uint64_t> lines_of_points(std::span<const std::uint64_t> points,
+                                           const InputBuffer& input, NextPoint next_point) {
+  std::vector<std::uint64_t> lines;
+  for (std::uint64_t i = 0; lines.size() < points.size() && next_point(); ++i) {
+    if (i == points[lines.size()]) lines.push_back(input.line());
+  }
+  return lines;
+}
 
 std::string_view without_leading_blanks(std::string_view line);
 

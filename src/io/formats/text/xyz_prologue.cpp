@@ -1,7 +1,6 @@
 #include "io/formats/text/xyz_prologue.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "io/formats/text/column_names.hpp"
@@ -13,15 +12,6 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kMostCommentHeaders = 16;
-
-std::optional<std::uint64_t> whole_number(std::string_view text) {
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  std::uint64_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return value;
-}
 
 class PrologueReader {
  public:
@@ -38,12 +28,12 @@ class PrologueReader {
       line = without_leading_blanks(line);
       if (is_text_comment(line)) {
         note_comment(line);
-      } else if (!header_ && !out_.declared_points && whole_number(line)) {
+      } else if (!header_ && !out_.declared_points && count_in(line)) {
         read_count(line);
       } else if (!header_ && !is_point(line)) {
         read_header(line);
       } else {
-        out_.fields = count_fields(line);
+        fields_ = count_fields(line);
         if (header_) {
           settle_separator(line);
         } else {
@@ -77,15 +67,8 @@ class PrologueReader {
     if (!input_.line_terminated()) {
       fail("expected a line break behind the number of points", false);
     }
-    out_.declared_points = whole_number(line);
-    const InputBuffer::Mark start = input_.mark();
-    if (next_data_line(input_, line) && whole_number(line)) {
-      fail(
-          "two lines of one number each start a PTX file, which is not read; expected points. "
-          "Convert it to LAS or PLY, for example with PDAL",
-          false);
-    }
-    input_.return_to(start);
+    out_.declared_points = count_in(line);
+    out_.count_line = input_.line();
   }
 
   /// Whether a first line is one of data, by the columns as far as they are known.
@@ -110,7 +93,7 @@ class PrologueReader {
     CoordinateColumns columns{};
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const std::string& wanted = options_.columns[k];
-      if (const auto number = whole_number(wanted)) {
+      if (const auto number = count_in(wanted)) {
         if (*number < 1 || *number > InputBuffer::kLongestLine) return std::nullopt;
         columns[k] = *number - 1;
         continue;
@@ -167,7 +150,7 @@ class PrologueReader {
     Vec3 point{};
     PointLine other(out_.line.columns(), separator_of(line));
     if (!out_.line.parse(line, point) && other.parse(line, point)) out_.line = std::move(other);
-    all_named_ = all_named_ || header_->names.size() == out_.fields;
+    all_named_ = all_named_ || header_->names.size() == fields_;
   }
 
   /// From the comments, or as the caller said, for the first line of data.
@@ -176,7 +159,7 @@ class PrologueReader {
     if (!options_.columns.empty()) return use_chosen(separator);
     for (const Comment& comment : comments_) {
       const TableHeader& header = comment.header;
-      if (header.names.size() == out_.fields) {
+      if (header.names.size() == fields_) {
         const std::string other = other_table(header);
         if (!other.empty()) {
           fail("looks like " + other + ", by the comment in line " + std::to_string(comment.line) +
@@ -186,10 +169,10 @@ class PrologueReader {
       const auto columns = coordinate_columns(header);
       if (!columns) continue;
       if (fits(header, *columns)) {
-        all_named_ = header.names.size() == out_.fields;
+        all_named_ = header.names.size() == fields_;
         return use(header, *columns, separator);
       }
-      const bool one_way = out_.fields == 3 && std::is_sorted(columns->begin(), columns->end());
+      const bool one_way = fields_ == 3 && std::is_sorted(columns->begin(), columns->end());
       if (*columns != kFirstThree && !one_way) warn_of_misfit(comment);
     }
   }
@@ -199,7 +182,7 @@ class PrologueReader {
     const TableHeader* named_by = nullptr;
     for (const auto& [header, number] : comments_) {
       const auto by_names = chosen_columns(&header);
-      if (!by_names || header.names.size() != out_.fields) continue;
+      if (!by_names || header.names.size() != fields_) continue;
       columns = by_names;
       named_by = &header;
       break;
@@ -210,9 +193,8 @@ class PrologueReader {
 
   /// Whether the names are those of the lines: as many, or fewer that start with x, y and z.
   bool fits(const TableHeader& header, const CoordinateColumns& columns) const {
-    if (header.names.size() == out_.fields) return true;
-    return header.names.size() < out_.fields &&
-           *std::max_element(columns.begin(), columns.end()) == 2;
+    if (header.names.size() == fields_) return true;
+    return header.names.size() < fields_ && *std::max_element(columns.begin(), columns.end()) == 2;
   }
 
   void use(const TableHeader& header, const CoordinateColumns& columns, char separator) {
@@ -234,7 +216,7 @@ class PrologueReader {
   void warn_of_misfit(const Comment& comment) {
     warn("column-names", "the comment in line " + std::to_string(comment.line) + " names " +
                              std::to_string(comment.header.names.size()) +
-                             " columns, but the points have " + std::to_string(out_.fields) +
+                             " columns, but the points have " + std::to_string(fields_) +
                              "; the first three are read as x, y and z");
   }
 
@@ -258,6 +240,7 @@ class PrologueReader {
   InputBuffer& input_;
   const PointReadOptions& options_;
   XyzPrologue out_;
+  std::size_t fields_ = 0;             ///< of the first point's line
   std::vector<Comment> comments_;      ///< the last first
   std::optional<TableHeader> header_;  ///< the line of its own that names the columns
   bool all_named_ = false;             ///< every column has a name, or the caller chose three

@@ -14,9 +14,9 @@ namespace clearway {
 struct XyzPrologue {
   PointLine line;
   std::optional<std::uint64_t> declared_points;
+  std::uint64_t count_line = 0;  ///< where they are declared
   LengthUnit unit = LengthUnit::kUnknown;
   std::vector<Message> remarks;
-  std::size_t fields = 0;  ///< of the first point's line
 };
 
 /// Reads what stands before the first point, and leaves the input there. Throws InputError for a

@@ -1,8 +1,11 @@
 #include "io/formats/text/xyz_reader.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/util/format.hpp"
+#include "io/formats/text/open_end.hpp"
 #include "io/formats/text/point_line.hpp"
 #include "io/formats/text/xyz_prologue.hpp"
 #include "io/system/input_error.hpp"
@@ -12,17 +15,20 @@ namespace {
 
 class XyzReader final : public PointReader {
  public:
-  XyzReader(InputBuffer input, const PointReadOptions& options)
+  XyzReader(InputBuffer input, const PointReadOptions& options, std::vector<Message> remarks)
       : input_(std::move(input)), may_choose_(options.may_choose) {
     XyzPrologue prologue = read_xyz_prologue(input_, options);
     line_ = std::move(prologue.line);
-    fields_ = prologue.fields;
     info_.declared_points = prologue.declared_points;
     info_.unit = prologue.unit;
-    info_.remarks = std::move(prologue.remarks);
+    info_.remarks = std::move(remarks);
+    info_.remarks.insert(info_.remarks.end(), prologue.remarks.begin(), prologue.remarks.end());
     info_.text_table = true;
     remarks_at_start_ = info_.remarks.size();
     first_point_ = input_.mark();
+    if (prologue.declared_points) first_ = {*prologue.declared_points, prologue.count_line};
+    start();
+    if (is_counted()) check_room();
   }
 
   const CloudInfo& info() const override { return info_; }
@@ -32,39 +38,82 @@ class XyzReader final : public PointReader {
     batch.absent.clear();
     batch.positions.clear();
     std::string_view line;
-    while (batch.positions.size() < kBatchPoints && next_data_line(input_, line)) {
-      if (next_ == info_.declared_points) {
-        fail("more than the " + std::to_string(next_) + " points that the first line declares");
-      }
+    while (batch.positions.size() < kBatchPoints && next_point_line(line)) {
       Vec3 point{};
       if (!line_.parse(line, point)) refuse_point(line);
       batch.positions.push_back(point);
-      if (!input_.line_terminated()) check_open_end(line);
-      ++next_;
+      open_end_.see(input_, line);
     }
-    if (batch.positions.size() < kBatchPoints) check_count();
+    if (batch.positions.size() < kBatchPoints) finish();
     return !batch.positions.empty();
   }
 
   void rewind() override {
     input_.return_to(first_point_);
     info_.remarks.resize(remarks_at_start_);
-    next_ = 0;
+    start();
   }
 
   std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
     rewind();
-    std::vector<std::uint64_t> lines;
     std::string_view line;
-    for (; lines.size() < points.size() && next_data_line(input_, line); ++next_) {
-      if (next_ == points[lines.size()]) lines.push_back(input_.line());
-    }
-    return lines;
+    return lines_of_points(points, input_, [&] { return next_point_line(line); });
   }
 
  private:
+  /// Points that a line declares to follow it.
+  struct Count {
+    std::uint64_t points = 0;
+    std::uint64_t line = 0;  ///< 0: the text declares none
+  };
+
+  bool is_counted() const { return first_.line > 0; }
+
+  void start() {
+    count_ = first_;
+    declared_ = first_.points;
+    counts_ = 1;
+    next_ = 0;
+    open_end_ = OpenEnd(is_counted());
+    finished_ = false;
+  }
+
   [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
     refuse_line(input_.name(), input_.line(), what, remedy);
+  }
+
+  std::string as_declared() const { return "line " + std::to_string(count_.line) + " declares"; }
+
+  bool next_point_line(std::string_view& line) {
+    while (next_data_line(input_, line)) {
+      if (!is_counted() || next_ < count_.points) {
+        ++next_;
+        return true;
+      }
+      begin_count(line);
+    }
+    return false;
+  }
+
+  /// Behind all points that were declared: the number of more points.
+  void begin_count(std::string_view line) {
+    const auto points = count_in(line);
+    if (!points) {
+      fail("more than the " + std::to_string(count_.points) + " points that " + as_declared());
+    }
+    count_ = {*points, input_.line()};
+    next_ = 0;
+    ++counts_;
+    check_room();
+    declared_ += *points;
+    info_.declared_points = std::max(*info_.declared_points, declared_);
+  }
+
+  void check_room() const {
+    if (count_.points <= most_points_in_rest(input_)) return;
+    refuse_line(input_.name(), count_.line,
+                "declares " + format_count(count_.points) + " points, for which the file of " +
+                    format_count(*input_.size()) + " bytes is too short; expected a line for each");
   }
 
   [[noreturn]] void refuse_point(std::string_view line) const {
@@ -73,60 +122,59 @@ class XyzReader final : public PointReader {
       where = "in columns";
       for (const std::size_t column : line_.columns()) where += " " + std::to_string(column + 1);
     }
-    fail(excerpt(line) + decimal_commas_in(line) + "; expected three numbers, " + where +
+    std::string after;
+    if (is_counted()) {
+      after = " after " + std::to_string(next_ - 1) + " of the " + std::to_string(count_.points) +
+              " points that " + as_declared();
+    }
+    const bool first = next_ == 1 && counts_ == 1;
+    fail(excerpt(line) + after + decimal_commas_in(line) + "; expected three numbers, " + where +
              ", in blanks, commas or semicolons",
-         next_ == 0 && may_choose_ ? Remedy::kColumns : Remedy::kNone);
+         first && may_choose_ ? Remedy::kColumns : Remedy::kNone);
   }
 
-  /// The last line has no line break. It counts where no value is missing.
-  void check_open_end(std::string_view line) {
-    const std::size_t found = count_fields(line);
-    const std::string what = "the file ends without a line break";
-    if (line.ends_with('.') && info_.declared_points) {
-      fail(what + " within a number; expected all of it");
-    }
-    if (found >= fields_) {
-      if (!info_.declared_points) return;
-      info_.remarks.push_back(
-          {Message::Severity::kNote, "no-line-break", input_.name() + ": " + what, {}});
-      return;
-    }
-    const std::string cut = what + " after " + std::to_string(found) + " of " +
-                            std::to_string(fields_) + " values, so it may be cut";
-    if (info_.declared_points) fail(cut + "; expected all values of the last line");
-    info_.remarks.push_back({Message::Severity::kWarning,
-                             "cut-text",
-                             input_.name() + ": " + cut,
-                             {{"line", static_cast<double>(input_.line())}}});
-  }
-
-  void check_count() const {
-    if (info_.declared_points && next_ != *info_.declared_points) {
+  void finish() {
+    if (finished_) return;
+    finished_ = true;
+    if (is_counted() && next_ < count_.points) {
       refuse(input_.name(), "ends after line " + std::to_string(input_.line()) + " with " +
                                 std::to_string(next_) + " points; expected " +
-                                std::to_string(*info_.declared_points) +
-                                " as the first line declares");
+                                std::to_string(count_.points) + " as " + as_declared());
     }
+    if (counts_ > 1) {
+      info_.remarks.push_back({Message::Severity::kNote,
+                               "several-counts",
+                               input_.name() + ": " + format_count(counts_) +
+                                   " scans one after the other, each with its number of points",
+                               {{"scans", static_cast<double>(counts_)}}});
+    }
+    open_end_.append_to(info_.remarks, input_.name());
   }
 
   InputBuffer input_;
   bool may_choose_;
   CloudInfo info_;
   PointLine line_;
-  std::size_t fields_ = 0;  ///< of the first point's line
   std::size_t remarks_at_start_ = 0;
   InputBuffer::Mark first_point_;
-  std::uint64_t next_ = 0;  ///< number of points read
+  Count first_;
+  Count count_;                 ///< where the reader is
+  std::uint64_t declared_ = 0;  ///< up to there
+  std::uint64_t counts_ = 0;    ///< so many, this one included
+  std::uint64_t next_ = 0;      ///< lines of points read behind the count
+  OpenEnd open_end_;
+  bool finished_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions& options) {
+std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions& options,
+                                      std::vector<Message> remarks) {
   if (!options.columns.empty() && options.columns.size() != 3) {
     throw UsageError(std::to_string(options.columns.size()) +
                      " columns chosen; expected three, of x, y and z");
   }
-  return std::make_unique<XyzReader>(std::move(input), options);
+  return std::make_unique<XyzReader>(std::move(input), options, std::move(remarks));
 }
 
 }  // namespace clearway

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "io/formats/ptx/scan_lines.hpp"
+#include "io/formats/text/open_end.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/formats/threedtk/threedtk_frame.hpp"
 #include "io/system/input_error.hpp"
 
@@ -91,9 +92,9 @@ class ThreedtkReader final : public PointReader {
     batch.positions.resize(kBatchPoints);
     std::size_t count = 0;
     std::string_view line;
-    while (count < kBatchPoints && next_scan_line(input_, line)) {
+    while (count < kBatchPoints && next_data_line(input_, line)) {
       Vec3 point{};
-      if (!parse_scan_point(line, point)) {
+      if (!parse_point(line, point)) {
         refuse_line(input_.name(), input_.line(),
                     excerpt(line) + "; expected three numbers, the coordinates x y z");
       }
@@ -107,7 +108,13 @@ class ThreedtkReader final : public PointReader {
 
   void rewind() override {
     input_.return_to(first_point_);
-    open_end_ = {};
+    open_end_ = OpenEnd();
+  }
+
+  std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
+    rewind();
+    std::string_view line;
+    return lines_of_points(points, input_, [&] { return next_data_line(input_, line); });
   }
 
  private:
@@ -124,9 +131,9 @@ class ThreedtkReader final : public PointReader {
     input_.skip_byte_order_mark();
     InputBuffer::Mark start = input_.mark();
     std::string_view line;
-    for (int lines = 0; next_scan_line(input_, line); ++lines, start = input_.mark()) {
+    for (int lines = 0; next_data_line(input_, line); ++lines, start = input_.mark()) {
       Vec3 point{};
-      if (parse_scan_point(line, point)) break;
+      if (parse_point(line, point)) break;
       if (lines == kMostHeaderLines) {
         refuse_line(input_.name(), input_.line(),
                     excerpt(line) + "; expected points x y z after ten other lines at most");

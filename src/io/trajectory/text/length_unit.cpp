@@ -28,8 +28,8 @@ double metres_of(std::string_view text) {
 
 }  // namespace
 
-double metres_per_unit(std::span<const std::string> texts, const TrajectoryOptions& options,
-                       const std::string& name) {
+std::optional<double> unit_of_positions(std::span<const std::string> texts,
+                                        const TrajectoryOptions& options, const std::string& name) {
   double declared = 0;
   for (const std::string& text : texts) {
     if (text.empty()) continue;
@@ -47,8 +47,13 @@ double metres_per_unit(std::span<const std::string> texts, const TrajectoryOptio
     refuse(name, "the header has positions in units of " + brief(declared) + " m, but a unit of " +
                      brief(options.metres_per_unit) + " m was declared");
   }
-  if (declared != 0) return declared;
-  return options.metres_per_unit != 0 ? options.metres_per_unit : 1;
+  const bool all = std::none_of(texts.begin(), texts.end(),
+                                [](const std::string& text) { return text.empty(); });
+  if (declared != 0 && declared != 1 && !all) {
+    refuse(name, "the header has a unit for some of the positions; expected one for all or none");
+  }
+  if (declared == 0) declared = options.metres_per_unit;
+  return declared == 0 ? std::nullopt : std::optional(declared);
 }
 
 }  // namespace clearway

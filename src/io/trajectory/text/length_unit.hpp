@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -7,10 +8,10 @@
 
 namespace clearway {
 
-/// Metres of the unit of positions: what the options say, or the header, or metres.
+/// Metres of the unit of positions: what the header says, or the options; none where neither does.
 /// texts: the units in the header, lower case, or empty. Throws InputError where they are not
-/// known, differ, or contradict the options.
-double metres_per_unit(std::span<const std::string> texts, const TrajectoryOptions& options,
-                       const std::string& name);
+/// known, differ, are there for some positions only, or contradict the options.
+std::optional<double> unit_of_positions(std::span<const std::string> texts,
+                                        const TrajectoryOptions& options, const std::string& name);
 
 }  // namespace clearway

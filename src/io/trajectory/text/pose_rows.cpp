@@ -23,6 +23,14 @@ double seconds_of(double time) {
                                          : 1);
 }
 
+/// Without blanks and quotes around it.
+std::string_view bare_text(std::string_view field) {
+  constexpr std::string_view kAround = " \t\"'";
+  const std::size_t first = field.find_first_not_of(kAround);
+  if (first == std::string_view::npos) return {};
+  return field.substr(first, field.find_last_not_of(kAround) + 1 - first);
+}
+
 }  // namespace
 
 Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
@@ -60,7 +68,8 @@ PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
   std::span<const std::string> units;
   if (columns_) units = columns_->position_units;
   if (columns_ && columns_->geographic) units = units.subspan(2);
-  metres_ = metres_per_unit(units, options_, name_);
+  unit_ = unit_of_positions(units, options_, name_);
+  if (unit_) in_metres_ = UnitFactor(*unit_);
 }
 
 Objection PoseRows::add(std::string_view line) {
@@ -78,7 +87,7 @@ Objection PoseRows::add(std::string_view line) {
 
 void PoseRows::push(const Pose& pose) {
   poses_.push_back(pose);
-  for (double& coordinate : poses_.back().translation) coordinate *= metres_;
+  for (double& coordinate : poses_.back().translation) coordinate = in_metres_(coordinate);
 }
 
 Objection PoseRows::add_matrix(std::string_view line) {
@@ -146,10 +155,7 @@ Objection PoseRows::add_columns(std::string_view line) {
     objection = pose_of_matrix(matrix, options_.allow_non_rigid, pose);
   }
   if (!objection.text.empty()) return objection;
-  if (columns_->time) {
-    const auto time = parse_whole_number(fields_[*columns_->time]);
-    if (time && std::isfinite(*time)) add_time(seconds_of(*time));
-  }
+  add_labels();
   push(pose);
   return {};
 }
@@ -160,16 +166,21 @@ Objection PoseRows::add_angles(const std::array<double, 3>& position) {
   if (!objection.text.empty()) return objection;
   const double sum = position[0] + position[1] + position[2] + angles[0] + angles[1] + angles[2];
   if (!std::isfinite(sum)) return {"expected finite numbers"};
-  const double horizontal = columns_->geographic ? 1 : metres_;
-  angles_.push_back({{position[0] * horizontal, position[1] * horizontal, position[2] * metres_},
+  const UnitFactor horizontal = columns_->geographic ? UnitFactor(1) : in_metres_;
+  angles_.push_back({{horizontal(position[0]), horizontal(position[1]), in_metres_(position[2])},
                      angles[0],
                      angles[1],
                      angles[2]});
+  add_labels();
+  return {};
+}
+
+void PoseRows::add_labels() {
   if (columns_->time) {
     const auto time = parse_whole_number(fields_[*columns_->time]);
     if (time && std::isfinite(*time)) add_time(seconds_of(*time));
   }
-  return {};
+  if (columns_->name) names_.emplace_back(bare_text(fields_[*columns_->name]));
 }
 
 Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
@@ -193,10 +204,12 @@ void PoseRows::finish(TrajectoryFile& out) {
   const bool angles = columns_ && columns_->rotation.size() == 3;
   if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
   if (times_.size() == out.poses.size()) out.times = std::move(times_);
-  if (metres_ != 1) {
+  if (names_.size() == out.poses.size()) out.names = std::move(names_);
+  out.in_metres = unit_.has_value();
+  if (unit_.value_or(1) != 1) {
     out.note("trajectory-unit",
-             name_ + ": positions were multiplied by " + brief(metres_) + " to give metres",
-             {{"metres", metres_}});
+             name_ + ": positions were multiplied by " + brief(*unit_) + " to give metres",
+             {{"metres", *unit_}});
   }
 }
 

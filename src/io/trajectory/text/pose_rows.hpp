@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/util/unit_factor.hpp"
 #include "io/trajectory/attitude.hpp"
 #include "io/trajectory/pose_input.hpp"
 #include "io/trajectory/text/trajectory_columns.hpp"
@@ -38,19 +39,22 @@ class PoseRows {
   Objection add_angles(const std::array<double, 3>& position);
   Objection numbers_in(std::span<const std::size_t> columns, std::span<double> out) const;
   void add_time(double time) { times_.push_back(time); }
+  void add_labels();
   void push(const Pose& pose);
 
   TrajectoryFormat format_;
   std::optional<PoseColumns> columns_;
   TrajectoryOptions options_;
   std::string name_;
-  double metres_ = 1;            ///< of the unit of positions
+  std::optional<double> unit_;   ///< of positions, metres, where it is known
+  UnitFactor in_metres_{1};      ///< by it
   std::size_t row_numbers_ = 0;  ///< 12 or 16 in every line; 0: none yet
   std::array<double, 16> numbers_{};
   std::vector<std::string_view> fields_;
   std::vector<Pose> poses_;
   std::vector<AttitudeRow> angles_;
   std::vector<double> times_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace clearway

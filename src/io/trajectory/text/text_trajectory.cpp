@@ -41,10 +41,17 @@ class TextTrajectory {
         if (!rows_) start(line);
         const Objection objection = rows_->add(line);
         if (!objection.text.empty()) fail(objection);
+        ends_in_number_ = !input_.line_terminated() && line.ends_with('.');
       }
     }
     out.format = format_;
     if (rows_) rows_->finish(out);
+    if (ends_in_number_) {
+      out.warn("cut-text",
+               input_.name() + ": the file ends without a line break within a number, so it may be "
+                               "cut",
+               {{"line", static_cast<double>(input_.line())}});
+    }
   }
 
  private:
@@ -127,6 +134,7 @@ class TextTrajectory {
   TrajectoryFormat format_;             ///< kAuto until the first numbers
   std::optional<PoseColumns> columns_;  ///< what a header or a comment has named
   bool started_ = false;                ///< a header has been read
+  bool ends_in_number_ = false;         ///< as a file that was cut may
   std::optional<PoseRows> rows_;        ///< from the first line of numbers on
 };
 

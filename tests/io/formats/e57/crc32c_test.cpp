@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "support/e57_bytes.hpp"
+#include "support/bytes/e57_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

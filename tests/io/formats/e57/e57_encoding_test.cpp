@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "support/e57_bytes.hpp"
+#include "support/bytes/e57_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 
-#include "support/e57_bytes.hpp"
+#include "support/bytes/e57_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

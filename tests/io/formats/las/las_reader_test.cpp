@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -24,11 +24,15 @@ std::string geo_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
   return {reinterpret_cast<const char*>(words.data()), words.size() * 2};
 }
 
-LengthUnit unit_with_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
+CloudInfo info_with_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
   ReaderScratch scratch;
   LasBytes las;
   las.vlrs = {{"LASF_Projection", 34735, geo_keys(keys)}};
-  return open_point_file(scratch.write("a.las", las.build()))->info().unit;
+  return open_point_file(scratch.write("a.las", las.build()))->info();
+}
+
+LengthUnit unit_with_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
+  return info_with_keys(keys).unit;
 }
 
 std::string refusal_of_bytes(const std::string& bytes) {
@@ -147,12 +151,25 @@ TEST_CASE("GeoTIFF keys tell the unit") {
   CHECK(unit_with_keys({{1024, 1}, {3072, 26915}, {3076, 9001}}) == LengthUnit::kMetre);
   CHECK(unit_with_keys({{1024, 1}, {3076, 9002}}) == LengthUnit::kFoot);
   CHECK(unit_with_keys({{1024, 1}, {3076, 9003}}) == LengthUnit::kUsSurveyFoot);
-  CHECK(unit_with_keys({{1024, 1}, {3072, 26915}}) == LengthUnit::kUnknown);
+  CHECK(unit_with_keys({{1024, 1}, {3072, 26915}}) == LengthUnit::kMetre);
+  CHECK(unit_with_keys({{1024, 1}, {3072, 2227}}) == LengthUnit::kUsSurveyFoot);
+  CHECK(unit_with_keys({{1024, 1}, {3072, 32767}}) == LengthUnit::kUnknown);
   CHECK(unit_with_keys({{1024, 1}, {3076, 9014}}) == LengthUnit::kUnknown);
   CHECK(unit_with_keys({{1024, 2}, {2048, 4326}}) == LengthUnit::kDegree);
   CHECK(unit_with_keys({{2048, 4326}}) == LengthUnit::kDegree);
   CHECK(unit_with_keys({{1024, 3}, {2052, 9001}}) == LengthUnit::kMetre);
   CHECK(unit_with_keys({}) == LengthUnit::kUnknown);
+}
+
+TEST_CASE("GeoTIFF units that cannot be taken as they are make trouble") {
+  const auto trouble = [](std::uint16_t plane, std::uint16_t heights) {
+    return info_with_keys({{1024, 1}, {3076, plane}, {4099, heights}}).unit_trouble;
+  };
+  CHECK(trouble(9001, 9001).empty());
+  CHECK(trouble(9001, 0).empty());
+  CHECK(trouble(9003, 9003).empty());
+  CHECK(trouble(9036, 0) == "its unit is the GeoTIFF unit 9036");
+  CHECK(trouble(9001, 9003) == "its heights are in us-survey-foot, its other coordinates in metre");
 }
 
 TEST_CASE("a GeoTIFF directory that counts more keys than it holds is read as far as it goes") {

@@ -2,7 +2,7 @@
 // points as declared or with a refusal that names the file.
 #include <catch2/catch.hpp>
 
-#include "support/laz/laz_samples.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

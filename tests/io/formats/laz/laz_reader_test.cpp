@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "io/system/thread_limit.hpp"
-#include "support/laz/laz_samples.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

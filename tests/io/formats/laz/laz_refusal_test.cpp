@@ -2,7 +2,7 @@
 #include <chrono>
 #include <limits>
 
-#include "support/laz/laz_samples.hpp"
+#include "support/bytes/laz/laz_samples.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

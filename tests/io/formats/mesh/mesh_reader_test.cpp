@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/mesh_bytes.hpp"
+#include "support/bytes/mesh_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -182,11 +182,29 @@ TEST_CASE("PLY faces need their list, vertices before them and indices that exis
              Contains("faces before the vertices"));
   CHECK_THAT(refusal("a.ply", ply(vertex + "element tristrips 1\n" + list + "end_header\n")),
              Contains("triangle strips"));
+  CHECK(read("a.ply",
+             ply(vertex + "element polygon 1\n" + list + "end_header\n" + points + "3 0 1 2\n"))
+            .mesh.triangles.size() == 1);
+  CHECK_THAT(refusal("a.ply", ply(vertex + "element face 1\n" + list + "element faces 1\n" + list +
+                                  "end_header\n")),
+             Contains("two elements with faces, face and faces"));
   const std::string whole = vertex + "element face 1\n" + list + "end_header\n" + points;
   for (const std::string face : {"3 0 1 3\n", "3 0 1 -1\n", "3 0 1 1.5\n", "2 0 1\n"}) {
     CHECK_THAT(refusal("a.ply", ply(whole + face)), Contains("line 13"));
   }
   CHECK_THAT(refusal("a.ply", ply(whole + "3 0 1 2\n1 2 3\n")), Contains("more than the header"));
+}
+
+TEST_CASE("a face with more corners than any model has is refused before it is cut") {
+  constexpr std::uint32_t kCorners = 1'000'001;
+  std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\n"
+      "property double y\nproperty double z\nelement face 1\n"
+      "property list uint uchar vertex_index\nend_header\n";
+  ply.append(3 * sizeof(double), '\0');
+  ply.append(reinterpret_cast<const char*>(&kCorners), sizeof kCorners);
+  ply.append(kCorners, '\0');
+  CHECK_THAT(refusal("a.ply", ply), Contains("expected at most 1,000,000"));
 }
 
 TEST_CASE("meshes and drawings of other formats are refused by name") {

@@ -3,7 +3,7 @@
 
 #include "io/formats/pcd/lzf_stream.hpp"
 #include "io/formats/pcd/pcd_reader.hpp"
-#include "support/pcd_bytes.hpp"
+#include "support/bytes/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

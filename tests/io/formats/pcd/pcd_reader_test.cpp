@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "support/pcd_bytes.hpp"
+#include "support/bytes/pcd_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;

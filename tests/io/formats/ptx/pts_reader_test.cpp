@@ -58,6 +58,17 @@ TEST_CASE("a text named pts without a count is read as XYZ") {
   CHECK(read_pts_text("z,y,x\n3e2,-2.5,1\n6,5,4\n").positions == kTwo);
 }
 
+TEST_CASE("the columns of a PTS file can be chosen") {
+  ReaderScratch scratch;
+  const PointReadOptions columns{{"2", "3", "4"}, true};
+  const auto path = scratch.write("a.pts", "1\n9 1 -2.5 3e2\n1\n9 4 5 6\n");
+  const auto reader = open_point_file(path, columns);
+  CHECK(reader->info().text_table);
+  CHECK(read_all(*reader).positions == kTwo);
+  const std::string numbered = "3\n1 5.5 6.5 7\n2 5.5 6.5 8\n3 5.5 6.5 9\n";
+  CHECK_THAT(refusal_of_pts(numbered), Contains("the point's number"));
+}
+
 TEST_CASE("a PTS file with fewer or more points than declared is refused with its line") {
   CHECK_THAT(refusal_of_pts("3\n1 2 3 4 5\n4 5 6 7 8\n"),
              Contains("2 points") && Contains("expected 3 as line 1 declares"));

@@ -286,11 +286,3 @@ TEST_CASE("chosen columns that are not there are refused") {
   CHECK_THROWS_AS(open_point_file(scratch.write("a.xyz", "1 2 3\n"), {{"1", "2"}, true}),
                   UsageError);
 }
-
-TEST_CASE("the lines of points in a text are told") {
-  ReaderScratch scratch;
-  const auto reader =
-      open_point_file(scratch.write("a.csv", "# any\nx,y,z\n1,2,3\n\n4,5,6\n# any\n7,8,9\n"));
-  CHECK(reader->lines_of(std::vector<std::uint64_t>{0, 2}) == std::vector<std::uint64_t>{3, 7});
-  CHECK(reader->lines_of(std::vector<std::uint64_t>{1}) == std::vector<std::uint64_t>{5});
-}

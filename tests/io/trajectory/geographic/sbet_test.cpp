@@ -6,8 +6,8 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "support/attitudes.hpp"
+#include "support/bytes/sbet_bytes.hpp"
 #include "support/reader_fixture.hpp"
-#include "support/sbet_bytes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "clearway/conflicts.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/progress.hpp"
+#include "clearway/result.hpp"
+#include "clearway/store.hpp"
+#include "clearway/trajectory.hpp"
+#include "clearway/vec3.hpp"
+
+namespace clearway {
+
+struct ReportOptions {
+  std::string title = {};  ///< empty: made of the names below
+  std::string date = {};   ///< as it is to stand on the page; nothing else in it depends on the time
+  /// Names of the files for people; empty ones are left out.
+  std::string result_name = {}, environment_name = {}, model_name = {}, trajectory_name = {};
+  /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.
+  /// The last is at least the radius, and none above it is beyond the clearance asked for. Empty:
+  /// the radius, and the clearance where that is larger.
+  std::vector<double> classes = {};
+  std::uint64_t max_points = 1'000'000;  ///< environment points on the page at most
+  /// How conflicts are found; memory, threads, progress and stop flag hold for all of the report.
+  ConflictOptions conflicts = {};
+  PoseLabels labels = {};              ///< of the poses, where the trajectory has them
+  std::vector<Message> warnings = {};  ///< of the inputs and the query: the page shows them
+  bool overwrite = false;
+};
+
+struct ReportSummary {
+  bool clear = true;
+  std::uint64_t bytes = 0;  ///< of the page
+  Conflicts conflicts;      ///< empty where the result has no first poses
+  /// One JSON object: what the page says, without its points.
+  std::string facts;
+};
+
+/// Writes one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view. model
+/// and poses: those of the search. Throws InputError where model, poses or store are not those of
+/// the result, or one is damaged; UsageError for classes that the result cannot tell apart and for
+/// an existing output; ResourceError; Interrupted when asked to stop.
+ReportSummary write_report(const Result& result, const Store& store, const std::vector<Vec3>& model,
+                           const std::vector<Pose>& poses, const std::filesystem::path& output,
+                           const ReportOptions& options = {});
+
+}  // namespace clearway

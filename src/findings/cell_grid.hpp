@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "findings/neighbourhood.hpp"
+
+namespace clearway {
+
+/// A stored integer on each axis.
+struct QuantumPoint {
+  std::int32_t q[3];
+};
+
+/// A point and the row of the result that it comes from.
+struct GridPoint {
+  std::int32_t q[3];
+  std::uint32_t row;
+};
+
+/// Where a cell of the grid lies; in the order of the cells.
+struct GridPlace {
+  std::uint32_t z, y, x;
+  friend auto operator<=>(const GridPlace&, const GridPlace&) = default;
+};
+
+/// Points sorted by the cells of a regular grid, so small that all points of a cell are neighbours.
+/// Only cells with points are kept. Runs in the caller's arena of oneTBB.
+class CellGrid {
+ public:
+  static constexpr std::uint64_t kBytesOfPoint = sizeof(GridPoint);
+  static constexpr std::uint64_t kBytesOfCell = sizeof(GridPlace) + sizeof(std::uint32_t);
+
+  /// points: fewer than 2^32 - 1, by row. check_cells(count) is called before memory is taken for
+  /// so many cells.
+  template <typename CheckCells>
+  CellGrid(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
+           CheckCells check_cells) {
+    sort(points, neighbourhood);
+    check_cells(count_cells());
+    make_cells(points);
+  }
+
+  std::uint32_t cells() const { return static_cast<std::uint32_t>(places_.size()); }
+  const GridPlace& place(std::uint32_t cell) const { return places_[cell]; }
+  std::span<const GridPlace> places() const { return places_; }
+  std::span<const GridPoint> points(std::uint32_t cell) const {
+    return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
+  }
+  /// To be put into another order.
+  std::span<GridPoint> points(std::uint32_t cell) {
+    return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
+  }
+  /// The smallest integers of any point: where the cell (0, 0, 0) begins.
+  const QuantumPoint& origin() const { return origin_; }
+
+ private:
+  void sort(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood);
+  std::uint64_t count_cells() const;
+  void make_cells(std::span<const QuantumPoint> points);
+
+  QuantumPoint origin_{};
+  /// Until make_cells(), q holds the place of the point's cell: z, y, x.
+  std::vector<GridPoint> points_;
+  std::vector<GridPlace> places_;
+  std::vector<std::uint32_t> first_;  ///< of each cell's points, and their end
+};
+
+}  // namespace clearway

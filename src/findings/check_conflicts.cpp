@@ -1,0 +1,49 @@
+#include "findings/check_conflicts.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "core/util/format.hpp"
+#include "findings/side.hpp"
+#include "io/system/input_error.hpp"
+#include "io/system/xxh64.hpp"
+#include "io/trajectory/content_hash.hpp"
+
+namespace clearway {
+namespace {
+
+void check_options(const ConflictOptions& options) {
+  if (!(options.gap > 0) || !std::isfinite(options.gap)) {
+    throw UsageError("a gap of " + shown(options.gap) + " m; expected a finite length above 0");
+  }
+  if (!(options.split >= 0) || !std::isfinite(options.split)) {
+    throw UsageError("stretches of " + shown(options.split) +
+                     " m; expected a finite length, or 0 for none");
+  }
+  if (along_one_line(options.forward, options.up)) {
+    throw UsageError("forward and up lie along the same axis; expected two different axes");
+  }
+}
+
+}  // namespace
+
+void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
+                     const ConflictOptions& options) {
+  check_options(options);
+  const ResultHeader& header = result.header();
+  if (!header.first_pose) {
+    throw UsageError(result.name() +
+                         ": has no first poses, which say where along the path a "
+                         "conflict is",
+                     Remedy::kAskForFirstPose);
+  }
+  const std::uint64_t hash = hash_of_trajectory(poses);
+  if (poses.size() == header.poses && hash == header.trajectory_hash) return;
+  refuse(result.name(),
+         "was searched along another trajectory: of " + format_count(header.poses) +
+             " poses with the hash " + hash_text(header.trajectory_hash) + ". The one given has " +
+             format_count(poses.size()) + " with the hash " + hash_text(hash),
+         Remedy::kSameTrajectory);
+}
+
+}  // namespace clearway

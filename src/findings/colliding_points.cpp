@@ -1,0 +1,59 @@
+#include "findings/colliding_points.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+
+#include "io/formats/requantize.hpp"
+#include "io/result/result_rows.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kAll = ~std::size_t{0};
+
+/// Gives the first row that has no stored integers, or kAll.
+std::size_t requantize_rows(const Quantisation& quantisation, const std::vector<Vec3>& xyz,
+                            QuantumPoint* out) {
+  std::atomic<std::size_t> bad{kAll};
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, xyz.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const auto q = quantum_at(quantisation, k, xyz[i][k]);
+        out[i].q[k] = q.value_or(0);
+        if (q) continue;
+        std::size_t first = bad.load();
+        while (i < first && !bad.compare_exchange_weak(first, i)) continue;
+      }
+    }
+  });
+  return bad.load();
+}
+
+}  // namespace
+
+CollidingPoints read_colliding_points(const ResultReader& result, Progress& progress) {
+  CollidingPoints out;
+  out.quanta.resize(result.collisions());
+  out.source.reserve(result.collisions());
+  out.first_pose.reserve(result.collisions());
+  progress.begin("read", result.collisions(), "points");
+  ResultRowStream stream(result);
+  for (ResultRows rows; stream.read(rows);) {
+    throw_if_stopped(progress);
+    const std::size_t bad = requantize_rows(result.header().quantisation, rows.xyz,
+                                            out.quanta.data() + out.source.size());
+    if (bad != kAll) {
+      refuse(result.name(), "/collisions/xyz, source " + std::to_string(rows.source[bad]) +
+                                ": expected a whole multiple of the scale above the offset");
+    }
+    out.source.insert(out.source.end(), rows.source.begin(), rows.source.end());
+    out.first_pose.insert(out.first_pose.end(), rows.first_pose.begin(), rows.first_pose.end());
+    progress.advance(rows.size());
+  }
+  progress.end();
+  return out;
+}
+
+}  // namespace clearway

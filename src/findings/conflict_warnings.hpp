@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "clearway/conflicts.hpp"
+#include "clearway/progress.hpp"
+
+namespace clearway {
+
+/// What makes conflicts of little use: "one-long-conflict", a group that spans most of the path.
+std::vector<Message> conflict_warnings(const Conflicts& conflicts);
+
+}  // namespace clearway

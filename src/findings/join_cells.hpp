@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/util/progress.hpp"
+#include "findings/cell_grid.hpp"
+#include "findings/neighbourhood.hpp"
+#include "findings/union_find.hpp"
+
+namespace clearway {
+
+/// Of a point, for trees and lists of pairs that stay open, at the most.
+inline constexpr std::uint64_t kJoinBytesOfPoint = 20;
+
+/// Unites the cells that hold neighbours, directly or through others. Points may change their order
+/// within a cell. Runs in the caller's arena of oneTBB. Throws Interrupted.
+void join_cells(CellGrid& grid, const Neighbourhood& neighbourhood, UnionFind& sets,
+                Progress& progress);
+
+}  // namespace clearway

@@ -1,0 +1,91 @@
+#include "findings/match_conflicts.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace clearway {
+namespace {
+
+struct Candidate {
+  double volume;
+  std::uint32_t a, b;  ///< ids
+
+  bool before(const Candidate& other) const {
+    return std::tuple(-volume, a, b) < std::tuple(-other.volume, other.a, other.b);
+  }
+};
+
+Box grown(const Box& box, double by) {
+  return {{box.lo.x - by, box.lo.y - by, box.lo.z - by},
+          {box.hi.x + by, box.hi.y + by, box.hi.z + by}};
+}
+
+double common_volume(const Box& a, const Box& b) {
+  double volume = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double side = std::min(a.hi[k], b.hi[k]) - std::max(a.lo[k], b.lo[k]);
+    if (!(side > 0)) return 0;
+    volume *= side;
+  }
+  return volume;
+}
+
+/// Of conflicts in the order of their boxes along x.
+std::vector<std::uint32_t> along_x(const Conflicts& conflicts) {
+  std::vector<std::uint32_t> order(conflicts.listed.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {},
+                           [&](std::uint32_t i) { return conflicts.listed[i].box.lo.x; });
+  return order;
+}
+
+/// All pairs that overlap. A sweep along x: those of b that begin before one of a ends are looked
+/// at, as long as the longest of b reaches.
+std::vector<Candidate> candidates(const Conflicts& a, const Conflicts& b, double gap) {
+  const std::vector<std::uint32_t> order = along_x(b);
+  double longest = 0;
+  for (const Conflict& c : b.listed) longest = std::max(longest, c.box.hi.x - c.box.lo.x);
+  std::vector<Candidate> out;
+  for (const Conflict& in_a : a.listed) {
+    const Box box = grown(in_a.box, gap);
+    const double from = box.lo.x - longest - 2 * gap;
+    auto next = std::ranges::lower_bound(order, from, {},
+                                         [&](std::uint32_t i) { return b.listed[i].box.lo.x; });
+    for (; next != order.end(); ++next) {
+      const Conflict& in_b = b.listed[*next];
+      const Box other = grown(in_b.box, gap);
+      if (other.lo.x > box.hi.x) break;
+      const double volume = common_volume(box, other);
+      if (volume > 0) out.push_back({volume, in_a.id, in_b.id});
+    }
+  }
+  std::ranges::sort(out, [](const Candidate& x, const Candidate& y) { return x.before(y); });
+  return out;
+}
+
+std::vector<std::uint32_t> unmatched(const std::vector<bool>& matched) {
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t id = 1; id < matched.size(); ++id) {
+    if (!matched[id]) ids.push_back(id);
+  }
+  return ids;
+}
+
+}  // namespace
+
+ConflictMatch match_conflicts(const Conflicts& a, const Conflicts& b, double gap) {
+  std::vector<bool> in_a(a.listed.size() + 1), in_b(b.listed.size() + 1);
+  ConflictMatch out;
+  for (const Candidate& candidate : candidates(a, b, gap)) {
+    if (in_a[candidate.a] || in_b[candidate.b]) continue;
+    in_a[candidate.a] = in_b[candidate.b] = true;
+    out.same.emplace_back(candidate.a, candidate.b);
+  }
+  std::ranges::sort(out.same);
+  out.gone = unmatched(in_a);
+  out.added = unmatched(in_b);
+  return out;
+}
+
+}  // namespace clearway

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/util/progress.hpp"
+#include "findings/cell_grid.hpp"
+#include "findings/union_find.hpp"
+
+namespace clearway {
+
+/// The groups of a grid's points: each is a set of cells.
+struct PointGroups {
+  static constexpr std::uint32_t kSmall = ~std::uint32_t{0};
+
+  std::vector<std::uint32_t> of_cell;  ///< a number of those below, or kSmall
+  std::uint32_t count = 0;             ///< of min_points at least
+  std::uint64_t small_groups = 0, small_points = 0;
+};
+
+/// Numbers the groups that have min_points, in the order of their first cells.
+PointGroups number_groups(const CellGrid& grid, UnionFind& sets, std::uint64_t min_points);
+
+}  // namespace clearway

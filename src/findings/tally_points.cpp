@@ -1,0 +1,110 @@
+#include "findings/tally_points.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/spin_mutex.h>
+
+#include <memory>
+
+#include "core/util/tsan_annotations.hpp"
+
+namespace clearway {
+namespace {
+
+using Range = tbb::blocked_range<std::uint32_t>;
+
+/// Tallies that several threads add to.
+class SharedTallies {
+ public:
+  explicit SharedTallies(std::uint64_t count)
+      : tallies_(count), locks_(std::make_unique<tbb::spin_mutex[]>(kLocks)) {}
+
+  void add(std::uint64_t number, const Tally& tally) {
+    tbb::spin_mutex& lock = locks_[number % kLocks];
+    const tbb::spin_mutex::scoped_lock held(lock);
+    acquire(&lock);
+    tallies_[number].add(tally);
+    release(&lock);
+  }
+  std::vector<Tally> take() { return std::move(tallies_); }
+
+ private:
+  static constexpr std::uint64_t kLocks = 256;
+  std::vector<Tally> tallies_;
+  std::unique_ptr<tbb::spin_mutex[]> locks_;
+};
+
+/// One after the other, as long as they are of the same number.
+class RunOfPoints {
+ public:
+  explicit RunOfPoints(SharedTallies& into) : into_(into) {}
+  RunOfPoints(const RunOfPoints&) = delete;
+  RunOfPoints& operator=(const RunOfPoints&) = delete;
+  ~RunOfPoints() { hand_on(); }
+
+  void add(std::uint64_t number, const GridPoint& p, std::uint32_t pose) {
+    if (number != number_) {
+      hand_on();
+      number_ = number;
+    }
+    tally_.add(p, pose);
+  }
+
+ private:
+  void hand_on() {
+    if (tally_.points > 0) into_.add(number_, tally_);
+    tally_ = {};
+  }
+
+  SharedTallies& into_;
+  std::uint64_t number_ = 0;
+  Tally tally_;
+};
+
+/// number_of(group, row) for every point of a listed group.
+template <typename NumberOf>
+std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, std::uint64_t count,
+                            std::span<const std::uint32_t> first_pose, Progress& progress,
+                            NumberOf number_of) {
+  SharedTallies tallies(count);
+  const ParallelScope scope;
+  const auto add_cells = piece_of(scope, [&](const Range& range) {
+    if (progress.stop_requested()) return;
+    RunOfPoints run(tallies);
+    for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
+      const std::uint32_t group = groups.of_cell[cell];
+      if (group == PointGroups::kSmall) continue;
+      for (const GridPoint& p : grid.points(cell)) {
+        run.add(number_of(group, p.row), p, first_pose[p.row]);
+      }
+    }
+  });
+  scope.begin();
+  tbb::parallel_for(Range(0, grid.cells(), 64), add_cells);
+  throw_if_stopped(progress);
+  return tallies.take();
+}
+
+}  // namespace
+
+std::vector<Tally> tally_groups(const CellGrid& grid, const PointGroups& groups,
+                                std::span<const std::uint32_t> first_pose, Progress& progress) {
+  return tally_by(grid, groups, groups.count, first_pose, progress,
+                  [](std::uint32_t group, std::uint32_t) { return group; });
+}
+
+std::vector<Tally> tally_parts(const CellGrid& grid, const PointGroups& groups,
+                               const GroupParts& parts, const PathStretches& stretches,
+                               std::span<const std::uint32_t> first_pose,
+                               std::span<std::uint32_t> part_of_row, Progress& progress) {
+  return tally_by(grid, groups, parts.count(), first_pose, progress,
+                  [&](std::uint32_t group, std::uint32_t row) {
+                    std::uint64_t part = parts.first[group];
+                    if (parts.is_cut[group]) {
+                      part += stretches[first_pose[row]] - parts.stretch[group];
+                    }
+                    part_of_row[row] = static_cast<std::uint32_t>(part + 1);
+                    return part;
+                  });
+}
+
+}  // namespace clearway

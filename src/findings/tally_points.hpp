@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/util/progress.hpp"
+#include "findings/cell_grid.hpp"
+#include "findings/path_stretches.hpp"
+#include "findings/point_groups.hpp"
+#include "findings/tally.hpp"
+
+namespace clearway {
+
+/// Sums of each listed group. first_pose: by row. Runs in the caller's arena of oneTBB.
+std::vector<Tally> tally_groups(const CellGrid& grid, const PointGroups& groups,
+                                std::span<const std::uint32_t> first_pose, Progress& progress);
+
+/// The parts that groups are cut into: consecutive ones for each group, one for each stretch of the
+/// path from its first to its last pose. Parts may be empty.
+struct GroupParts {
+  std::vector<std::uint64_t> first;    ///< of each group, and their end
+  std::vector<std::uint32_t> stretch;  ///< of each group, the one of its first part
+  std::vector<bool> is_cut;            ///< of each group
+
+  std::uint64_t count() const { return first.back(); }
+};
+
+/// Sums of each part; part_of_row becomes the part's number + 1 of each row, 0 for rows of small
+/// groups. Fewer than 2^32 - 1 parts.
+std::vector<Tally> tally_parts(const CellGrid& grid, const PointGroups& groups,
+                               const GroupParts& parts, const PathStretches& stretches,
+                               std::span<const std::uint32_t> first_pose,
+                               std::span<std::uint32_t> part_of_row, Progress& progress);
+
+}  // namespace clearway

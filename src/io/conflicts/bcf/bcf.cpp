@@ -1,0 +1,139 @@
+#include "io/conflicts/bcf/bcf.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/predicate.hpp"
+#include "io/conflicts/bcf/bcf_text.hpp"
+#include "io/conflicts/bcf/picture.hpp"
+#include "io/conflicts/bcf/zip_writer.hpp"
+#include "io/result/result_rows.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr int kWidth = 800, kHeight = 600;
+constexpr Colour kColliding{200, 30, 30}, kModel{90, 110, 140}, kPath{40, 90, 200},
+    kBoxEdge{120, 120, 120};
+constexpr double kLeastDistance = 4;      // metres from camera to conflict
+constexpr double kSizesAway = 1.6;        // and at least so many times the conflict's diagonal
+constexpr std::size_t kPathPoses = 2000;  // beside the nearest one, drawn as a line
+
+Vec3 sum(const Vec3& a, const Vec3& b, double times) {
+  return {a.x + times * b.x, a.y + times * b.y, a.z + times * b.z};
+}
+
+double length_of(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+Vec3 unit(const Vec3& v, const Vec3& otherwise) {
+  const double length = length_of(v);
+  if (!(length > 0)) return otherwise;
+  return {v.x / length, v.y / length, v.z / length};
+}
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// A direction of the model's frame, in the environment's.
+Vec3 turned(const Pose& pose, Axis axis) {
+  const int column = static_cast<int>(axis) / 2;
+  const double sign = static_cast<int>(axis) % 2 == 0 ? 1 : -1;
+  const double* r = pose.rotation;
+  return {sign * r[column], sign * r[3 + column], sign * r[6 + column]};
+}
+
+std::uint32_t pose_of(const Conflict& conflict) {
+  return conflict.nearest_pose.value_or(conflict.first_pose);
+}
+
+/// From behind and above, as one who follows the model sees it.
+Camera camera_of(const ConflictFile& file, const Conflict& conflict) {
+  const Pose& pose = file.poses[pose_of(conflict)];
+  const Vec3 ahead = unit(turned(pose, file.options.forward), {1, 0, 0});
+  const Vec3 above = unit(turned(pose, file.options.up), {0, 0, 1});
+  Camera out;
+  out.direction = unit(sum(ahead, above, -0.6), ahead);
+  const Vec3 right = unit(cross(out.direction, above), {0, 1, 0});
+  out.up = cross(right, out.direction);
+  const double diagonal = length_of(sum(conflict.box.hi, conflict.box.lo, -1));
+  const double away = std::max(kLeastDistance, kSizesAway * diagonal);
+  out.place = sum(conflict.centroid, out.direction, -away);
+  return out;
+}
+
+void draw_path(Picture& picture, const ConflictFile& file, const Conflict& conflict) {
+  const std::size_t at = pose_of(conflict);
+  const std::size_t first = at > kPathPoses ? at - kPathPoses : 0;
+  const std::size_t last = std::min(file.poses.size(), at + kPathPoses + 1);
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const double* a = file.poses[i - 1].translation;
+    const double* b = file.poses[i].translation;
+    picture.draw_line({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, kPath);
+  }
+}
+
+void draw_box(Picture& picture, const Box& box) {
+  const Vec3 corners[] = {box.lo, box.hi};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int sides = 0; sides < 4; ++sides) {
+      Vec3 from{}, to{};
+      from[axis] = box.lo[axis];
+      to[axis] = box.hi[axis];
+      for (int other = 0; other < 2; ++other) {
+        const int k = (axis + 1 + other) % 3;
+        from[k] = to[k] = corners[sides >> other & 1][k];
+      }
+      picture.draw_line(from, to, kBoxEdge);
+    }
+  }
+}
+
+std::string snapshot_of(const ConflictFile& file, const Conflict& conflict, const Camera& camera,
+                        const std::vector<Vec3>& points, const std::vector<Vec3>& model) {
+  Picture picture(kWidth, kHeight, camera);
+  const Pose& pose = file.poses[pose_of(conflict)];
+  for (const Vec3& m : model) picture.draw_point(transform(pose, m), kModel, 1);
+  draw_path(picture, file, conflict);
+  draw_box(picture, conflict.box);
+  for (const Vec3& p : points) picture.draw_point(p, kColliding, 3);
+  return picture.png();
+}
+
+}  // namespace
+
+ConflictPoints conflict_points(const ResultReader& result, const Conflicts& conflicts,
+                               const std::vector<std::uint32_t>& conflict_of) {
+  constexpr std::size_t kMost = ConflictPictures::kMostPoints;
+  ConflictPoints out(conflicts.listed.size());
+  std::vector<std::uint64_t> seen(out.size());
+  ResultRowStream stream(result);
+  std::size_t row = 0;
+  for (ResultRows rows; stream.read(rows);) {
+    for (const Vec3& p : rows.xyz) {
+      const std::uint32_t id = conflict_of[row++];
+      if (id == 0) continue;
+      const std::uint64_t points = conflicts.listed[id - 1].points;
+      const std::uint64_t every = (points + kMost - 1) / kMost;
+      if (seen[id - 1]++ % every == 0) out[id - 1].push_back(p);
+    }
+  }
+  return out;
+}
+
+void write_bcf(const ConflictFile& file, const ConflictPictures& pictures, const File& output) {
+  ZipWriter zip(output);
+  zip.add("bcf.version", bcf_version());
+  for (std::size_t i = 0; i < file.conflicts.listed.size(); ++i) {
+    const Conflict& conflict = file.conflicts.listed[i];
+    const Camera camera = camera_of(file, conflict);
+    const std::string folder = conflict_uuid(file, conflict, "topic") + "/";
+    zip.add(folder + "markup.bcf", bcf_markup(file, conflict));
+    zip.add(folder + "viewpoint.bcfv", bcf_viewpoint(file, conflict, camera));
+    zip.add(folder + "snapshot.png",
+            snapshot_of(file, conflict, camera, pictures.points[i], pictures.model));
+  }
+  zip.finish();
+}
+
+}  // namespace clearway

@@ -1,0 +1,127 @@
+#include "io/conflicts/bcf/bcf_text.hpp"
+
+#include <array>
+
+#include "core/util/format.hpp"
+#include "io/conflicts/json_text.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr const char* kDeclaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+
+std::uint64_t hash_of(std::string_view text) {
+  return xxh64(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+std::string element(std::string_view name, const std::string& content) {
+  return "<" + std::string(name) + ">" + content + "</" + std::string(name) + ">";
+}
+
+std::string vector_element(std::string_view name, const Vec3& v) {
+  return element(name, element("X", json_number(v.x)) + element("Y", json_number(v.y)) +
+                           element("Z", json_number(v.z)));
+}
+
+/// The twelve edges of a box.
+std::string edges_of(const Box& box) {
+  const auto corner = [&box](int bits) {
+    return Vec3{(bits & 1) != 0 ? box.hi.x : box.lo.x, (bits & 2) != 0 ? box.hi.y : box.lo.y,
+                (bits & 4) != 0 ? box.hi.z : box.lo.z};
+  };
+  std::string out;
+  for (int from = 0; from < 8; ++from) {
+    for (const int axis : {1, 2, 4}) {
+      if ((from & axis) != 0) continue;
+      out += "    " +
+             element("Line", vector_element("StartPoint", corner(from)) +
+                                 vector_element("EndPoint", corner(from | axis))) +
+             "\n";
+    }
+  }
+  return out;
+}
+
+std::string title_of(const Conflict& c) {
+  std::string out =
+      "Conflict " + std::to_string(c.id) + " at " + format_brief(c.chainage_from) + " m";
+  if (c.chainage_to > c.chainage_from) out += " to " + format_brief(c.chainage_to) + " m";
+  if (c.side != Side::kUnknown) out += std::string(", ") + name_of(c.side);
+  return out;
+}
+
+std::string description_of(const ConflictFile& file, const Conflict& c) {
+  std::string out = format_count(c.points) + " points are closer than " +
+                    format_number(file.header.radius) + " m to the moving model.";
+  if (c.least_distance) {
+    out += " The least distance is " + format_brief(*c.least_distance) + " m, at pose " +
+           std::to_string(*c.nearest_pose) + "; " + format_brief(*c.encroachment) +
+           " m are missing.";
+  }
+  return out + " First touched at poses " + std::to_string(c.first_pose) + " to " +
+         std::to_string(c.last_pose) + ", counted from 0.";
+}
+
+}  // namespace
+
+std::string uuid_of(std::string_view text) {
+  std::string digits = hash_text(hash_of(text)) + hash_text(hash_of("2 " + std::string(text)));
+  digits[12] = '8';                                               // version
+  digits[16] = "89ab"[static_cast<std::size_t>(digits[16]) % 4];  // variant
+  for (const std::size_t at : {20, 16, 12, 8}) digits.insert(at, 1, '-');
+  return digits;
+}
+
+std::string conflict_uuid(const ConflictFile& file, const Conflict& conflict,
+                          std::string_view what) {
+  const ResultHeader& header = file.header;
+  std::string text = "clearway " + std::string(what);
+  for (const std::uint64_t hash :
+       {header.environment_hash, header.model_hash, header.trajectory_hash}) {
+    text += " " + hash_text(hash);
+  }
+  for (const double length : {header.radius, file.options.gap, file.options.split}) {
+    text += " " + json_number(length);
+  }
+  return uuid_of(text + (header.between_poses ? " between " : " at ") +
+                 std::to_string(conflict.source));
+}
+
+std::string bcf_version() {
+  return std::string(kDeclaration) +
+         "<Version VersionId=\"2.1\">\n  <DetailedVersion>2.1</DetailedVersion>\n</Version>\n";
+}
+
+std::string bcf_markup(const ConflictFile& file, const Conflict& conflict) {
+  std::string out = kDeclaration;
+  out += "<Markup>\n  <Topic Guid=\"" + conflict_uuid(file, conflict, "topic") +
+         "\" TopicType=\"Clash\" TopicStatus=\"Open\">\n";
+  const auto line = [&out](std::string_view name, const std::string& content) {
+    out += "    " + element(name, content) + "\n";
+  };
+  line("Title", title_of(conflict));
+  line("Index", std::to_string(conflict.id));
+  line("CreationDate", file.date);
+  line("CreationAuthor", "Clearway");
+  line("Description", description_of(file, conflict));
+  out += "  </Topic>\n  <Viewpoints Guid=\"" + conflict_uuid(file, conflict, "viewpoint") + "\">\n";
+  line("Viewpoint", "viewpoint.bcfv");
+  line("Snapshot", "snapshot.png");
+  return out + "  </Viewpoints>\n</Markup>\n";
+}
+
+std::string bcf_viewpoint(const ConflictFile& file, const Conflict& conflict,
+                          const Camera& camera) {
+  std::string out = kDeclaration;
+  out += "<VisualizationInfo Guid=\"" + conflict_uuid(file, conflict, "viewpoint") + "\">\n";
+  out += "  <PerspectiveCamera>\n";
+  out += "    " + vector_element("CameraViewPoint", camera.place) + "\n";
+  out += "    " + vector_element("CameraDirection", camera.direction) + "\n";
+  out += "    " + vector_element("CameraUpVector", camera.up) + "\n";
+  out += "    " + element("FieldOfView", json_number(camera.field_of_view)) + "\n";
+  out += "  </PerspectiveCamera>\n  <Lines>\n" + edges_of(conflict.box) + "  </Lines>\n";
+  return out + "</VisualizationInfo>\n";
+}
+
+}  // namespace clearway

@@ -1,0 +1,40 @@
+#include "io/conflicts/conflict_fields.hpp"
+
+#include <optional>
+
+namespace clearway {
+namespace {
+
+template <typename Value, typename Number>
+FieldValue value_of(const std::optional<Number>& number) {
+  return number ? FieldValue(static_cast<Value>(*number)) : FieldValue();
+}
+
+}  // namespace
+
+std::vector<ConflictField> fields_of(const Conflict& c) {
+  return {{"id", std::uint64_t{c.id}},
+          {"points", c.points},
+          {"source", c.source},
+          {"lo_x", c.box.lo.x},
+          {"lo_y", c.box.lo.y},
+          {"lo_z", c.box.lo.z},
+          {"hi_x", c.box.hi.x},
+          {"hi_y", c.box.hi.y},
+          {"hi_z", c.box.hi.z},
+          {"centroid_x", c.centroid.x},
+          {"centroid_y", c.centroid.y},
+          {"centroid_z", c.centroid.z},
+          {"first_pose", std::uint64_t{c.first_pose}},
+          {"last_pose", std::uint64_t{c.last_pose}},
+          {"chainage_from", c.chainage_from},
+          {"chainage_to", c.chainage_to},
+          {"least_distance", value_of<double>(c.least_distance)},
+          {"nearest_pose", value_of<std::uint64_t>(c.nearest_pose)},
+          {"nearest_source", value_of<std::uint64_t>(c.nearest_source)},
+          {"encroachment", value_of<double>(c.encroachment)},
+          {"side", std::string_view(name_of(c.side))},
+          {"group", c.group}};
+}
+
+}  // namespace clearway

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "clearway/conflicts.hpp"
+
+namespace clearway {
+
+/// What there is not, a count or number, a length or coordinate, a word.
+using FieldValue = std::variant<std::monostate, std::uint64_t, double, std::string_view>;
+
+/// A column of a conflict, in files without nesting.
+struct ConflictField {
+  std::string_view name;
+  FieldValue value;
+};
+
+/// The same names in the same order for every conflict.
+std::vector<ConflictField> fields_of(const Conflict& conflict);
+
+}  // namespace clearway

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "clearway/conflicts.hpp"
+#include "clearway/pose.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway {
+
+/// What the files of conflicts say. All outlives the writing.
+struct ConflictFile {
+  const Conflicts& conflicts;
+  const ConflictOptions& options;  ///< that they were found with
+  const ResultHeader& header;      ///< of the result
+  const std::vector<Pose>& poses;
+  std::vector<Message> warnings;
+  /// Of files that must have one: an ISO 8601 time in UTC.
+  std::string date = kNoDate;
+
+  static constexpr const char* kNoDate = "2000-01-01T00:00:00Z";
+};
+
+enum class ConflictFormat { kCsv, kJson, kGeoJson, kGeoPackage, kBcf };
+
+/// By the ending of a name: .csv, .json, .geojson, .gpkg, .bcf or .bcfzip. Throws UsageError for
+/// others.
+ConflictFormat conflict_format_of(const std::filesystem::path& output);
+
+}  // namespace clearway

@@ -1,0 +1,75 @@
+#include "io/conflicts/conflict_summary.hpp"
+
+#include <string_view>
+#include <utility>
+
+#include "io/conflicts/json_text.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+std::string message_json(const Message& message) {
+  std::string numbers;
+  for (const auto& [name, value] : message.numbers) {
+    numbers += (numbers.empty() ? "" : ", ") + json_string(name) + ": " + json_number(value);
+  }
+  return "{\"code\": " + json_string(message.code) + ", \"message\": " + json_string(message.text) +
+         ", \"numbers\": {" + numbers + "}}";
+}
+
+std::string warnings_json(const std::vector<Message>& warnings) {
+  std::string out;
+  for (const Message& warning : warnings) out += (out.empty() ? "" : ", ") + message_json(warning);
+  return "[" + out + "]";
+}
+
+class Members {
+ public:
+  void add(std::string_view name, const std::string& json) {
+    text_ += (text_.empty() ? "  " : ",\n  ") + json_string(name) + ": " + json;
+  }
+  void add_count(std::string_view name, std::uint64_t count) { add(name, std::to_string(count)); }
+  void add_length(std::string_view name, double length) { add(name, json_number(length)); }
+  void add_hash(std::string_view name, std::uint64_t hash) {
+    add(name, json_string(hash_text(hash)));
+  }
+  std::string text() && { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+std::string summary_json(const ConflictFile& file) {
+  const ResultHeader& header = file.header;
+  const Conflicts& conflicts = file.conflicts;
+  Members out;
+  out.add("kind", json_string("conflicts"));
+  out.add_length("radius", header.radius);
+  out.add_length("clearance", header.clearance);
+  out.add("between_poses", header.between_poses ? "true" : "false");
+  out.add_length("gap", file.options.gap);
+  out.add_count("min_points", file.options.min_points);
+  out.add_length("split", file.options.split);
+  out.add_count("environment_points", header.environment_points);
+  out.add_count("model_points", header.model_points);
+  out.add_count("poses", header.poses);
+  out.add_hash("environment_hash", header.environment_hash);
+  out.add_hash("model_hash", header.model_hash);
+  out.add_hash("trajectory_hash", header.trajectory_hash);
+  out.add("crs_wkt", json_string(header.crs_wkt));
+  out.add_length("path_length", conflicts.path_length);
+  out.add_count("colliding_points", conflicts.colliding_points);
+  out.add_count("conflict_count", conflicts.listed.size());
+  out.add_count("groups", conflicts.groups);
+  out.add_count("small_groups", conflicts.small_groups);
+  out.add_count("small_points", conflicts.small_points);
+  out.add_length("longest_group", conflicts.longest_group);
+  out.add_count("longest_group_points", conflicts.longest_group_points);
+  out.add("warnings", warnings_json(file.warnings));
+  return std::move(out).text();
+}
+
+}  // namespace clearway

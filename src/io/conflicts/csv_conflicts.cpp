@@ -1,0 +1,37 @@
+#include "io/conflicts/conflict_fields.hpp"
+#include "io/conflicts/json_text.hpp"
+#include "io/conflicts/text_conflicts.hpp"
+#include "io/formats/text/text_writer.hpp"
+
+namespace clearway {
+namespace {
+
+/// No value of a conflict has a comma or a quote.
+std::string csv_value(const FieldValue& value) {
+  if (std::holds_alternative<std::monostate>(value)) return "";
+  const auto* word = std::get_if<std::string_view>(&value);
+  return word != nullptr ? std::string(*word) : json_value(value);
+}
+
+}  // namespace
+
+void write_csv(const ConflictFile& conflicts, const File& file) {
+  TextWriter out(file);
+  const char* between = "";
+  for (const ConflictField& field : fields_of(Conflict{})) {
+    out << between << field.name;
+    between = ",";
+  }
+  out << "\n";
+  for (const Conflict& conflict : conflicts.conflicts.listed) {
+    between = "";
+    for (const ConflictField& field : fields_of(conflict)) {
+      out << between << csv_value(field.value);
+      between = ",";
+    }
+    out << "\n";
+  }
+  out.flush();
+}
+
+}  // namespace clearway

@@ -1,0 +1,76 @@
+#include "io/conflicts/conflict_fields.hpp"
+#include "io/conflicts/conflict_summary.hpp"
+#include "io/conflicts/json_text.hpp"
+#include "io/conflicts/scan_crs.hpp"
+#include "io/conflicts/text_conflicts.hpp"
+#include "io/formats/text/text_writer.hpp"
+
+namespace clearway {
+namespace {
+
+/// Where there is none, a local one: readers take files that name none for WGS 84.
+std::string crs_name(const std::string& wkt) {
+  if (wkt.empty()) return R"(LOCAL_CS["unknown",UNIT["metre",1]])";
+  const ScanCrs crs = scan_crs_of(wkt);
+  return crs.epsg != 0 ? "urn:ogc:def:crs:EPSG::" + std::to_string(crs.epsg) : crs.wkt;
+}
+
+/// As the GeoJSON of 2008 had it. RFC 7946 knows only WGS 84, which a scan in a local frame cannot
+/// be turned into.
+std::string crs_json(const std::string& wkt) {
+  const std::string name = crs_name(wkt);
+  return "{\"type\": \"name\", \"properties\": {\"name\": " + json_string(name) + "}}";
+}
+
+const char* note_on(const std::string& wkt) {
+  return wkt.empty()
+             ? "Coordinates are those of the scans, which name no coordinate reference system: not "
+               "longitudes and latitudes as in RFC 7946."
+             : "Coordinates are in the coordinate reference system of the scans, which the member "
+               "crs names: not longitudes and latitudes as in RFC 7946.";
+}
+
+std::string point_json(const Vec3& v) {
+  return "{\"type\": \"Point\", \"coordinates\": " + json_vector(v) + "}";
+}
+
+/// Counter-clockwise, at the lowest height.
+std::string footprint_json(const Box& box) {
+  const Vec3 corners[] = {{box.lo.x, box.lo.y, box.lo.z},
+                          {box.hi.x, box.lo.y, box.lo.z},
+                          {box.hi.x, box.hi.y, box.lo.z},
+                          {box.lo.x, box.hi.y, box.lo.z},
+                          {box.lo.x, box.lo.y, box.lo.z}};
+  std::string ring;
+  for (const Vec3& corner : corners) ring += (ring.empty() ? "" : ", ") + json_vector(corner);
+  return "{\"type\": \"Polygon\", \"coordinates\": [[" + ring + "]]}";
+}
+
+std::string feature_json(const Conflict& conflict, const char* shape, const std::string& geometry) {
+  std::string properties = std::string("\"shape\": \"") + shape + "\"";
+  for (const ConflictField& field : fields_of(conflict)) {
+    properties += ", " + json_string(field.name) + ": " + json_value(field.value);
+  }
+  return "{\"type\": \"Feature\", \"geometry\": " + geometry + ", \"properties\": {" + properties +
+         "}}";
+}
+
+}  // namespace
+
+void write_geojson(const ConflictFile& conflicts, const File& file) {
+  const std::string& wkt = conflicts.header.crs_wkt;
+  TextWriter out(file);
+  out << "{\n  \"type\": \"FeatureCollection\",\n  \"crs\": " << crs_json(wkt)
+      << ",\n  \"note\": " << json_string(note_on(wkt)) << ",\n  \"summary\": {\n"
+      << summary_json(conflicts) << "\n  },\n  \"features\": [";
+  const char* between = "\n    ";
+  for (const Conflict& conflict : conflicts.conflicts.listed) {
+    out << between << feature_json(conflict, "centroid", point_json(conflict.centroid)) << ",\n    "
+        << feature_json(conflict, "footprint", footprint_json(conflict.box));
+    between = ",\n    ";
+  }
+  out << (conflicts.conflicts.listed.empty() ? "]\n}\n" : "\n  ]\n}\n");
+  out.flush();
+}
+
+}  // namespace clearway

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "io/conflicts/conflict_fields.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace clearway::sqlite {
+
+/// A new database of one writer. Everything throws ResourceError with the file's name.
+class Database {
+ public:
+  /// Empties a file that is there.
+  explicit Database(const std::filesystem::path& path);
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+  ~Database();
+
+  void run(const std::string& sql);
+  /// Writes what is left; nothing may be called after it.
+  void close();
+
+ private:
+  friend class Insert;
+  [[noreturn]] void fail(const std::string& what) const;
+  void check(int code, const char* what) const;
+
+  std::string name_;
+  sqlite3* handle_ = nullptr;
+};
+
+/// A statement with values in the place of its question marks, run once or more often. The database
+/// outlives it.
+class Insert {
+ public:
+  Insert(Database& database, const std::string& sql);
+  Insert(const Insert&) = delete;
+  Insert& operator=(const Insert&) = delete;
+  ~Insert();
+
+  /// The next value.
+  Insert& add(const FieldValue& value);
+  Insert& add_text(std::string_view text);
+  Insert& add_integer(std::int64_t value);
+  Insert& add_blob(std::span<const std::byte> bytes);
+  /// With as many values as there are question marks.
+  void run();
+
+ private:
+  Database& database_;
+  sqlite3_stmt* statement_ = nullptr;
+  int next_ = 1;
+};
+
+}  // namespace clearway::sqlite

@@ -1,0 +1,279 @@
+#include "io/convert/inputs/environment_source.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "core/util/shorten_notes.hpp"
+#include "io/convert/checks/choose_scale.hpp"
+#include "io/convert/checks/lost_digits.hpp"
+#include "io/convert/inputs/spooled_reader.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kLeastQuantum = std::numeric_limits<std::int32_t>::min();
+constexpr double kGreatestQuantum = std::numeric_limits<std::int32_t>::max();
+
+bool is_finite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+Vec3 point_of(const PointBatch& batch, const CloudInfo& info, std::size_t i) {
+  if (!info.quantisation) return batch.positions[i];
+  const auto& q = batch.quanta[i];
+  return position(*info.quantisation, q[0], q[1], q[2]);
+}
+
+const EnvironmentOptions& checked(const EnvironmentOptions& options) {
+  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
+    throw UsageError("a scale of " + brief(*options.scale) + ": expected a positive length");
+  }
+  return options;
+}
+
+/// Calls `read`; where one of several files is refused, the error says that it can be skipped.
+template <typename Read>
+auto reading_one_of(std::size_t files, Read read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    const Remedy remedy = error.remedy();
+    const bool can_be_skipped = remedy == Remedy::kNone || remedy == Remedy::kStandardInput ||
+                                remedy == Remedy::kSampleMesh;
+    if (files < 2 || !can_be_skipped) throw;
+    throw InputError(error.what(), Remedy::kSkipUnreadable);
+  }
+}
+
+}  // namespace
+
+EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
+                                     const EnvironmentOptions& options, Progress& progress)
+    : options_(checked(options)),
+      how_to_read_{options.columns, true},
+      inputs_(inputs, options.skip_unreadable, how_to_read_, progress) {
+  open_inputs();
+  find_crs();
+  if (auto kept = common_quanta(files(), infos_, options_.scale)) {
+    quantisation_ = kept->quantisation;
+    shifts_ = std::move(kept->shifts);
+    return;
+  }
+  choose_offset_and_scale(progress);
+}
+
+EnvironmentSource::~EnvironmentSource() = default;
+
+void EnvironmentSource::open_inputs() {
+  if (inputs_.are_a_stream()) {
+    stream_ = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
+                              options_.temporary_folder);
+    if (!stream_->can_rewind()) stream_ = spool(std::move(stream_), options_.temporary_folder);
+  }
+  declared_points_ = 0;
+  for (std::size_t i = 0; i < files().size(); ++i) {
+    const CloudInfo& info = infos_.emplace_back(reader(i).info());
+    if (declared_points_ && info.declared_points) {
+      *declared_points_ += *info.declared_points;
+    } else {
+      declared_points_.reset();
+    }
+  }
+  const auto is_text = [](const CloudInfo& info) { return info.text_table; };
+  if (!options_.columns.empty() && std::none_of(infos_.begin(), infos_.end(), is_text)) {
+    throw UsageError("columns are chosen, but no input is a text; expected one at least");
+  }
+}
+
+void EnvironmentSource::find_crs() {
+  crs_ = common_crs(files(), infos_, options_.ignore_crs);
+  for (std::size_t i = 0; i < files().size(); ++i) {
+    if (infos_[i].faces == 0) continue;
+    crs_.warnings.push_back({Message::Severity::kWarning, "mesh-faces",
+                             files()[i].string() + ": its " + std::to_string(infos_[i].faces) +
+                                 " faces are not read, its vertices are"});
+  }
+}
+
+std::vector<Message> EnvironmentSource::remarks() const {
+  std::vector<Message> all = crs_.warnings;
+  all.insert(all.end(), range_warnings_.begin(), range_warnings_.end());
+  const std::vector<Message> of_files = inputs_.remarks();
+  all.insert(all.end(), of_files.begin(), of_files.end());
+  if (!shifts_.empty()) {
+    const auto mixture = remark_on_mixture(files(), infos_, quantisation_);
+    if (mixture) all.push_back(*mixture);
+  }
+  std::vector<Message> own;
+  for (const CloudInfo& info : infos_) {
+    own.insert(own.end(), info.remarks.begin(), info.remarks.end());
+  }
+  shorten_notes(own);
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
+  CoordinateRange range;
+  progress.begin("range", declared_points_.value_or(0), "points");
+  while (next_batch(raw_)) {
+    throw_if_stopped(progress);
+    const std::uint64_t first = file_points_ - raw_.size();
+    for (std::size_t i = 0; i < raw_.size(); ++i) {
+      const Vec3 p = point_of(raw_, infos_[file_], i);
+      if (is_finite(p)) range.add(p, file_, first + i);
+    }
+    progress.advance(raw_.size());
+  }
+  progress.end();
+  rewind();
+  range_warnings_ = warn_of_lost_digits(range.samples());
+  quantisation_ = choose_scale(range, options_.scale, files(), how_to_read_);
+}
+
+PointReader& EnvironmentSource::reader(std::size_t file) {
+  if (stream_) return *stream_;
+  if (!current_ || open_file_ != file) {
+    current_ = reading_one_of(files().size(),
+                              [&] { return open_point_file(files()[file], how_to_read_); });
+    open_file_ = file;
+  }
+  return *current_;
+}
+
+void EnvironmentSource::rewind() {
+  file_ = 0;
+  file_points_ = 0;
+  input_points_ = non_finite_points_ = absent_points_ = 0;
+  largest_change_ = 0;
+  points_of_files_.clear();
+  if (stream_) stream_->rewind();
+  current_.reset();
+}
+
+bool EnvironmentSource::next_batch(PointBatch& batch) {
+  for (; file_ < files().size(); ++file_, file_points_ = 0) {
+    PointReader& from = reader(file_);
+    if (!reading_one_of(files().size(), [&] { return from.read(batch); })) {
+      infos_[file_].remarks = from.info().remarks;
+      points_of_files_.push_back(file_points_);
+      continue;
+    }
+    file_points_ += batch.size();
+    return true;
+  }
+  if (stream_ &&
+      (infos_[0].crs_wkt != stream_->info().crs_wkt || infos_[0].unit != stream_->info().unit)) {
+    infos_[0] = stream_->info();  // a CRS may follow the points
+    find_crs();
+  }
+  return false;
+}
+
+bool EnvironmentSource::read(QuantaBatch& batch) {
+  batch.quanta.clear();
+  batch.offsets.clear();
+  if (!next_batch(raw_)) return false;
+  batch.file = file_;
+  batch.first_source = input_points_;
+  if (shifts_.empty() || !infos_[file_].quantisation) {
+    append_rounded(raw_, batch);
+  } else {
+    append_kept(raw_, batch);
+  }
+  input_points_ += raw_.size();
+  return true;
+}
+
+void EnvironmentSource::append_kept(const PointBatch& batch, QuantaBatch& out) {
+  out.quanta = batch.quanta;
+  const Quantisation& own = *infos_[file_].quantisation;
+  if (own == quantisation_) return;
+  for (auto& q : out.quanta) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const double before = coordinate(own, axis, q[k]);
+      const std::int64_t shifted = q[k] + shifts_[file_][k];
+      if (shifted < std::numeric_limits<std::int32_t>::min() ||
+          shifted > std::numeric_limits<std::int32_t>::max()) {
+        throw InputError(files()[file_].string() + ": too far from " + files()[0].string() +
+                             " for 32-bit integers of " + brief(own.scale[k]),
+                         Remedy::kScale);
+      }
+      q[k] = static_cast<std::int32_t>(shifted);
+      largest_change_ =
+          std::max(largest_change_, std::abs(coordinate(quantisation_, axis, q[k]) - before));
+    }
+  }
+}
+
+void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out) {
+  auto absent = batch.absent.begin();
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const Vec3 p = point_of(batch, infos_[file_], i);
+    if (!is_finite(p)) {
+      if (absent != batch.absent.end() && *absent == i) {
+        ++absent_points_;
+        ++absent;
+      } else {
+        if (non_finite_points_++ == 0) first_non_finite_ = input_points_ + i;
+      }
+      if (out.offsets.empty()) {
+        for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
+        out.offsets.reserve(batch.size());
+      }
+      continue;
+    }
+    std::array<std::int32_t, 3> q;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const double quantum =
+          std::nearbyint((p[axis] - quantisation_.offset[k]) / quantisation_.scale[k]);
+      if (quantum < kLeastQuantum || quantum > kGreatestQuantum) {
+        refuse_beyond_quanta();
+      }
+      q[k] = static_cast<std::int32_t>(quantum);
+      largest_change_ =
+          std::max(largest_change_, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
+    }
+    out.quanta.push_back(q);
+    // Identity until the first dropped point, also where that is the batch's very first one.
+    if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+void EnvironmentSource::refuse_beyond_quanta() const {
+  if (shifts_.empty()) refuse(files()[file_].string(), "changed while it was read");
+  refuse(files()[file_].string(),
+         "too far from the other files for 32-bit integers of " + brief(quantisation_.scale[0]),
+         Remedy::kScale);
+}
+
+EnvironmentSource::Place EnvironmentSource::place_of(std::uint64_t source) const {
+  Place place{0, source};
+  while (place.file + 1 < points_of_files_.size() && place.point >= points_of_files_[place.file]) {
+    place.point -= points_of_files_[place.file++];
+  }
+  return place;
+}
+
+std::optional<std::array<std::int32_t, 3>> EnvironmentSource::origin_of(std::size_t file) const {
+  const auto& own = infos_[file].quantisation;
+  std::array<std::int32_t, 3> out{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double origin = own ? own->offset[k] : 0;
+    const double quantum =
+        std::nearbyint((origin - quantisation_.offset[k]) / quantisation_.scale[k]);
+    if (!(quantum >= kLeastQuantum && quantum <= kGreatestQuantum)) return std::nullopt;
+    out[k] = static_cast<std::int32_t>(quantum);
+  }
+  return out;
+}
+
+}  // namespace clearway

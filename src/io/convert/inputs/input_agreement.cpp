@@ -1,0 +1,168 @@
+#include "io/convert/inputs/input_agreement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/store/store_metadata.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+using Axes = std::array<double, 3>;
+
+constexpr double kCoarseStep = 0.001;  // metres: coarser ones are worth a warning
+
+Axes scale_of(const Quantisation& q) { return {q.scale[0], q.scale[1], q.scale[2]}; }
+
+/// How many quanta `offset` lies above that of `to` on each axis; none where not whole numbers.
+std::optional<std::array<std::int64_t, 3>> whole_shift(const double* offset,
+                                                       const Quantisation& to) {
+  std::array<std::int64_t, 3> shift;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double quanta = (offset[k] - to.offset[k]) / to.scale[k];
+    const double rounded = std::nearbyint(quanta);
+    // A millionth of a quantum is the noise of offsets written in decimal.
+    if (!(std::abs(quanta - rounded) <= 1e-6 && std::abs(rounded) < 0x1p53)) return std::nullopt;
+    shift[k] = static_cast<std::int64_t>(rounded);
+  }
+  return shift;
+}
+
+bool has_integers(const CloudInfo& info) { return info.quantisation.has_value(); }
+
+void warn(CommonCrs& common, const char* code, const std::string& text) {
+  common.warnings.push_back({Message::Severity::kWarning, code, text});
+}
+
+bool has_unit(const CloudInfo& info) { return info.unit != LengthUnit::kUnknown; }
+
+void refuse_units(const std::filesystem::path& file, const CloudInfo& info) {
+  if (!info.unit_trouble.empty()) {
+    refuse(file.string(),
+           info.unit_trouble + "; expected metres or feet for all of them. Convert the scan first",
+           Remedy::kIgnoreCrs);
+  }
+  if (info.unit != LengthUnit::kDegree) return;
+  refuse(file.string(),
+         "its coordinate reference system is in degrees, expected lengths; project the scan first",
+         Remedy::kIgnoreCrs);
+}
+
+[[noreturn]] void refuse_unit(const std::filesystem::path& file, LengthUnit found,
+                              const std::filesystem::path& other, LengthUnit expected) {
+  refuse(file.string(),
+         "its unit of length is " + to_string(found) + ", expected " + to_string(expected) +
+             " as in " + other.string(),
+         Remedy::kIgnoreCrs);
+}
+
+/// The first that any input has. Others are warned of, and none at all is noted.
+void choose_wkt(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                CommonCrs& common) {
+  const auto named = [](const CloudInfo& info) { return !info.crs_wkt.empty(); };
+  const auto first = std::find_if(infos.begin(), infos.end(), named);
+  if (first == infos.end()) return;
+  common.wkt = first->crs_wkt;
+  const std::string source = files[static_cast<std::size_t>(first - infos.begin())].string();
+  std::size_t unnamed = 0;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    if (!named(infos[i])) {
+      ++unnamed;
+    } else if (infos[i].crs_wkt != common.wkt) {
+      warn(common, "other-crs",
+           files[i].string() + ": another coordinate reference system than " + source +
+               "; the first one's is kept");
+    }
+  }
+  if (unnamed == 0) return;
+  common.warnings.push_back({Message::Severity::kNote,
+                             "no-crs",
+                             std::to_string(unnamed) + " of " + std::to_string(infos.size()) +
+                                 " files name no coordinate reference system. They are taken to "
+                                 "be in that of " +
+                                 source,
+                             {{"files", static_cast<double>(unnamed)}}});
+}
+
+}  // namespace
+
+CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                     bool ignore) {
+  CommonCrs common;
+  for (std::size_t i = 0; i < infos.size() && !ignore; ++i) refuse_units(files[i], infos[i]);
+  const auto known = std::find_if(infos.begin(), infos.end(), has_unit);
+  if (known != infos.end()) {
+    common.unit = known->unit;
+    const auto& first = files[static_cast<std::size_t>(known - infos.begin())];
+    for (std::size_t i = 0; i < infos.size() && !ignore; ++i) {
+      // What says nothing is taken for metres.
+      const bool agrees = infos[i].unit == common.unit ||
+                          (!has_unit(infos[i]) && common.unit == LengthUnit::kMetre);
+      if (!agrees) refuse_unit(files[i], infos[i].unit, first, common.unit);
+    }
+  }
+  choose_wkt(files, infos, common);
+  if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
+    warn(common, "feet",
+         "the coordinates are in feet (" + to_string(common.unit) +
+             "): lengths, models and trajectories without a unit of their own are taken in feet "
+             "too");
+  }
+  return common;
+}
+
+std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path> files,
+                                          std::span<const CloudInfo> infos,
+                                          std::optional<double> scale) {
+  const auto kept = std::find_if(infos.begin(), infos.end(), has_integers);
+  if (kept == infos.end()) return std::nullopt;
+  const std::filesystem::path& file = files[static_cast<std::size_t>(kept - infos.begin())];
+  CommonQuanta common{.quantisation = *kept->quantisation, .shifts = {}};
+  const Axes first = scale_of(common.quantisation);
+  if (scale && first != Axes{*scale, *scale, *scale}) return std::nullopt;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const std::optional<Quantisation>& own = infos[i].quantisation;
+    if (!own) {
+      common.shifts.push_back({});
+      continue;
+    }
+    const auto shift =
+        scale_of(*own) == first ? whole_shift(own->offset, common.quantisation) : std::nullopt;
+    if (!shift) {
+      if (scale) return std::nullopt;
+      refuse(files[i].string(), "its scale or offset does not agree with that of " + file.string(),
+             Remedy::kOneScale, first[0]);
+    }
+    common.shifts.push_back(*shift);
+  }
+  return common;
+}
+
+std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> files,
+                                         std::span<const CloudInfo> infos,
+                                         const Quantisation& quantisation) {
+  const auto floating = std::find_if_not(infos.begin(), infos.end(), has_integers);
+  const auto count = infos.size() - static_cast<std::size_t>(
+                                        std::count_if(infos.begin(), infos.end(), has_integers));
+  if (count == 0 || count == infos.size()) return std::nullopt;
+  const auto integers = std::find_if(infos.begin(), infos.end(), has_integers);
+  const double step = *std::max_element(quantisation.scale, quantisation.scale + 3);
+  const bool as_models_are = std::any_of(files.begin(), files.end(), [](const auto& file) {
+    return file.extension() == ".ply" || file.extension() == ".PLY";
+  });
+  return Message{
+      step > kCoarseStep || as_models_are ? Message::Severity::kWarning : Message::Severity::kNote,
+      "floating-point-rounded",
+      std::to_string(count) + " of " + std::to_string(infos.size()) +
+          " files have floating-point coordinates, the first is " +
+          files[static_cast<std::size_t>(floating - infos.begin())].string() +
+          ". They are rounded to the steps of " +
+          files[static_cast<std::size_t>(integers - infos.begin())].string() + ", " + brief(step) +
+          (as_models_are ? ". Is one of them the model? It does not belong among the "
+                           "scans"
+                         : ""),
+      {{"files", static_cast<double>(count)}, {"step", step}}};
+}
+
+}  // namespace clearway

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace clearway {
+
+/// Of a file's coordinates.
+enum class LengthUnit { kUnknown, kMetre, kFoot, kUsSurveyFoot, kDegree };
+
+/// "unknown", "metre", "foot", "us-survey-foot", "degree".
+std::string to_string(LengthUnit unit);
+/// kUnknown for any other text.
+LengthUnit length_unit_of(const std::string& name);
+/// 0 for those that are no lengths of a known size.
+double metres_of(LengthUnit unit);
+
+}  // namespace clearway

@@ -1,0 +1,168 @@
+#include "report/environment_sample.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "io/store/store_reader.hpp"
+
+namespace clearway {
+namespace {
+
+// Surfaces of blocks are counted by their logarithm: a bin is 1/16 of a power of two.
+constexpr int kBinsPerOctave = 16, kLeastOctave = -64, kOctaves = 128;
+constexpr std::size_t kBins = std::size_t{kBinsPerOctave} * kOctaves;
+constexpr double kFill = 0.97;  // of the points asked for: bins are coarser than surfaces
+
+struct NearBlock {
+  std::uint32_t first, count;  ///< points of the cell
+  double surface;              ///< square metres, less for what is far away
+};
+
+/// The product of a box's two longest sides: points of scans lie on surfaces.
+double surface_of(const Box& box) {
+  std::array<double, 3> side{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
+  std::ranges::sort(side);
+  return std::max(side[2], 1e-9) * std::max(side[1], 1e-9);
+}
+
+std::size_t bin_of(double surface) {
+  const double bin = (std::log2(surface) - kLeastOctave) * kBinsPerOctave;
+  return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(kBins - 1)));
+}
+
+double surface_of_bin(std::size_t bin) {
+  return std::exp2((static_cast<double>(bin) + 0.5) / kBinsPerOctave + kLeastOctave);
+}
+
+class Sampler {
+ public:
+  Sampler(const StoreReader& store, const PathPlaces& path, const PageLattice& lattice)
+      : store_(store), path_(path), lattice_(lattice) {}
+
+  /// Counts what is near, by surface.
+  void count(Progress& progress) {
+    progress.begin("environment near the path", store_.cells().size(), "cells");
+    tbb::parallel_for(std::size_t{0}, store_.cells().size(), [&](std::size_t cell) {
+      throw_if_stopped(progress);
+      visit(static_cast<std::uint32_t>(cell), [this](const NearBlock& block, auto&) {
+        near_points_.fetch_add(block.count, std::memory_order_relaxed);
+        bins_[bin_of(block.surface)].fetch_add(1, std::memory_order_relaxed);
+      });
+      progress.advance(1);
+    });
+    progress.end();
+  }
+
+  std::uint64_t near_points() const { return near_points_; }
+
+  /// The area that a point stands for, so that `most` are picked.
+  double area_for(std::uint64_t most) const {
+    double low = 1e-12, high = 1e12;
+    for (int i = 0; i < 80; ++i) {
+      const double area = std::sqrt(low * high);
+      (picked_at(area) > kFill * static_cast<double>(most) ? low : high) = area;
+    }
+    return high;
+  }
+
+  /// area: 0 for all points.
+  std::vector<PagePoint> pick(double area, Progress& progress) const {
+    std::vector<std::vector<PagePoint>> of_cell(store_.cells().size());
+    progress.begin("environment points of the page", of_cell.size(), "cells");
+    tbb::parallel_for(std::size_t{0}, of_cell.size(), [&](std::size_t cell) {
+      throw_if_stopped(progress);
+      pick_cell(static_cast<std::uint32_t>(cell), area, of_cell[cell]);
+      progress.advance(1);
+    });
+    progress.end();
+    std::vector<PagePoint> points;
+    for (const auto& cell : of_cell) points.insert(points.end(), cell.begin(), cell.end());
+    return points;
+  }
+
+ private:
+  /// Calls visit(block, places near the cell) for each block near the path.
+  template <typename Visit>
+  void visit(std::uint32_t cell, const Visit& visit) const {
+    const Cell& info = store_.cells()[cell];
+    std::vector<std::uint32_t> places;
+    path_.near(position_box(store_.quantisation(), info.box), places);
+    if (places.empty()) return;
+    const std::uint64_t first_block = std::uint64_t{cell} * store_.blocks_per_cell();
+    for (std::uint32_t first = 0; first < info.count; first += kBlockPoints) {
+      const BlockBox& packed = store_.blocks()[first_block + first / kBlockPoints];
+      const Box box = position_box(store_.quantisation(), decode_block_box(info.box, packed));
+      const double distance = path_.distance(box, places);
+      if (distance > path_.reach()) continue;
+      const double far = std::max(1.0, distance / path_.dense_reach());
+      visit(NearBlock{first, std::min(kBlockPoints, info.count - first),
+                      surface_of(box) / (far * far)},
+            places);
+    }
+  }
+
+  double picked_at(double area) const {
+    double sum = 0;
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+      const auto blocks = static_cast<double>(bins_[bin].load());
+      sum += blocks * std::min<double>(kBlockPoints, surface_of_bin(bin) / area);
+    }
+    return sum;
+  }
+
+  void pick_cell(std::uint32_t cell, double area, std::vector<PagePoint>& out) const {
+    double owed = 0.5;  // parts of points, carried from block to block
+    std::array<PackedChunk<std::int32_t>, 3> chunks;
+    bool decoded = false;
+    visit(cell, [&](const NearBlock& block, const std::vector<std::uint32_t>& places) {
+      std::uint32_t picked = block.count;
+      if (area > 0) {
+        owed += std::min<double>(block.count, block.surface / area);
+        picked = std::min(block.count, static_cast<std::uint32_t>(owed));
+        owed -= picked;
+      }
+      if (picked == 0) return;
+      if (!decoded) chunks = store_.coordinates(cell);
+      decoded = true;
+      for (std::uint32_t j = 0; j < picked; ++j) {
+        const std::uint32_t i = block.first + (2 * j + 1) * block.count / (2 * picked);
+        add(position(store_.quantisation(), chunks[0][i], chunks[1][i], chunks[2][i]), places, out);
+      }
+    });
+  }
+
+  void add(const Vec3& xyz, const std::vector<std::uint32_t>& places,
+           std::vector<PagePoint>& out) const {
+    const double above = 10 * (xyz.z - path_.nearest(xyz, places).top) + 128;
+    out.push_back(page_point(lattice_, xyz,
+                             static_cast<std::uint8_t>(std::clamp(above, 0.0, 255.0))));
+  }
+
+  const StoreReader& store_;
+  const PathPlaces& path_;
+  const PageLattice& lattice_;
+  std::atomic<std::uint64_t> near_points_ = 0;
+  std::array<std::atomic<std::uint64_t>, kBins> bins_{};  ///< blocks
+};
+
+}  // namespace
+
+EnvironmentSample sample_environment(const Store& store, const PathPlaces& path,
+                                     const PageLattice& lattice, std::uint64_t most,
+                                     Progress& progress) {
+  Sampler sampler(store.reader(), path, lattice);
+  sampler.count(progress);
+  EnvironmentSample out;
+  out.near_points = sampler.near_points();
+  const double area = out.near_points > most ? sampler.area_for(most) : 0;
+  out.spacing = std::sqrt(area);
+  out.points = sampler.pick(area, progress);
+  sort_along_curve(out.points);
+  return out;
+}
+
+}  // namespace clearway

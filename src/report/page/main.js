@@ -1,0 +1,30 @@
+async function start() {
+  if (typeof DecompressionStream === "undefined") {
+    throw new Error("This browser is too old for this page: it needs DecompressionStream " +
+                    "(Chromium 80, Firefox 113, Safari 16.4, or later).");
+  }
+  await readAll();
+  page.path = [];
+  for (let i = 0; i < page.poses.count; ++i) page.path.push(vehicleAt(i).middle);
+  page.enclosed = isEnclosed();
+  const box = page.facts.inputs.model.box;
+  page.vehicleSize = length(plus(box.hi, box.lo, -1));
+  for (const build of [buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildView,
+                       buildPrint]) {
+    build();
+  }
+  const least = page.facts.least_distance;
+  if (worstConflict()) selectConflict(worstConflict());
+  else if (least) selectPose(shownPose(least.pose));
+  // Of a long path the overview shows little.
+  if (worstConflict() && profileLength() < 30 * page.vehicleSize) flyToOverview();
+  document.body.dataset.ready = "true";
+}
+
+start().catch((error) => {
+  const holder = byId("loading") ?? byId("verdict-body");
+  holder.className = "problem";
+  holder.textContent = error.message;
+  document.body.dataset.ready = "failed";
+  console.error(error);
+});

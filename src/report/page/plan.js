@@ -1,0 +1,210 @@
+// The scene from above, cut open where it is enclosed, with the path and the numbered conflicts.
+
+const plan = { centre: [0, 0], halfWidth: 10, turned: false, due: false };
+
+function planBox() {
+  const lo = [Infinity, Infinity], hi = [-Infinity, -Infinity];
+  for (const chunk of [...page.environment.chunks, ...page.points.chunks]) {
+    for (let k = 0; k < 2; ++k) {
+      lo[k] = Math.min(lo[k], chunk.centre[k] - chunk.half[k]);
+      hi[k] = Math.max(hi[k], chunk.centre[k] + chunk.half[k]);
+    }
+  }
+  return lo[0] <= hi[0] ? { lo, hi } : { lo: [-1, -1], hi: [1, 1] };
+}
+
+/** A view of all; the longer side lies across the page. */
+function fitPlan() {
+  const { lo, hi } = planBox(), canvas = byId("plan-canvas");
+  const size = [hi[0] - lo[0], hi[1] - lo[1]];
+  plan.turned = size[1] > 1.25 * size[0];
+  plan.centre = [(lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2];
+  const [across, high] = plan.turned ? [size[1], size[0]] : size;
+  plan.halfWidth = 0.52 * Math.max(across, high * canvas.width / canvas.height);
+  schedulePlan();
+}
+
+function planCamera(canvas) {
+  const right = plan.turned ? [0, 1, 0] : [1, 0, 0], up = plan.turned ? [-1, 0, 0] : [0, 1, 0];
+  return { origin: [...plan.centre, 0], right, up, toViewer: [0, 0, 1], distance: 0,
+           halfWidth: plan.halfWidth, halfHeight: plan.halfWidth * canvas.height / canvas.width };
+}
+
+function drawPath(context, painter, unitSize) {
+  const n = page.poses.count, stride = Math.max(1, Math.floor(n / 3000));
+  for (const [style, wide] of [["rgba(255,255,255,0.85)", 4.5], ["#111827", 1.8]]) {
+    context.strokeStyle = style;
+    context.lineWidth = wide * unitSize;
+    context.lineJoin = "round";
+    context.beginPath();
+    for (let i = 0; i < n; i += i + stride < n || i === n - 1 ? stride : n - 1 - i) {
+      const at = painter.project(page.path[i]);
+      if (at) context.lineTo(at[0], at[1]);
+    }
+    context.stroke();
+  }
+}
+
+/** The numbers of conflicts, the worst ones first; those without room become dots. */
+function drawNumbers(context, painter, unitSize, places) {
+  const worst = worstConflict();
+  const order = [...conflictList()].sort((a, b) => (b === page.conflict) - (a === page.conflict) ||
+      (b === worst) - (a === worst) || (b.encroachment ?? 0) - (a.encroachment ?? 0) ||
+      b.points - a.points);
+  const taken = [], dots = [];
+  for (const conflict of order) {
+    const at = painter.project(placeOf(conflict));
+    if (!at || at[0] < 0 || at[1] < 0 || at[0] > painter.width || at[1] > painter.height) continue;
+    const free = taken.every(([x, y]) => Math.hypot(x - at[0], y - at[1]) > 21 * unitSize);
+    (free ? taken : dots).push(at);
+    at.conflict = conflict;
+  }
+  for (const at of dots) drawNumber(context, at, at.conflict, false, unitSize);
+  for (const at of taken.reverse()) {
+    drawNumber(context, at, at.conflict, true, unitSize);
+    places.push({ x: at[0], y: at[1], conflict: at.conflict });
+  }
+}
+
+function drawNumber(context, [x, y], conflict, full, unitSize) {
+  const chosen = conflict === page.conflict, radius = (full ? (chosen ? 12 : 9.5) : 3) * unitSize;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 7);
+  context.fillStyle = chosen ? "#111827" : classOf(conflict.least_distance).colour;
+  context.globalAlpha = full ? 1 : 0.6;
+  context.fill();
+  context.globalAlpha = 1;
+  if (!full) return;
+  context.strokeStyle = "#fff";
+  context.lineWidth = 1.6 * unitSize;
+  context.stroke();
+  context.fillStyle = "#fff";
+  context.textAlign = "center";
+  setFont(context, (conflict.id > 99 ? 9 : 11) * unitSize, "700");
+  context.fillText(String(conflict.id), x, y + 4 * unitSize);
+}
+
+function drawVehicleMark(context, painter, unitSize) {
+  if (page.poses.count === 0) return;
+  const v = vehicleAt(page.pose);
+  const corner = (a, b) => painter.project(plus(plus(v.middle, v.forward, a * v.length / 2), v.left,
+                                                b * v.width / 2));
+  const corners = [corner(-1, -1), corner(-1, 1), corner(0.6, 1), corner(1, 0), corner(0.6, -1)];
+  context.beginPath();
+  for (const c of corners) if (c) context.lineTo(c[0], c[1]);
+  context.closePath();
+  context.fillStyle = "rgba(0,115,92,0.75)";
+  context.fill();
+  context.strokeStyle = "#003d31";
+  context.lineWidth = 1.5 * unitSize;
+  context.stroke();
+}
+
+/** Which way y points, where the plan is turned and where it is not. */
+function drawAxes(context, unitSize) {
+  const x = context.canvas.width - 34 * unitSize, y = 40 * unitSize, long = 24 * unitSize;
+  context.strokeStyle = context.fillStyle = "#111827";
+  context.lineWidth = 1.6 * unitSize;
+  setFont(context, 12 * unitSize, "600");
+  const axes = plan.turned ? [["x", 0, 1], ["y", 1, 0]] : [["x", 1, 0], ["y", 0, -1]];
+  for (const [name, dx, dy] of axes) {
+    context.beginPath();
+    context.moveTo(x - long / 2, y);
+    context.lineTo(x - long / 2 + dx * long, y + dy * long);
+    context.stroke();
+    haloText(context, name, x - long / 2 + dx * (long + 9 * unitSize),
+             y + dy * (long + 9 * unitSize) + 4 * unitSize, "center");
+  }
+}
+
+/** Draws the plan as it is now. */
+function paintPlan(canvas, unitSize) {
+  const context = canvas.getContext("2d"), painter = new Painter(canvas.width, canvas.height,
+                                                                 planCamera(canvas));
+  context.fillStyle = kBackground;
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  const { tag } = page.environment, size = Math.max(1, Math.round(1.4 * unitSize));
+  const cut = page.enclosed ? (i) => tag[i] <= 128 + 2 : undefined;
+  paintEnvironment(painter, { stamp: stampOf("square", size), keep: cut });
+  painter.shade(0.8);
+  painter.show(context);
+  drawPath(context, painter, unitSize);
+  const marks = new Painter(canvas.width, canvas.height, planCamera(canvas));
+  paintClasses(marks, { over: true, size: size + 2 });
+  marks.show(context);
+  drawVehicleMark(context, painter, unitSize);
+  plan.places = [];
+  drawNumbers(context, painter, unitSize, plan.places);
+  drawScaleBar(context, painter.perMetre, unitSize);
+  drawAxes(context, unitSize);
+}
+
+function schedulePlan() {
+  if (plan.due) return;
+  plan.due = true;
+  requestAnimationFrame(() => {
+    plan.due = false;
+    const canvas = byId("plan-canvas");
+    if (canvas.width > 0 && canvas.height > 0) {
+      paintPlan(canvas, canvas.width / canvas.clientWidth || 1);
+    }
+  });
+}
+
+function sizePlan() {
+  const canvas = byId("plan-canvas"), stage = byId("plan-stage"), box = planBox();
+  const size = [box.hi[0] - box.lo[0], box.hi[1] - box.lo[1]];
+  const ratio = Math.min(...size) / Math.max(...size);
+  const height = clamp(stage.clientWidth * ratio * 1.05, 260, Math.min(720, 0.72 * innerHeight));
+  const scale = Math.min(2, devicePixelRatio || 1);
+  canvas.style.height = `${height}px`;
+  canvas.width = Math.round(stage.clientWidth * scale);
+  canvas.height = Math.round(height * scale);
+}
+
+function zoomPlan(factor, at) {
+  const canvas = byId("plan-canvas"), camera = planCamera(canvas);
+  const u = at ? 2 * at[0] - 1 : 0, v = at ? 1 - 2 * at[1] : 0;
+  const shift = (half) => plus(times(camera.right, u * half * (1 - factor)), camera.up,
+                               v * half * (1 - factor) * canvas.height / canvas.width);
+  const d = shift(plan.halfWidth);
+  plan.halfWidth = clamp(plan.halfWidth * factor, 0.5, 1e5);
+  plan.centre = [plan.centre[0] + d[0], plan.centre[1] + d[1]];
+  schedulePlan();
+}
+
+/** Moves the plan by parts of its width and height. */
+function panPlan(dx, dy) {
+  const canvas = byId("plan-canvas"), camera = planCamera(canvas);
+  const d = plus(times(camera.right, -2 * dx * camera.halfWidth), camera.up,
+                 2 * dy * camera.halfHeight);
+  plan.centre = [plan.centre[0] + d[0], plan.centre[1] + d[1]];
+  schedulePlan();
+}
+
+function buildPlan() {
+  const canvas = make("canvas", { id: "plan-canvas", tabindex: 0, role: "application",
+                                  "aria-label": "Plan. Arrow keys move it, plus and minus zoom, 0 shows all." });
+  byId("plan-stage").append(canvas);
+  byId("plan-tools").append(
+    button("Zoom in", () => zoomPlan(0.6)), button("Zoom out", () => zoomPlan(1 / 0.6)),
+    button("All", fitPlan),
+    make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, a number opens its conflict."));
+  byId("plan-note").textContent = environmentNote() + (page.enclosed
+      ? " The scene is enclosed, so what lies above the vehicle is left out." : "");
+  watchPointer(canvas, panPlan, zoomPlan, (x, y) => pickNumber(plan.places, canvas, x, y));
+  canvas.addEventListener("keydown", (event) => {
+    const actions = { ArrowLeft: () => panPlan(0.1, 0), ArrowRight: () => panPlan(-0.1, 0),
+                      ArrowUp: () => panPlan(0, 0.1), ArrowDown: () => panPlan(0, -0.1),
+                      "+": () => zoomPlan(0.6), "=": () => zoomPlan(0.6),
+                      "-": () => zoomPlan(1 / 0.6), "0": fitPlan };
+    if (!actions[event.key]) return;
+    event.preventDefault();
+    actions[event.key]();
+  });
+  sizePlan();
+  fitPlan();
+  on("pose", schedulePlan);
+  on("conflict", schedulePlan);
+  new ResizeObserver(() => { sizePlan(); fitPlan(); }).observe(byId("plan-stage"));
+}

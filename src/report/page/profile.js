@@ -1,0 +1,203 @@
+// The least distance of every pose against chainage, with the required distance and the conflicts.
+
+const profile = { from: 0, to: 1, width: 1000, height: 300, left: 62, right: 16, top: 14, bottom: 62 };
+
+function profileX(chainage) {
+  const inner = profile.width - profile.left - profile.right;
+  return profile.left + inner * (chainage - profile.from) / (profile.to - profile.from);
+}
+
+function profileTop() {
+  const { query } = page.facts;
+  return Math.max(1.25 * query.radius, query.profile > 0 ? query.profile : query.clearance);
+}
+
+function profileY(distance) {
+  const inner = profile.height - profile.top - profile.bottom;
+  return profile.top + inner * (1 - Math.min(distance, profileTop()) / profileTop());
+}
+
+function profileLength() {
+  return Math.max(page.facts.inputs.trajectory.length, 1e-3);
+}
+
+/** Values at round steps from a to b. */
+function ticks(a, b, most) {
+  const step = [1, 2, 5, 10].map((f) => f * 10 ** Math.floor(Math.log10((b - a) / most)))
+      .find((s) => (b - a) / s <= most) ?? (b - a);
+  const out = [];
+  for (let k = Math.ceil(a / step - 1e-9); k * step <= b + 1e-9 * step; ++k) {
+    out.push(+(k * step).toPrecision(12));
+  }
+  return out;
+}
+
+/** The line of the profile: for each pixel column the least and the greatest, as a path. */
+function profileLine() {
+  const { chainage } = page.poses, n = page.poses.count, bins = new Map();
+  for (let i = 0; i < n; ++i) {
+    if (chainage[i] < profile.from || chainage[i] > profile.to) continue;
+    const d = distanceAt(i) ?? profileTop(), x = Math.round(profileX(chainage[i]) * 2) / 2;
+    const bin = bins.get(x);
+    if (bin) { bin[0] = Math.min(bin[0], d); bin[1] = Math.max(bin[1], d); bin[2] = d; }
+    else bins.set(x, [d, d, d]);
+  }
+  const points = [];
+  for (const [x, [lo, hi, last]] of bins) {
+    points.push([x, hi]);
+    if (lo < hi) points.push([x, lo], [x, last]);
+  }
+  return points;
+}
+
+function profileAxes() {
+  const { width, height, left, right, bottom, top } = profile, out = [];
+  for (const d of ticks(0, profileTop(), 6)) {
+    out.push(make("line", { x1: left, x2: width - right, y1: profileY(d), y2: profileY(d),
+                            class: "grid" }),
+             make("text", { x: left - 6, y: profileY(d) + 4, class: "end" }, String(d)));
+  }
+  const wide = width / 90;
+  for (const c of ticks(profile.from, profile.to, wide)) {
+    out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: height - bottom,
+                            class: "grid" }),
+             make("text", { x: profileX(c), y: height - bottom + 16, class: "middle" }, String(c)));
+  }
+  out.push(make("text", { x: width - right, y: height - 6, class: "end" },
+                `chainage (${unitSymbol})`),
+           make("text", { x: 14, y: (top + height - bottom) / 2, class: "middle",
+                          transform: `rotate(-90 14 ${(top + height - bottom) / 2})` },
+                `least distance (${unitSymbol})`));
+  return out;
+}
+
+function profileCurve() {
+  if (!page.poses.distance || page.poses.count === 0) return [];
+  const points = profileLine(), radius = page.facts.query.radius;
+  if (points.length === 0) return [];
+  const line = points.map(([x, d], i) => `${i ? "L" : "M"}${x} ${profileY(d).toFixed(1)}`).join("");
+  const low = points.map(([x, d]) => `L${x} ${profileY(Math.min(d, radius)).toFixed(1)}`).join("");
+  const area = `M${points[0][0]} ${profileY(radius)}${low}L${points.at(-1)[0]} ${profileY(radius)}Z`;
+  return [make("path", { d: area, fill: "url(#hatch)", stroke: "none" }),
+          make("path", { d: line, class: "curve" })];
+}
+
+/** Conflicts as bars below the axis, numbered where there is room. */
+function profileConflicts() {
+  const out = [], y = profile.height - profile.bottom + 24;
+  let free = -Infinity;
+  const worst = worstConflict();
+  for (const conflict of conflictList()) {
+    if (conflict.chainage_to < profile.from || conflict.chainage_from > profile.to) continue;
+    const x1 = clamp(profileX(conflict.chainage_from), profile.left, profile.width - profile.right);
+    const x2 = clamp(profileX(conflict.chainage_to), profile.left, profile.width - profile.right);
+    const chosen = conflict === page.conflict, words = classOf(conflict.least_distance);
+    const width = Math.max(3, x2 - x1), middle = x1 + width / 2;
+    const label = chosen || middle - free > 26;
+    if (label) free = middle;
+    const extra = conflict === worst ? " (worst)" : "";
+    out.push(make("g", { class: chosen ? "mark chosen" : "mark",
+                         onclick: (event) => { event.stopPropagation(); selectConflict(conflict); } },
+      make("rect", { x: x1, y, width, height: 7, fill: words.colour }),
+      label && make("text", { x: middle, y: y + 21, class: "middle" }, `${conflict.id}`),
+      make("title", {}, `Conflict ${conflict.id}${extra}`)));
+  }
+  return out;
+}
+
+function profileRequired() {
+  const y = profileY(page.facts.query.radius), { left, width, right } = profile;
+  return [make("line", { x1: left, x2: width - right, y1: y, y2: y, class: "required" }),
+          make("text", { x: width - right - 4, y: y - 5, class: "end strong" },
+               `required ${shortLength(page.facts.query.radius)}`)];
+}
+
+function drawProfile() {
+  const holder = byId("profile-chart"), { query } = page.facts;
+  profile.width = Math.max(520, holder.clientWidth || 1000);
+  profile.height = clamp(profile.width * 0.24, 220, 420);
+  const { width, height, left, right, top, bottom } = profile;
+  const hatch = make("pattern", { id: "hatch", width: 7, height: 7, patternUnits: "userSpaceOnUse",
+                                  patternTransform: "rotate(45)" },
+                     make("rect", { width: 7, height: 7, fill: "#fbd9c6" }),
+                     make("line", { x1: 0, y1: 0, x2: 0, y2: 7, stroke: "#c2410c",
+                                    "stroke-width": 2.5 }));
+  const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, tabindex: 0,
+                            role: "application", "aria-label": profileLabel() },
+    make("defs", {}, hatch),
+    make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom,
+                   class: "field" }),
+    profileAxes(), profileCurve(), profileRequired(), profileConflicts(),
+    make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
+  if (!(query.profile > 0)) {
+    svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong" },
+                    "The result has no profile: clearway run --profile D adds this curve."));
+  }
+  const focused = holder.contains(document.activeElement);
+  holder.replaceChildren(svg);
+  watchProfile(svg);
+  if (focused) svg.focus();
+  moveProfileCursor();
+}
+
+function profileLabel() {
+  return "Least distance against chainage. Arrow keys go from pose to pose, plus and minus zoom, " +
+      "0 shows all.";
+}
+
+function zoomProfile(factor, at) {
+  const all = profileLength(), span = clamp((profile.to - profile.from) * factor, all / 5000, all);
+  const centre = at ?? page.poses.chainage[page.pose] ?? all / 2;
+  const share = clamp((centre - profile.from) / (profile.to - profile.from), 0, 1);
+  profile.from = clamp(centre - share * span, 0, all - span);
+  profile.to = profile.from + span;
+  drawProfile();
+}
+
+function panProfile(metresAlong) {
+  const span = profile.to - profile.from;
+  profile.from = clamp(profile.from + metresAlong, 0, profileLength() - span);
+  profile.to = profile.from + span;
+  drawProfile();
+}
+
+function chainageAt(svg, event) {
+  const box = svg.getBoundingClientRect();
+  const x = (event.clientX - box.left) * profile.width / box.width;
+  const inner = profile.width - profile.left - profile.right;
+  return profile.from + (x - profile.left) / inner * (profile.to - profile.from);
+}
+
+function watchProfile(svg) {
+  svg.addEventListener("pointermove", (event) => {
+    const chainage = clamp(chainageAt(svg, event), 0, profileLength());
+    if (event.buttons & 1) {
+      panProfile((profile.grip ?? chainage) - chainage);
+    } else if (page.poses.count > 0) {
+      showProfileValue(poseAtChainage(chainage));
+    }
+  });
+  svg.addEventListener("pointerdown", (event) => { profile.grip = chainageAt(svg, event); });
+  svg.addEventListener("pointerleave", () => showProfileValue(page.pose));
+  svg.addEventListener("click", (event) => selectPose(poseAtChainage(chainageAt(svg, event))));
+  svg.addEventListener("dblclick", () => zoomProfile(1e9));
+  svg.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && document.activeElement !== svg) return;  // the page scrolls
+    event.preventDefault();
+    zoomProfile(event.deltaY > 0 ? 1.25 : 0.8, chainageAt(svg, event));
+  }, { passive: false });
+  svg.addEventListener("keydown", profileKey);
+}
+
+function profileKey(event) {
+  const far = event.shiftKey ? 50 : 1;
+  const actions = {
+    ArrowRight: () => selectPose(page.pose + far), ArrowLeft: () => selectPose(page.pose - far),
+    Home: () => selectPose(0), End: () => selectPose(page.poses.count - 1),
+    "+": () => zoomProfile(0.5), "=": () => zoomProfile(0.5), "-": () => zoomProfile(2),
+    "0": () => zoomProfile(1e9),
+  };
+  if (!actions[event.key]) return;
+  event.preventDefault();
+  actions[event.key]();
+}

@@ -1,0 +1,64 @@
+// Where the vehicle is on the profile, and what the profile says there.
+
+function profileValueWords(i) {
+  const d = distanceAt(i), { query } = page.facts;
+  if (d === undefined) return "";
+  if (d === null) return `: nothing closer than ${shortLength(query.profile)}`;
+  const missing = query.radius - d;
+  return `: ${metres(d)}` + (missing > 0 ? `, ${metres(missing)} missing` : ", enough");
+}
+
+function showProfileValue(i) {
+  if (page.poses.count === 0) return;
+  let text = poseLabel(i) + profileValueWords(i);
+  const d = distanceAt(i);
+  if (d !== undefined && d !== null) {
+    const step = page.facts.page.lattice.step, { px, py, pz } = page.poses;
+    text += `. Nearest point: ${coordinates(inScan([px[i] * step, py[i] * step, pz[i] * step]))}`;
+  }
+  byId("profile-readout").textContent = text[0].toUpperCase() + text.slice(1);
+  placeProfileCursor(i);
+}
+
+function placeProfileCursor(i) {
+  const line = byId("profile-cursor"), chainage = page.poses.chainage[i];
+  if (!line) return;
+  const inside = chainage >= profile.from && chainage <= profile.to;
+  line.setAttribute("visibility", inside ? "visible" : "hidden");
+  line.setAttribute("x1", profileX(chainage));
+  line.setAttribute("x2", profileX(chainage));
+}
+
+/** The chosen pose stays in sight. */
+function moveProfileCursor() {
+  if (page.poses.count === 0) return;
+  const chainage = page.poses.chainage[page.pose], span = profile.to - profile.from;
+  if (chainage < profile.from || chainage > profile.to) {
+    profile.from = clamp(chainage - span / 2, 0, profileLength() - span);
+    profile.to = profile.from + span;
+    drawProfile();
+    return;
+  }
+  showProfileValue(page.pose);
+}
+
+function buildProfile() {
+  profile.from = 0;
+  profile.to = profileLength();
+  byId("profile-tools").append(
+    button("Zoom in", () => zoomProfile(0.5)), button("Zoom out", () => zoomProfile(2)),
+    button("All", () => zoomProfile(1e9)),
+    page.poses.distance && button("Nearest pose", () => {
+      const list = page.poses.distance;
+      let best = -1;
+      list.forEach((d, i) => { if (d >= 0 && (best < 0 || d < list[best])) best = i; });
+      if (best >= 0) selectPose(best);
+    }) || "",
+    make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, arrow keys step."));
+  drawProfile();
+  on("pose", moveProfileCursor);
+  on("conflict", drawProfile);
+  new ResizeObserver(() => {
+    if (Math.abs(byId("profile-chart").clientWidth - profile.width) > 8) drawProfile();
+  }).observe(byId("profile-chart"));
+}

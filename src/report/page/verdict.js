@@ -1,0 +1,169 @@
+function verdictSymbol(clear) {
+  return clear
+      ? make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
+             make("circle", { cx: 32, cy: 32, r: 30, fill: "currentColor" }),
+             make("path", { d: "M17 33 L28 44 L48 21", fill: "none", stroke: "#fff",
+                            "stroke-width": 7, "stroke-linecap": "round" }))
+      : make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
+             make("polygon", { points: "20,2 44,2 62,20 62,44 44,62 20,62 2,44 2,20",
+                               fill: "currentColor" }),
+             make("path", { d: "M21 21 L43 43 M43 21 L21 43", stroke: "#fff", "stroke-width": 7,
+                            "stroke-linecap": "round" }));
+}
+
+function tile(value, label, action) {
+  const content = [make("strong", {}, value), make("span", {}, label)];
+  return action ? make("button", { type: "button", class: "tile", onclick: action }, ...content)
+                : make("div", { class: "tile" }, ...content);
+}
+
+function goTo(conflict) {
+  selectConflict(conflict);
+  byId("conflicts").scrollIntoView();
+}
+
+function conflictTiles() {
+  const { facts } = page, worst = worstConflict(), tiles = [];
+  if (facts.conflicts) tiles.push(tile(count(facts.conflicts.count), "conflicts"));
+  tiles.push(tile(count(facts.colliding_points), "colliding points"));
+  if (worst) {
+    const missing = worst.encroachment;
+    tiles.push(tile(missing === null ? plural(worst.points, "point") : metres(missing),
+                    missing === null ? "most in one conflict" : "missing at the worst place"));
+    tiles.push(tile(`No. ${worst.id}`,
+                    `worst: chainage ${station(stationOf(worst))}${after(kSides[worst.side])}. Show it`,
+                    () => goTo(worst)));
+  }
+  return tiles;
+}
+
+function clearTiles() {
+  const { least_distance: least, query, inputs } = page.facts, tiles = [];
+  if (least) {
+    tiles.push(tile(metres(least.distance), "least distance found"));
+    tiles.push(tile(station(least.chainage), "chainage of it. Show it", () => {
+      selectPose(shownPose(least.pose));
+      byId("view").scrollIntoView();
+      tell("overview");
+    }));
+  } else if (Math.max(query.clearance, query.profile) > 0) {
+    tiles.push(tile(`over ${shortLength(Math.max(query.clearance, query.profile))}`,
+                    "least distance: nothing is closer"));
+  } else {
+    tiles.push(tile("not known", "least distance, see below"));
+  }
+  tiles.push(tile(station(inputs.trajectory.length), "path searched"));
+  return tiles;
+}
+
+function verdictSentences() {
+  const { facts } = page, radius = shortLength(facts.query.radius), worst = worstConflict();
+  if (facts.verdict === "clear") {
+    return [`Every point of the environment keeps at least ${radius} from the vehicle, ` +
+            `at all ${plural(facts.inputs.trajectory.poses, "pose")}.`, leastSentence()];
+  }
+  const where = facts.conflicts ? ` at ${plural(facts.conflicts.count, "place")}` : "";
+  const first = `The environment is closer than ${radius} to the vehicle${where}.`;
+  if (!worst) return [first, leastSentence()];
+  const worstText = worst.least_distance === null
+      ? `Conflict ${worst.id} has the most points, at chainage ${station(worst.chainage_from)}` +
+        `${after(sideWords(worst.side))}.`
+      : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
+        `${after(sideWords(worst.side))}: ${metres(worst.least_distance)} instead of ${radius}.`;
+  return [first, worstText];
+}
+
+function cautions() {
+  const { facts } = page;
+  const out = facts.warnings.map((w) => w.message[0].toUpperCase() + w.message.slice(1) + ".");
+  const { conflicts, inputs, query } = facts;
+  if (!query.exact) {
+    out.push("The result is not exact: it was made with a tolerance or in single precision.");
+  }
+  if (conflicts && inputs.trajectory.length > 0 && conflicts.longest_group > 5 &&
+      conflicts.longest_group > 0.5 * inputs.trajectory.length) {
+    out.push(`One group of touching points goes along ${station(conflicts.longest_group)} of the ` +
+             `path's ${station(inputs.trajectory.length)}. That is often the ground below the ` +
+             "wheels. clearway run --model-above leaves out what stands on the ground.");
+  }
+  return out;
+}
+
+function factRow(name, ...value) {
+  return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...value));
+}
+
+function crsName(wkt) {
+  const name = /^[A-Z]+\["([^"]+)"/.exec(wkt);
+  return name ? name[1] : wkt ? "named in the scans" : "none given";
+}
+
+function questionTable() {
+  const { inputs, query, unit } = page.facts;
+  const hash = (text) => make("code", {}, text);
+  const box = inputs.model.box;
+  const size = box.hi.map((h, k) => (h - box.lo[k]).toFixed(2)).join(" × ");
+  return make("table", { class: "facts" }, make("tbody", {},
+    factRow("Question", `Does anything come closer than ${shortLength(query.radius)} to the ` +
+            (query.between_poses ? "vehicle, at its poses and between them?"
+                                 : "vehicle, at any of its poses?")),
+    factRow("Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points ` +
+            `of ${plural(inputs.environment.files, "file")}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
+            `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
+    factRow("Vehicle", `${inputs.model.name}: ${count(inputs.model.points)} points, ` +
+            `${size} ${unitSymbol}. `, hash(inputs.model.hash)),
+    factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
+            `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
+    factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
+    factRow("Asked for", askedFor(query))));
+}
+
+function askedFor(query) {
+  const parts = [`required distance ${shortLength(query.radius)}`];
+  if (query.clearance > 0) parts.push(`clearances up to ${shortLength(query.clearance)}`);
+  if (query.profile > 0) parts.push(`profile up to ${shortLength(query.profile)}`);
+  parts.push(query.first_pose ? "first poses" : "no first poses");
+  return parts.join(", ");
+}
+
+function legend() {
+  const rows = page.facts.classes.map((c, k) => {
+    const words = kClassWords[c.name], from = k > 0 ? page.facts.classes[k - 1].below : 0;
+    const range = k > 0 ? `${shortLength(from)} to ${shortLength(c.below)}`
+                        : `below ${shortLength(c.below)}`;
+    const thinned = c.shown < c.points ? `, of which ${count(c.shown)} are drawn` : "";
+    return make("li", {}, make("span", { style: `color:${words.colour}`, class: "symbol" },
+                               words.symbol),
+                ` ${c.name}: ${range}, ${plural(c.points, "point")}${thinned}`);
+  });
+  return make("ul", { class: "legend" }, rows,
+              make("li", {}, make("span", { style: `color:${kModelColour}`, class: "symbol" }, "■"),
+                   " vehicle"),
+              make("li", {}, make("span", { style: "color:#7a828c", class: "symbol" }, "■"),
+                   " environment"));
+}
+
+function buildVerdict() {
+  const { facts } = page, clear = facts.verdict === "clear";
+  const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
+  byId("made").textContent = `Made ${facts.date} by Clearway ${facts.clearway}`;
+  byId("loading").remove();
+  byId("verdict-body").append(
+    make("div", { class: `banner ${facts.verdict}` }, verdictSymbol(clear),
+         make("div", { class: "words" }, make("h2", { id: "verdict-word" }, clear ? "Clear" : "Conflict"),
+              make("p", {}, first), make("p", {}, second),
+              warned.length > 0 &&
+                  make("p", { class: "but" },
+                       `${clear ? "But see" : "See also"} ${plural(warned.length, "warning")} below.`)),
+         make("div", { class: "tiles" }, clear ? clearTiles() : conflictTiles())),
+    warned.length > 0 && make("ul", { class: "warnings", "aria-label": "Warnings" },
+                              warned.map((text) => make("li", {}, text))),
+    make("div", { class: "columns" }, questionTable(),
+         make("div", {}, legend(),
+              missing.length > 0 && make("div", { class: "missing" },
+                  make("p", {}, "This page could say more:"),
+                  make("ul", {}, missing.map((m) => make("li", {}, `${m.what}: ${m.why}. `,
+                                                         make("code", {}, m.how), " adds them.")))))));
+  byId("footer").textContent = "All data of this page is in this one file. Lengths are in the unit " +
+      `of the scans (${unitSymbol}). Chainage counts from the first pose along the path.`;
+}

@@ -1,0 +1,92 @@
+const unitSymbol = { metre: "m", foot: "ft", "us-survey-foot": "ft", degree: "°" }[page.facts.unit]
+    ?? "m";
+const kClassWords = {
+  hit: { symbol: "◆", colour: "#c2410c", rgb: [213, 70, 0] },
+  near: { symbol: "▲", colour: "#a16207", rgb: [240, 170, 0] },
+  watch: { symbol: "●", colour: "#0369a1", rgb: [0, 114, 190] },
+};
+const kModelColour = "#00735c", kModelRgb = [0, 140, 110];
+
+const count = (n) => Math.round(n).toLocaleString("en-US");
+const plural = (n, one, many = one + "s") => `${count(n)} ${n === 1 ? one : many}`;
+const metres = (v, digits = 3) => v === null || v === undefined ? "unknown"
+    : `${v.toFixed(digits)} ${unitSymbol}`;
+const station = (v) => metres(v, 2);
+const shortLength = (v) => `${+v.toPrecision(4)} ${unitSymbol}`;
+const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
+
+const kSides = { left: "left", right: "right", above: "above", below: "below", front: "in front",
+                 behind: "behind", unknown: "" };
+const sideWords = (side) => ({ left: "on the left", right: "on the right", above: "above it",
+                               below: "below it", front: "in front of it", behind: "behind it" })[side]
+    ?? "";
+
+/** ", text", or nothing. */
+const after = (text) => text ? `, ${text}` : "";
+
+/** Where along the path a conflict is nearest, or else where it begins. */
+function stationOf(conflict) {
+  return conflict.nearest_pose === null ? conflict.chainage_from
+      : page.poses.chainage[shownPose(conflict.nearest_pose)];
+}
+
+/** The class of a distance: {name, below, ...words}; the last one for distances beyond all. */
+function classOf(distance) {
+  const classes = page.facts.classes, radius = page.facts.query.radius;
+  const found = classes.find((c) => distance === null ? c.below >= radius : distance < c.below);
+  const chosen = found ?? classes[classes.length - 1];
+  return { ...chosen, ...kClassWords[chosen.name] };
+}
+
+/** What would say more, and how to get it. */
+function missingParts() {
+  const { query, conflicts } = page.facts, out = [];
+  const distance = shortLength(+(Math.max(5 * query.radius, 0.5)).toPrecision(2)).split(" ")[0];
+  if (!conflicts) {
+    out.push({ what: "Places of conflicts", why: "the result has no first poses",
+               how: "clearway run --first-pose" });
+  }
+  if (!(query.clearance > 0)) {
+    out.push({ what: "How much is missing at each place",
+               why: "the result has no clearances", how: `clearway run --clearance ${distance}` });
+  }
+  if (!(query.profile > 0)) {
+    out.push({ what: "The least distance along the path", why: "the result has no profile",
+               how: `clearway run --profile ${distance}` });
+  }
+  return out;
+}
+
+function leastSentence() {
+  const { least_distance: least, query } = page.facts;
+  if (least) {
+    return `The least distance is ${metres(least.distance)}, at chainage ` +
+        `${station(least.chainage)} (pose ${least.pose}).`;
+  }
+  const looked = Math.max(query.clearance, query.profile);
+  if (looked > 0) return `Nothing is closer than ${shortLength(looked)}.`;
+  return "How close it comes is not known: run again with --profile or --clearance.";
+}
+
+function worstConflict() {
+  const found = page.facts.conflicts;
+  return found && found.worst !== null ? found.list.find((c) => c.id === found.worst) : null;
+}
+
+function poseLabel(i) {
+  const poses = page.poses;
+  const parts = [`pose ${count(poses.index[i])}`, `chainage ${station(poses.chainage[i])}`];
+  if (poses.name && poses.name[i]) parts.push(poses.name[i]);
+  if (poses.time) {
+    const facts = page.facts.page;
+    parts.push(`time ${(poses.time[i] * facts.time_step + facts.time_origin).toFixed(2)} s`);
+  }
+  return parts.join(", ");
+}
+
+/** Metres of the profile at shown pose i: null where none was found, undefined without profile. */
+function distanceAt(i) {
+  if (!page.poses.distance) return undefined;
+  const d = page.poses.distance[i];
+  return d < 0 ? null : d * page.facts.page.distance_step;
+}

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+/// The files of src/report/page, as the build put them into the program.
+namespace clearway::page_parts {
+
+extern const std::string_view kHtml, kStyle, kScript;
+
+}  // namespace clearway::page_parts

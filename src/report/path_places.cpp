@@ -1,0 +1,82 @@
+#include "report/path_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/box.hpp"
+#include "core/geometry/predicate.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr double kLeastMargin = 10, kMostMargin = 40;  // metres beside the model
+constexpr double kDiagonalsInMargin = 3;
+constexpr double kDenseMargin = 2;
+constexpr std::size_t kMostPlaces = 5'000;
+
+double length(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
+
+Vec3 corner(const Box& box, unsigned which) {
+  return {(which & 1) != 0 ? box.hi.x : box.lo.x, (which & 2) != 0 ? box.hi.y : box.lo.y,
+          (which & 4) != 0 ? box.hi.z : box.lo.z};
+}
+
+double top_at(const Box& model, const Pose& pose) {
+  double top = -std::numeric_limits<double>::infinity();
+  for (unsigned k = 0; k < 8; ++k) top = std::max(top, transform(pose, corner(model, k)).z);
+  return top;
+}
+
+double path_length(std::span<const Vec3> centres) {
+  double sum = 0;
+  for (std::size_t i = 1; i < centres.size(); ++i) sum += length(centres[i - 1], centres[i]);
+  return sum;
+}
+
+}  // namespace
+
+Vec3 box_centre_at(const Box& model, const Pose& pose) {
+  return transform(pose, {(model.lo.x + model.hi.x) / 2, (model.lo.y + model.hi.y) / 2,
+                      (model.lo.z + model.hi.z) / 2});
+}
+
+PathPlaces::PathPlaces(const Box& model, std::span<const Pose> poses)
+    : half_diagonal_(length(model.lo, model.hi) / 2),
+      reach_(half_diagonal_ +
+             std::clamp(2 * kDiagonalsInMargin * half_diagonal_, kLeastMargin, kMostMargin)),
+      dense_reach_(half_diagonal_ + kDenseMargin) {
+  std::vector<Vec3> centres;
+  centres.reserve(poses.size());
+  for (const Pose& pose : poses) centres.push_back(box_centre_at(model, pose));
+  const double step =
+      std::max(reach_ / 12, path_length(centres) / static_cast<double>(kMostPlaces));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (places_.empty() || i + 1 == poses.size() || length(places_.back().centre, centres[i]) >= step) {
+      places_.push_back({centres[i], top_at(model, poses[i])});
+    }
+  }
+}
+
+void PathPlaces::near(const Box& box, std::vector<std::uint32_t>& out) const {
+  out.clear();
+  for (std::uint32_t i = 0; i < places_.size(); ++i) {
+    if (least_squared_distance(box, places_[i].centre) <= reach_ * reach_) out.push_back(i);
+  }
+}
+
+double PathPlaces::distance(const Box& box, std::span<const std::uint32_t> among) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : among) {
+    least = std::min(least, least_squared_distance(box, places_[i].centre));
+  }
+  return std::sqrt(least);
+}
+
+const PathPlaces::Place& PathPlaces::nearest(const Vec3& point,
+                                             std::span<const std::uint32_t> among) const {
+  return places_[*std::ranges::min_element(
+      among, {}, [&](std::uint32_t i) { return length(places_[i].centre, point); })];
+}
+
+}  // namespace clearway

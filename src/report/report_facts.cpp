@@ -1,0 +1,198 @@
+#include "report/report_facts.hpp"
+
+#include <algorithm>
+
+#include "io/result/result.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/system/xxh64.hpp"
+#include "report/json_text.hpp"
+#include "report/shown_poses.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr const char* kClassNames[] = {"hit", "near", "watch"};
+
+bool is_worse(const Conflict& a, const Conflict& b) {
+  const double missing_a = a.encroachment.value_or(0), missing_b = b.encroachment.value_or(0);
+  if (missing_a != missing_b) return missing_a > missing_b;
+  if (a.points != b.points) return a.points > b.points;
+  return a.id < b.id;
+}
+
+void write_box(JsonText& json, const char* name, const Box& box) {
+  json.key(name).begin('{').field("lo", box.lo).field("hi", box.hi).end('}');
+}
+
+void write_inputs(JsonText& json, const ReportFacts& facts) {
+  const ReportOptions& options = facts.options;
+  const ResultHeader& header = facts.result.reader().header();
+  json.key("inputs").begin('{');
+  json.key("result").begin('{').field("name", options.result_name);
+  json.field("hash", hash_text(facts.result.reader().collisions_hash())).end('}');
+  json.key("environment").begin('{').field("name", options.environment_name);
+  json.field("points", header.environment_points);
+  json.field("hash", hash_text(header.environment_hash));
+  json.field("files", std::uint64_t{facts.store.reader().metadata().sources.size()});
+  write_box(json, "box", facts.store.box());
+  json.field("crs_wkt", header.crs_wkt).end('}');
+  json.key("model").begin('{').field("name", options.model_name);
+  json.field("points", header.model_points).field("hash", hash_text(header.model_hash));
+  write_box(json, "box", facts.model_box);
+  json.end('}');
+  json.key("trajectory").begin('{').field("name", options.trajectory_name);
+  json.field("poses", header.poses).field("hash", hash_text(header.trajectory_hash));
+  json.field("length", facts.path_length).end('}').end('}');
+}
+
+void write_query(JsonText& json, const ReportFacts& facts) {
+  const ResultHeader& header = facts.result.reader().header();
+  json.key("query").begin('{').field("radius", header.radius);
+  json.field("first_pose", header.first_pose).field("between_poses", header.between_poses);
+  json.field("clearance", header.clearance).field("profile", header.profile);
+  json.field("tolerance", header.tolerance);
+  json.field("exact", header.tolerance == 0 && !header.float_precision).end('}');
+}
+
+void write_classes(JsonText& json, const ReportFacts& facts) {
+  json.key("classes").begin('[');
+  for (std::size_t k = 0; k < facts.classes.size(); ++k) {
+    json.begin('{').field("name", kClassNames[k]).field("below", facts.classes[k]);
+    json.field("points", facts.points.of_class[k]);
+    json.field("shown", facts.points.shown_class[k]).end('}');
+  }
+  json.end(']').field("points_without_place", facts.points.without_place);
+}
+
+void write_conflict(JsonText& json, const Conflict& conflict, const ShownPoints& points) {
+  json.begin('{').field("id", std::uint64_t{conflict.id}).field("points", conflict.points);
+  json.field("source", conflict.source).field("group", conflict.group);
+  json.field("lo", conflict.box.lo).field("hi", conflict.box.hi);
+  json.field("centroid", conflict.centroid);
+  json.field("first_pose", std::uint64_t{conflict.first_pose});
+  json.field("last_pose", std::uint64_t{conflict.last_pose});
+  json.field("chainage_from", conflict.chainage_from).field("chainage_to", conflict.chainage_to);
+  json.field("least_distance", conflict.least_distance).field("nearest_pose", conflict.nearest_pose);
+  json.field("nearest_source", conflict.nearest_source).field("encroachment", conflict.encroachment);
+  const auto place = conflict.nearest_source ? points.places.find(*conflict.nearest_source)
+                                             : points.places.end();
+  json.key("nearest_point");
+  if (place == points.places.end()) {
+    json.raw("null");
+  } else {
+    json.value(place->second);
+  }
+  json.field("side", name_of(conflict.side)).end('}');
+}
+
+std::vector<const Conflict*> listed_in_page(const Conflicts& conflicts) {
+  std::vector<const Conflict*> out;
+  for (const Conflict& conflict : conflicts.listed) out.push_back(&conflict);
+  if (out.size() <= kMostListedConflicts) return out;
+  std::ranges::sort(out, [](const Conflict* a, const Conflict* b) { return is_worse(*a, *b); });
+  out.resize(kMostListedConflicts);
+  std::ranges::sort(out, {}, [](const Conflict* conflict) { return conflict->id; });
+  return out;
+}
+
+void write_conflicts(JsonText& json, const ReportFacts& facts) {
+  json.key("conflicts");
+  if (facts.conflicts == nullptr) {
+    json.raw("null");
+    return;
+  }
+  const Conflicts& found = *facts.conflicts;
+  const ConflictOptions& options = facts.options.conflicts;
+  json.begin('{').field("count", std::uint64_t{found.listed.size()});
+  json.field("gap", options.gap).field("min_points", options.min_points);
+  json.field("split", options.split).field("groups", found.groups);
+  json.field("small_groups", found.small_groups).field("small_points", found.small_points);
+  json.field("longest_group", found.longest_group);
+  json.field("longest_group_points", found.longest_group_points);
+  const Conflict* worst = worst_of(found);
+  json.key("worst");
+  if (worst == nullptr) {
+    json.raw("null");
+  } else {
+    json.value(std::uint64_t{worst->id});
+  }
+  json.key("list").begin('[');
+  for (const Conflict* conflict : listed_in_page(found)) {
+    write_conflict(json, *conflict, facts.points);
+  }
+  json.end(']').end('}');
+}
+
+void write_least(JsonText& json, const ReportFacts& facts) {
+  json.key("least_distance");
+  if (!facts.least) {
+    json.raw("null");
+    return;
+  }
+  json.begin('{').field("distance", facts.least->distance);
+  json.field("pose", std::uint64_t{facts.least->pose}).field("chainage", facts.least_chainage);
+  json.field("source", facts.least->source).field("point", facts.least->xyz);
+  json.field("of", facts.least_of).end('}');
+}
+
+void write_lattice(JsonText& json, const char* name, const PageLattice& lattice) {
+  json.key(name).begin('{').field("origin", lattice.origin).field("step", lattice.step).end('}');
+}
+
+/// What the page holds of all there is, and how its columns count.
+void write_page_facts(JsonText& json, const ReportFacts& facts) {
+  json.key("page").begin('{');
+  json.field("environment_points", std::uint64_t{facts.environment.points.size()});
+  json.field("environment_near", facts.environment.near_points);
+  json.field("environment_spacing", facts.environment.spacing);
+  json.field("reach", facts.reach).field("dense_reach", facts.dense_reach);
+  json.field("points", std::uint64_t{facts.points.points.size()});
+  json.field("poses", std::uint64_t{facts.shown_poses});
+  json.field("model_points", std::uint64_t{facts.shown_model_points});
+  json.field("most_listed", std::uint64_t{kMostListedConflicts});
+  write_lattice(json, "lattice", facts.lattice);
+  write_lattice(json, "environment_lattice", facts.environment_lattice);
+  write_lattice(json, "model_lattice", facts.model_lattice);
+  json.field("rotation_step", kRotationStep).field("distance_step", kDistanceStep);
+  json.field("chainage_step", kChainageStep).field("time_step", kTimeStep);
+  const auto& times = facts.options.labels.time;
+  json.field("time_origin", times.empty() ? 0.0 : times[0]);
+  json.field("forward", std::uint64_t(facts.options.conflicts.forward));
+  json.field("up", std::uint64_t(facts.options.conflicts.up)).end('}');
+}
+
+void write_warnings(JsonText& json, const std::vector<Message>& warnings) {
+  json.key("warnings").begin('[');
+  for (const Message& warning : warnings) {
+    if (warning.severity != Message::Severity::kWarning) continue;
+    json.begin('{').field("code", warning.code).field("message", warning.text).end('}');
+  }
+  json.end(']');
+}
+
+}  // namespace
+
+const Conflict* worst_of(const Conflicts& conflicts) {
+  const auto worst = std::ranges::min_element(conflicts.listed, is_worse);
+  return worst == conflicts.listed.end() ? nullptr : &*worst;
+}
+
+std::string json_of(const ReportFacts& facts) {
+  JsonText json;
+  json.begin('{').field("clearway", CLEARWAY_VERSION).field("title", facts.title);
+  json.field("date", facts.options.date);
+  json.field("verdict", facts.result.size() == 0 ? "clear" : "conflict");
+  json.field("colliding_points", facts.result.size());
+  json.field("unit", facts.store.length_unit());
+  write_least(json, facts);
+  write_query(json, facts);
+  write_inputs(json, facts);
+  write_warnings(json, facts.options.warnings);
+  write_classes(json, facts);
+  write_conflicts(json, facts);
+  write_page_facts(json, facts);
+  json.end('}');
+  return json.text();
+}
+
+}  // namespace clearway

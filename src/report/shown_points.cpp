@@ -1,0 +1,149 @@
+#include "report/shown_points.hpp"
+
+#include <algorithm>
+
+#include "io/result/result_cursor.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::uint64_t kLeastOfConflict = 300;  // points that stay of each, where there is room
+
+/// Picks `kept` of `total` items evenly, one after the other.
+class EvenPick {
+ public:
+  EvenPick(std::uint64_t kept, std::uint64_t total)
+      : kept_(std::min(kept, total)), total_(std::max<std::uint64_t>(total, 1)) {}
+
+  bool next() {
+    sum_ += kept_;
+    if (sum_ < total_) return false;
+    sum_ -= total_;
+    return true;
+  }
+
+ private:
+  std::uint64_t kept_, total_, sum_ = 0;
+};
+
+/// One for each conflict, the first one for points of none.
+std::vector<EvenPick> picks_of(const PointSelection& selection, std::uint64_t collisions) {
+  const std::uint64_t most = selection.most_colliding;
+  if (selection.conflict_of->empty() || collisions <= most) return {{most, collisions}};
+  const auto& listed = selection.conflicts->listed;
+  const std::uint64_t least = std::min(kLeastOfConflict, most / (4 * (listed.size() + 1)));
+  const double share = static_cast<double>(most) * 3 / 4 / static_cast<double>(collisions);
+  const auto pick = [&](std::uint64_t points) {
+    const auto even = static_cast<std::uint64_t>(static_cast<double>(points) * share);
+    return EvenPick(std::max(least, even), points);
+  };
+  std::vector<EvenPick> out{pick(selection.conflicts->small_points)};
+  for (const Conflict& conflict : listed) out.push_back(pick(conflict.points));
+  return out;
+}
+
+class PointReader {
+ public:
+  PointReader(const Result& result, const PageLattice& lattice, const PointSelection& selection)
+      : result_(result.reader()),
+        radius_(result.parameters().radius),
+        has_places_(result_.header().has_clearance_xyz()),
+        lattice_(lattice),
+        selection_(selection),
+        picks_(picks_of(selection, result.size())),
+        other_pick_(selection.most_others, result_.clearances()) {}
+
+  ShownPoints read(Progress& progress) {
+    const std::uint64_t rows = result_.collisions() + result_.clearances();
+    progress.begin("points of the result", rows, "rows");
+    RowCursor row(result_);
+    ClearanceCursor clearance(result_);
+    std::uint64_t done = 0;
+    while (!row.at_end() || !clearance.at_end()) {
+      const bool collides = !row.at_end() &&
+                            (clearance.at_end() || row.source() <= clearance.source());
+      const bool measured = !clearance.at_end() &&
+                            (!collides || row.source() == clearance.source());
+      if (measured) note_least(row, clearance, collides);
+      if (collides) add_colliding(row, measured ? clearance.distance() : radius_);
+      if (measured && !collides) add_other(clearance);
+      if (collides) row.advance();
+      if (measured) clearance.advance();
+      if ((++done & 0xffff) == 0) {
+        throw_if_stopped(progress);
+        progress.advance(0x10000);
+      }
+    }
+    progress.end();
+    sort_along_curve(out_.points);
+    return std::move(out_);
+  }
+
+ private:
+  /// Of a colliding point without a distance: the class of the radius.
+  std::uint8_t class_of(double distance, bool collides) const {
+    std::uint8_t k = 0;
+    while (std::size_t{k} + 1 < selection_.classes.size() && distance >= selection_.classes[k] &&
+           !(collides && selection_.classes[k] >= radius_)) {
+      ++k;
+    }
+    return k;
+  }
+
+  void note_least(const RowCursor& row, const ClearanceCursor& clearance, bool collides) {
+    if (out_.least && out_.least->distance <= clearance.distance()) return;
+    out_.least = {clearance.distance(), clearance.pose(), clearance.source(), {}};
+    if (collides) {
+      out_.least->xyz = row.xyz();
+    } else if (has_places_) {
+      out_.least->xyz = clearance.xyz();
+    }
+  }
+
+  void add_colliding(const RowCursor& row, double distance) {
+    const std::uint8_t k = class_of(distance, true);
+    const std::size_t at = row_++;
+    ++out_.of_class[k];
+    while (wanted_ < selection_.wanted.size() && selection_.wanted[wanted_] < row.source()) {
+      ++wanted_;
+    }
+    if (wanted_ < selection_.wanted.size() && selection_.wanted[wanted_] == row.source()) {
+      out_.places[row.source()] = row.xyz();
+    }
+    const std::size_t conflict = picks_.size() > 1 ? (*selection_.conflict_of)[at] : 0;
+    if (!picks_[conflict].next()) return;
+    ++out_.shown_class[k];
+    out_.points.push_back(page_point(lattice_, row.xyz(), k));
+  }
+
+  void add_other(const ClearanceCursor& clearance) {
+    if (clearance.distance() >= selection_.classes.back()) return;
+    const std::uint8_t k = class_of(clearance.distance(), false);
+    ++out_.of_class[k];
+    if (!has_places_) {
+      ++out_.without_place;
+    } else if (other_pick_.next()) {
+      ++out_.shown_class[k];
+      out_.points.push_back(page_point(lattice_, clearance.xyz(), k));
+    }
+  }
+
+  const ResultReader& result_;
+  const double radius_;
+  const bool has_places_;  ///< of clearances
+  const PageLattice& lattice_;
+  const PointSelection& selection_;
+  std::vector<EvenPick> picks_;
+  EvenPick other_pick_;
+  std::size_t row_ = 0, wanted_ = 0;
+  ShownPoints out_;
+};
+
+}  // namespace
+
+ShownPoints read_shown_points(const Result& result, const PageLattice& lattice,
+                              const PointSelection& selection, Progress& progress) {
+  return PointReader(result, lattice, selection).read(progress);
+}
+
+}  // namespace clearway

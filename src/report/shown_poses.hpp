@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "clearway/conflicts.hpp"
+#include "clearway/pose.hpp"
+#include "clearway/result.hpp"
+#include "clearway/trajectory.hpp"
+#include "report/packed_points.hpp"
+
+namespace clearway {
+
+inline constexpr std::size_t kMostShownPoses = 20'000;
+
+/// Poses for the page, ascending: all, or of each of kMostShownPoses stretches of the list the
+/// nearest to the environment (without a profile its first), and in any case the first, the last
+/// and those that conflicts name.
+std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
+                                        const std::vector<Conflict>& conflicts);
+
+/// Columns pose.*: index, place, rotation, chainage, and where known distance, point, time, name.
+void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const Pose> poses,
+                         std::span<const double> chainage, const Profile& profile,
+                         const PoseLabels& labels, const PageLattice& lattice,
+                         std::vector<PageColumn>& columns);
+
+/// What the integers of these columns count.
+inline constexpr double kRotationStep = 1.0 / (1 << 17), kDistanceStep = 1e-4,
+                        kChainageStep = 1e-3, kTimeStep = 1e-3;
+
+}  // namespace clearway

@@ -1,0 +1,251 @@
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "clearway/report.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/trajectory/chainage.hpp"
+#include "core/util/callback_progress.hpp"
+#include "core/util/format.hpp"
+#include "io/result/result.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/system/pending_file.hpp"
+#include "io/system/xxh64.hpp"
+#include "io/trajectory/content_hash.hpp"
+#include "report/environment_sample.hpp"
+#include "report/page.hpp"
+#include "report/path_places.hpp"
+#include "report/report_facts.hpp"
+#include "report/shown_points.hpp"
+#include "report/shown_poses.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kMostModelPoints = 200'000;
+constexpr double kStep = 1e-3, kEnvironmentStep = 2e-3;  // metres, of the points on the page
+constexpr std::uint64_t kRowBytes = 64;  // memory of a point of the page, while it is sorted
+
+void check_hash(const Result& result, const char* what, std::uint64_t is, std::uint64_t searched,
+                Remedy remedy) {
+  if (is == searched) return;
+  throw InputError(result.reader().name() + ": is the result of another " + what + " (hash " +
+                       hash_text(searched) + ", given " + hash_text(is) + ")",
+                   remedy);
+}
+
+void check_inputs(const Result& result, const Store& store, const std::vector<Vec3>& model,
+                  const std::vector<Pose>& poses) {
+  const ResultHeader& header = result.reader().header();
+  check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,
+             Remedy::kSameEnvironment);
+  check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kSameModel);
+  check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
+             Remedy::kSameTrajectory);
+}
+
+std::vector<double> classes_of(const Result& result, const std::vector<double>& asked) {
+  const QueryParameters& query = result.parameters();
+  if (asked.empty()) {
+    if (query.clearance > query.radius) return {query.radius, query.clearance};
+    return {query.radius};
+  }
+  if (asked.size() > ShownPoints::kMostClasses || !std::ranges::is_sorted(asked, std::less_equal{})) {
+    throw UsageError("classes: expected one to three distances, each larger than the one before");
+  }
+  if (asked.back() < query.radius) {
+    throw UsageError("classes: the last is " + format_number(asked.back()) +
+                     ", below the radius of " + format_number(query.radius) +
+                     "; expected at least the radius, so that every colliding point is in a class");
+  }
+  for (const double below : asked) {
+    if (below <= query.clearance || below == query.radius) continue;
+    throw UsageError("classes: the result has no distances up to " + format_number(below) +
+                         ", only clearances below " + format_number(query.clearance),
+                     Remedy::kAskForClearance);
+  }
+  return asked;
+}
+
+/// Of a thing that has a place on the page.
+Box page_box(const PathPlaces& path) {
+  if (path.places().empty()) return {};
+  Box box{path.places()[0].centre, path.places()[0].centre};
+  for (const auto& place : path.places()) {
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], place.centre[k] - path.reach());
+      box.hi[k] = std::max(box.hi[k], place.centre[k] + path.reach());
+    }
+  }
+  return box;
+}
+
+/// Evenly along the curve.
+std::vector<PagePoint> model_points(const std::vector<Vec3>& model, const PageLattice& lattice) {
+  std::vector<PagePoint> all;
+  all.reserve(model.size());
+  for (const Vec3& m : model) all.push_back(page_point(lattice, m, 0));
+  sort_along_curve(all);
+  if (all.size() <= kMostModelPoints) return all;
+  std::vector<PagePoint> out;
+  for (std::size_t i = 0; i < kMostModelPoints; ++i) {
+    out.push_back(all[i * all.size() / kMostModelPoints]);
+  }
+  return out;
+}
+
+/// One call of write_report, step by step.
+class Report {
+ public:
+  Report(const Result& result, const Store& store, const std::vector<Vec3>& model,
+         const std::vector<Pose>& poses, const ReportOptions& options)
+      : result_(result),
+        store_(store),
+        model_(model),
+        poses_(poses),
+        options_(options),
+        progress_(options.conflicts.progress, options.conflicts.stop),
+        classes_(classes_of(result, options.classes)),
+        model_box_(box_of(model)),
+        path_(model_box_, poses),
+        lattice_(lattice_for(page_box(path_), kStep)) {}
+
+  ReportSummary write(const std::filesystem::path& path) {
+    ReportSummary summary;
+    find_conflicts_and_points(summary.conflicts);
+    profile_ = result_.profile();
+    find_least();
+    environment_lattice_.step = std::max(kEnvironmentStep, lattice_.step);
+    environment_lattice_.origin = lattice_.origin;
+    environment_ = sample_environment(store_, path_, environment_lattice_, options_.max_points,
+                                      progress_);
+    std::vector<PageColumn> columns = make_columns(summary.conflicts);
+    summary.facts = facts(summary.conflicts);
+    summary.clear = result_.size() == 0;
+    summary.bytes = write_page(path, title(), summary.facts, columns);
+    return summary;
+  }
+
+ private:
+  std::string title() const {
+    if (!options_.title.empty()) return options_.title;
+    if (options_.model_name.empty() || options_.environment_name.empty()) return "Clearance report";
+    return options_.model_name + " through " + options_.environment_name;
+  }
+
+  void find_conflicts_and_points(Conflicts& conflicts) {
+    std::vector<std::uint32_t> conflict_of;
+    if (result_.parameters().first_pose) {
+      conflicts = find_conflicts(result_, poses_, options_.conflicts, &conflict_of);
+    }
+    PointSelection selection{.classes = classes_,
+                             .conflicts = &conflicts,
+                             .conflict_of = &conflict_of,
+                             .wanted = {}};
+    for (const Conflict& conflict : conflicts.listed) {
+      if (conflict.nearest_source) selection.wanted.push_back(*conflict.nearest_source);
+    }
+    std::ranges::sort(selection.wanted);
+    points_ = read_shown_points(result_, lattice_, selection, progress_);
+  }
+
+  void find_least() {
+    chainage_ = chainage_of(poses_);
+    least_ = points_.least;
+    least_of_ = "clearance";
+    if (!least_) {
+      const auto nearest = std::ranges::min_element(profile_.distance);
+      if (nearest == profile_.distance.end() || !std::isfinite(*nearest)) return;
+      const auto pose = static_cast<std::size_t>(nearest - profile_.distance.begin());
+      least_ = {*nearest, static_cast<std::uint32_t>(pose), profile_.source[pose],
+                profile_.xyz[pose]};
+      least_of_ = "profile";
+    }
+  }
+
+  std::vector<PageColumn> make_columns(const Conflicts& conflicts) {
+    std::vector<PageColumn> columns;
+    progress_.begin("page", 0, "");
+    shown_ = choose_poses(poses_.size(), profile_, conflicts.listed);
+    if (least_) {
+      shown_.push_back(least_->pose);
+      std::ranges::sort(shown_);
+      shown_.erase(std::ranges::unique(shown_).begin(), shown_.end());
+    }
+    model_lattice_ = lattice_for(model_box_, path_.half_diagonal() / 0x1p15);
+    model_lattice_.origin = box_centre_at(model_box_, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}});
+    const std::vector<PagePoint> model = model_points(model_, model_lattice_);
+    shown_model_points_ = model.size();
+    append_columns("environment", environment_.points, columns);
+    append_columns("points", points_.points, columns);
+    append_columns("model", model, columns);
+    append_pose_columns(shown_, poses_, chainage_, profile_, options_.labels, lattice_, columns);
+    progress_.end();
+    return columns;
+  }
+
+  std::string facts(const Conflicts& conflicts) const {
+    return json_of({.result = result_,
+                    .store = store_,
+                    .options = options_,
+                    .title = title(),
+                    .model_box = model_box_,
+                    .classes = classes_,
+                    .path_length = chainage_.empty() ? 0 : chainage_.back(),
+                    .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
+                    .points = points_,
+                    .environment = environment_,
+                    .reach = path_.reach(),
+                    .dense_reach = path_.dense_reach(),
+                    .shown_poses = shown_.size(),
+                    .shown_model_points = shown_model_points_,
+                    .least = least_,
+                    .least_chainage = least_ ? chainage_[least_->pose] : 0,
+                    .least_of = least_of_,
+                    .lattice = lattice_,
+                    .environment_lattice = environment_lattice_,
+                    .model_lattice = model_lattice_});
+  }
+
+  const Result& result_;
+  const Store& store_;
+  const std::vector<Vec3>& model_;
+  const std::vector<Pose>& poses_;
+  const ReportOptions& options_;
+  CallbackProgress progress_;
+  std::vector<double> classes_;
+  Box model_box_;
+  PathPlaces path_;
+  PageLattice lattice_, environment_lattice_, model_lattice_;
+  ShownPoints points_;
+  EnvironmentSample environment_;
+  Profile profile_;
+  std::vector<double> chainage_;
+  std::vector<std::uint32_t> shown_;
+  std::size_t shown_model_points_ = 0;
+  std::optional<LeastDistance> least_;
+  const char* least_of_ = nullptr;
+};
+
+}  // namespace
+
+ReportSummary write_report(const Result& result, const Store& store, const std::vector<Vec3>& model,
+                           const std::vector<Pose>& poses, const std::filesystem::path& output,
+                           const ReportOptions& options) {
+  check_inputs(result, store, model, poses);
+  PendingFile file(output, options.overwrite);
+  const int threads = options.conflicts.threads;
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  ReportSummary summary;
+  arena.execute([&] {
+    Report report(result, store, model, poses, options);
+    summary = report.write(file.partial());
+  });
+  file.publish();
+  return summary;
+}
+
+}  // namespace clearway

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "clearway/conflicts.hpp"
+#include "io/trajectory/content_hash.hpp"
+#include "support/result_fixture.hpp"
+#include "support/scenes.hpp"
+
+namespace clearway::test {
+
+using Quanta = std::vector<std::array<std::int32_t, 3>>;
+
+/// Colliding points as a search could have found them.
+struct Found {
+  Quanta quanta;
+  std::vector<std::uint32_t> first_pose;  ///< empty: all 0
+  std::vector<std::uint64_t> source;      ///< empty: 0, 1, ...
+  Quantisation quantisation{{0.001, 0.001, 0.001}, {0, 0, 0}};
+  std::vector<Pose> poses{translation({0, 0, 0}), translation({1, 0, 0})};
+  double clearance = 0;
+  ClearanceRows clearances = {};
+
+  ResultHeader header() const {
+    ResultHeader out;
+    out.environment_points = source.empty() ? quanta.size() : source.back() + 1;
+    out.model_points = 8;
+    out.poses = poses.size();
+    out.trajectory_hash = hash_of_trajectory(poses);
+    out.radius = 0.5;
+    out.first_pose = true;
+    out.clearance = clearance;
+    out.quantisation = quantisation;
+    out.model_box = {{-1, -1, -1}, {1, 1, 1}};
+    return out;
+  }
+
+  ResultRows rows() const {
+    ResultRows out;
+    for (std::size_t i = 0; i < quanta.size(); ++i) {
+      out.source.push_back(source.empty() ? i : source[i]);
+      out.xyz.push_back(position(quantisation, quanta[i][0], quanta[i][1], quanta[i][2]));
+      out.first_pose.push_back(first_pose.empty() ? 0 : first_pose[i]);
+    }
+    return out;
+  }
+
+  Result write(const ScratchFolder& folder, const std::string& name = "out.h5") const {
+    write_result(folder / name, header(), rows(), 1000, clearances);
+    return Result(folder / name);
+  }
+};
+
+/// The definition, with integers of 128 bits where the scales are equal.
+inline bool neighbours(const Found& found, std::size_t i, std::size_t j, double gap) {
+  const double* scale = found.quantisation.scale;
+  std::int64_t d[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    d[k] = std::int64_t{found.quanta[i][k]} - found.quanta[j][k];
+  }
+  if (scale[0] != scale[1] || scale[1] != scale[2]) {
+    const double x = static_cast<double>(d[0]) * scale[0];
+    const double y = static_cast<double>(d[1]) * scale[1];
+    const double z = static_cast<double>(d[2]) * scale[2];
+    return x * x + y * y + z * z <= gap * gap;
+  }
+  __int128 squared = 0;
+  for (const std::int64_t one : d) squared += static_cast<__int128>(one) * one;
+  const double steps = gap / scale[0];
+  const double whole = std::round(steps);
+  if (std::abs(steps - whole) <= 1e-9) {
+    const auto n = static_cast<__int128>(whole);
+    return squared <= n * n;
+  }
+  return squared <= static_cast<__int128>(std::floor(steps * steps));
+}
+
+/// The smallest row of each row's group, by looking at all pairs.
+inline std::vector<std::size_t> all_pairs(const Found& found, double gap) {
+  std::vector<std::size_t> group(found.quanta.size());
+  std::iota(group.begin(), group.end(), 0);
+  const auto root = [&](std::size_t i) {
+    while (group[i] != i) i = group[i] = group[group[i]];
+    return i;
+  };
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::size_t a = root(i), b = root(j);
+      if (a != b && neighbours(found, i, j, gap)) group[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (std::size_t i = 0; i < group.size(); ++i) group[i] = root(i);
+  return group;
+}
+
+/// Checks conflict_of, without small groups and cuts, against all_pairs(). Gives the number of
+/// groups.
+inline std::size_t check_groups(const Found& found, double gap, int threads = 2) {
+  const ScratchFolder folder;
+  ConflictOptions options;
+  options.gap = gap;
+  options.min_points = 1;
+  options.split = 0;
+  options.threads = threads;
+  std::vector<std::uint32_t> conflict_of;
+  const Conflicts conflicts =
+      find_conflicts(found.write(folder), found.poses, options, &conflict_of);
+  const std::vector<std::size_t> group = all_pairs(found, gap);
+  REQUIRE(conflict_of.size() == group.size());
+  std::map<std::size_t, std::uint32_t> id_of;
+  std::map<std::uint32_t, std::uint64_t> points;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const auto known = id_of.emplace(group[i], conflict_of[i]).first;
+    if (known->second != conflict_of[i]) FAIL("row " << i << " is in another group");
+    ++points[conflict_of[i]];
+  }
+  // As many numbers as groups: no number is of two groups.
+  REQUIRE(points.size() == id_of.size());
+  REQUIRE(conflicts.listed.size() == id_of.size());
+  CHECK(conflicts.groups == id_of.size());
+  for (const Conflict& conflict : conflicts.listed) CHECK(conflict.points == points[conflict.id]);
+  return id_of.size();
+}
+
+}  // namespace clearway::test

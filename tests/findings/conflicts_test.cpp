@@ -1,0 +1,272 @@
+// What is said of conflicts: numbers, cuts, distances, sides, and what is refused.
+#include "clearway/error.hpp"
+#include "findings/conflict_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// Points every 0.1 m along x, each touched first at the pose beside it; poses every metre.
+Found rail(std::int32_t metres) {
+  Found out;
+  out.poses.clear();
+  for (std::int32_t i = 0; i <= metres; ++i) out.poses.push_back(translation({1.0 * i, 0, 0}));
+  for (std::int32_t i = 0; i < 10 * metres; ++i) {
+    out.quanta.push_back({100 * i, 2000, 0});
+    out.first_pose.push_back(static_cast<std::uint32_t>(i / 10));
+  }
+  return out;
+}
+
+Conflicts conflicts_of(const Found& found, const ConflictOptions& options = {},
+                       std::vector<std::uint32_t>* conflict_of = nullptr) {
+  const ScratchFolder folder;
+  return find_conflicts(found.write(folder), found.poses, options, conflict_of);
+}
+
+}  // namespace
+
+TEST_CASE("a conflict tells its points, box, centroid, poses and chainage") {
+  Found found;
+  found.quantisation = {{0.001, 0.001, 0.001}, {500'000, 4'000'000, 100}};
+  found.poses = {translation({0, 0, 0}), translation({3, 4, 0}), translation({3, 4, 2})};
+  found.quanta = {{0, 0, 0}, {100, 0, 0}, {101, 50, 7}, {90'000, 0, 0}};
+  found.first_pose = {2, 1, 1, 0};
+  found.source = {3, 8, 21, 22};
+  ConflictOptions options;
+  options.min_points = 2;
+  std::vector<std::uint32_t> conflict_of;
+  const Conflicts out = conflicts_of(found, options, &conflict_of);
+  CHECK(out.colliding_points == 4);
+  CHECK(out.groups == 2);
+  CHECK(out.small_groups == 1);
+  CHECK(out.small_points == 1);
+  CHECK(out.path_length == 7);
+  CHECK(out.longest_group == 2);
+  CHECK(out.longest_group_points == 3);
+  CHECK(conflict_of == std::vector<std::uint32_t>{1, 1, 1, 0});
+  REQUIRE(out.listed.size() == 1);
+  const Conflict& c = out.listed[0];
+  CHECK(c.id == 1);
+  CHECK(c.points == 3);
+  CHECK(c.source == 3);
+  CHECK(c.group == 3);
+  CHECK(c.box.lo == Vec3{500'000, 4'000'000, 100});
+  CHECK(c.box.hi == position(found.quantisation, 101, 50, 7));
+  CHECK(c.centroid == Vec3{67.0 * 0.001 + 500'000, (16 + 2 / 3.0) * 0.001 + 4'000'000,
+                           (2 + 1 / 3.0) * 0.001 + 100});
+  CHECK(c.first_pose == 1);
+  CHECK(c.last_pose == 2);
+  CHECK(c.chainage_from == 5);
+  CHECK(c.chainage_to == 7);
+  CHECK(!c.least_distance);
+  CHECK(!c.nearest_pose);
+  CHECK(!c.encroachment);
+}
+
+TEST_CASE("a group is cut at multiples of the split where it is longer") {
+  const Found found = rail(60);
+  ConflictOptions options;
+  const Conflicts cut = conflicts_of(found, options);
+  CHECK(cut.groups == 1);
+  REQUIRE(cut.listed.size() == 3);
+  const double from[] = {0, 25, 50}, to[] = {24, 49, 59};
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(cut.listed[i].id == i + 1);
+    CHECK(cut.listed[i].chainage_from == from[i]);
+    CHECK(cut.listed[i].chainage_to == to[i]);
+    CHECK(cut.listed[i].group == 0);
+    CHECK(cut.listed[i].points == (i == 2 ? 100 : 250));
+  }
+  CHECK(cut.longest_group == 59);
+  CHECK(cut.longest_group_points == 600);
+  options.split = 0;
+  CHECK(conflicts_of(found, options).listed.size() == 1);
+  options.split = 59;  // as long as it is
+  CHECK(conflicts_of(found, options).listed.size() == 1);
+  options.split = 58.5;
+  CHECK(conflicts_of(found, options).listed.size() == 2);
+  options.split = 1e-9;
+  CHECK(conflicts_of(found, options).listed.size() == 60);
+}
+
+TEST_CASE(
+    "small groups are counted whole, and stretches of large ones listed whatever their size") {
+  Found found = rail(26);
+  found.quanta.push_back({900'000, 0, 0});
+  found.first_pose.push_back(0);
+  ConflictOptions options;
+  options.min_points = 12;
+  const Conflicts out = conflicts_of(found, options);
+  CHECK(out.small_groups == 1);
+  CHECK(out.small_points == 1);
+  REQUIRE(out.listed.size() == 1);  // 25 m long: not cut
+  options.split = 24.5;
+  const Conflicts cut = conflicts_of(found, options);
+  REQUIRE(cut.listed.size() == 2);
+  CHECK(cut.listed[1].points == 10);
+}
+
+TEST_CASE("conflicts are numbered along the path, then by source") {
+  Found found;
+  found.quanta = {{0, 0, 0}, {5000, 0, 0}, {10'000, 0, 0}, {15'000, 0, 0}};
+  found.first_pose = {1, 0, 1, 0};
+  ConflictOptions options;
+  options.min_points = 1;
+  std::vector<std::uint32_t> conflict_of;
+  const Conflicts out = conflicts_of(found, options, &conflict_of);
+  CHECK(conflict_of == std::vector<std::uint32_t>{3, 1, 4, 2});
+  for (std::size_t i = 0; i < 4; ++i) CHECK(out.listed[i].id == i + 1);
+}
+
+TEST_CASE("least distances come from the clearances, of equal ones the smallest source") {
+  Found found;
+  found.quanta = {{0, 0, 0}, {100, 0, 0}, {5000, 0, 0}, {5100, 0, 0}};
+  found.source = {2, 4, 6, 8};
+  found.clearance = 0.6;
+  found.clearances.source = {1, 2, 4, 5, 8};
+  found.clearances.distance = {0.01, 0.25, 0.25, 0.02, 0.5};
+  found.clearances.pose = {0, 1, 0, 0, 1};
+  found.clearances.xyz.resize(5, found.rows().xyz[0]);
+  ConflictOptions options;
+  options.min_points = 1;
+  const Conflicts out = conflicts_of(found, options);
+  REQUIRE(out.listed.size() == 2);
+  CHECK(out.listed[0].least_distance == 0.25);
+  CHECK(out.listed[0].nearest_source == 2);
+  CHECK(out.listed[0].nearest_pose == 1);
+  CHECK(out.listed[0].encroachment == 0.25);
+  CHECK(out.listed[1].least_distance == 0.5);
+  CHECK(out.listed[1].nearest_source == 8);
+}
+
+TEST_CASE("the side is seen from the model's box at the pose") {
+  const auto side = [](const Vec3& at, const Pose& pose, const ConflictOptions& how = {}) {
+    Found found;
+    found.poses = {pose};
+    for (int k = 0; k < 3; ++k) found.quantisation.offset[k] = at[k];
+    found.quanta = {{0, 0, 0}};
+    ConflictOptions options = how;
+    options.min_points = 1;
+    return conflicts_of(found, options).listed.at(0).side;
+  };
+  const Pose ahead = translation({100, 50, 0});
+  CHECK(side({100, 52, 0}, ahead) == Side::kLeft);
+  CHECK(side({100, 48, 0}, ahead) == Side::kRight);
+  CHECK(side({100, 50, 2}, ahead) == Side::kAbove);
+  CHECK(side({100, 50, -2}, ahead) == Side::kBelow);
+  CHECK(side({103, 52, 0}, ahead) == Side::kFront);
+  CHECK(side({97, 50, 0}, ahead) == Side::kBehind);
+  CHECK(side({100, 50.9, 0.5}, ahead) == Side::kLeft);  // inside: the nearest side
+  const Pose turned = rotation({0, 0, 1}, std::acos(-1) / 2, {100, 50, 0});
+  CHECK(side({100, 52, 0}, turned) == Side::kFront);
+  CHECK(side({98, 50, 0}, turned) == Side::kLeft);
+  ConflictOptions other;
+  other.forward = Axis::kMinusY;
+  CHECK(side({100, 48, 0}, ahead, other) == Side::kFront);
+  CHECK(side({102, 50, 0}, ahead, other) == Side::kLeft);
+  other.up = Axis::kPlusX;
+  CHECK(side({102, 50, 0}, ahead, other) == Side::kAbove);
+}
+
+TEST_CASE("threads and the order of work change nothing") {
+  Random random(5);
+  Found found;
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    const auto at = [&] { return static_cast<std::int32_t>(below(random, 20'000)); };
+    found.quanta.push_back({at(), at(), at() / 10});
+    found.first_pose.push_back(static_cast<std::uint32_t>(below(random, 2)));
+  }
+  ConflictOptions options;
+  options.gap = 0.35;
+  options.min_points = 1;
+  options.threads = 1;
+  std::vector<std::uint32_t> conflict_of, again;
+  const Conflicts one = conflicts_of(found, options, &conflict_of);
+  CHECK(one.listed.size() > 100);
+  for (const int threads : {2, 7}) {
+    options.threads = threads;
+    const Conflicts other = conflicts_of(found, options, &again);
+    CHECK(again == conflict_of);
+    REQUIRE(other.listed.size() == one.listed.size());
+    for (std::size_t i = 0; i < one.listed.size(); ++i) {
+      CHECK(other.listed[i].centroid == one.listed[i].centroid);
+      CHECK(other.listed[i].source == one.listed[i].source);
+    }
+  }
+}
+
+TEST_CASE("a result without colliding points has no conflicts") {
+  const Conflicts out = conflicts_of({});
+  CHECK(out.listed.empty());
+  CHECK(out.groups == 0);
+  CHECK(out.path_length == 1);
+}
+
+TEST_CASE("what cannot be grouped is refused") {
+  const ScratchFolder folder;
+  const Found found = rail(3);
+  const Result result = found.write(folder);
+  auto poses = found.poses;
+  poses[1].translation[2] = 1e-9;
+  CHECK_THROWS_WITH(find_conflicts(result, poses), Contains("another trajectory"));
+  poses.pop_back();
+  CHECK_THROWS_AS(find_conflicts(result, poses), InputError);
+
+  ResultHeader header = found.header();
+  header.first_pose = false;
+  ResultRows rows = found.rows();
+  rows.first_pose.clear();
+  write_result(folder / "set.h5", header, rows);
+  try {
+    find_conflicts(Result(folder / "set.h5"), found.poses);
+    FAIL("not refused");
+  } catch (const UsageError& error) {
+    CHECK(error.remedy() == Remedy::kAskForFirstPose);
+  }
+
+  ConflictOptions options;
+  options.up = Axis::kMinusX;
+  CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
+  options = {};
+  for (const double gap : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {
+    options.gap = gap;
+    CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
+  }
+}
+
+TEST_CASE("too little memory is refused with an amount that is enough") {
+  const ScratchFolder folder;
+  Found found;
+  for (std::int32_t i = 0; i < 300'000; ++i) found.quanta.push_back({i * 400, i % 7, 0});
+  const Result result = found.write(folder);
+  ConflictOptions options;
+  options.min_points = 1;
+  double enough = 0;
+  options.memory_bytes = 1 << 20;
+  for (int tries = 0; tries < 4; ++tries) {
+    try {
+      const Conflicts out = find_conflicts(result, found.poses, options);
+      CHECK(out.groups == 300'000);
+      CHECK(tries > 0);
+      return;
+    } catch (const ResourceError& error) {
+      REQUIRE(error.remedy() == Remedy::kMoreMemory);
+      CHECK(error.amount() > enough);
+      enough = error.amount();
+      options.memory_bytes = static_cast<std::uint64_t>(enough);
+    }
+  }
+  FAIL("never enough");
+}
+
+TEST_CASE("a stop ends the work") {
+  const ScratchFolder folder;
+  const Found found = rail(3);
+  const std::atomic<bool> stop{true};
+  ConflictOptions options;
+  options.stop = &stop;
+  CHECK_THROWS_AS(find_conflicts(found.write(folder), found.poses, options), Interrupted);
+}

@@ -1,0 +1,207 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/bytes/laz/laz_coder.hpp"
+
+namespace clearway::test {
+
+/// A point with the fields of formats 0 to 3 and 6 to 8.
+struct LazPoint {
+  std::array<std::int32_t, 3> position{};
+  unsigned returns = 1, number = 1;  ///< of returns; this one's
+  unsigned channel = 0;              ///< of the scanner; formats 6 to 8
+  std::uint16_t intensity = 0, source = 0;
+  std::uint8_t classification = 0, user_data = 0;
+  std::int8_t angle = 0;
+  std::uint64_t gps_time = 0;  ///< the bits of the double
+  std::array<std::uint16_t, 4> colour{};
+};
+
+/// x, y and z as all formats have them. last: the last point of the same scanner channel.
+struct PositionCoder {
+  IntegerCoder dx{32, 2}, dy{32, 22}, z{32, 20};
+  std::array<MedianCoder, 16> medians_x, medians_y;
+  std::array<std::int32_t, 8> heights{};
+
+  void encode(ArithmeticEncoder& plane, ArithmeticEncoder& height, const LazPoint& last,
+              const LazPoint& point, unsigned map, unsigned level) {
+    const auto difference = [&](unsigned axis) {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(point.position[axis]) -
+                                       static_cast<std::uint32_t>(last.position[axis]));
+    };
+    const auto even = [](unsigned width, unsigned most) {
+      return width < most ? width & ~1u : most;
+    };
+    const unsigned single = point.returns == 1 ? 1 : 0;
+    dx.encode(plane, medians_x[map].median(), difference(0), single);
+    medians_x[map].add(difference(0));
+    dy.encode(plane, medians_y[map].median(), difference(1), single + even(dx.width, 20));
+    medians_y[map].add(difference(1));
+    z.encode(height, heights[level], point.position[2],
+             single + even((dx.width + dy.width) / 2, 18));
+    heights[level] = point.position[2];
+  }
+};
+
+/// A coder for each value of a byte.
+using CodersByValue = std::map<unsigned, SymbolCoder>;
+
+inline void encode_byte(ArithmeticEncoder& out, CodersByValue& coders, unsigned last,
+                        unsigned value) {
+  out.symbol(coders.try_emplace(last, 256u).first->second, value);
+}
+
+/// POINT10, version 2. Only returns of a pulse of up to three, whose contexts are simple.
+class Point10Coder {
+ public:
+  void encode(ArithmeticEncoder& out, const LazPoint& last, const LazPoint& point) {
+    const unsigned map = map_of(point);
+    const unsigned level = point.returns - point.number;
+    const unsigned changed = (bits_of(point) != bits_of(last) ? 32 : 0) +
+                             (point.intensity != intensities_[map] ? 16 : 0) +
+                             (point.classification != last.classification ? 8 : 0) +
+                             (point.angle != last.angle ? 4 : 0) +
+                             (point.user_data != last.user_data ? 2 : 0) +
+                             (point.source != last.source ? 1 : 0);
+    out.symbol(changed_, changed);
+    if (changed & 32) encode_byte(out, bits_, bits_of(last), bits_of(point));
+    if (changed & 16) {
+      intensity_.encode(out, intensities_[map], point.intensity, std::min(map, 3u));
+      intensities_[map] = point.intensity;
+    }
+    if (changed & 8) encode_byte(out, class_, last.classification, point.classification);
+    if (changed & 4) out.symbol(angle_, static_cast<std::uint8_t>(point.angle - last.angle));
+    if (changed & 2) encode_byte(out, user_data_, last.user_data, point.user_data);
+    if (changed & 1) source_.encode(out, last.source, point.source, 0);
+    position_.encode(out, out, last, point, map, level);
+  }
+
+ private:
+  static unsigned bits_of(const LazPoint& point) { return point.number + 8 * point.returns; }
+  static unsigned map_of(const LazPoint& point) {
+    return point.returns * (point.returns - 1) / 2 + point.number - 1;
+  }
+
+  SymbolCoder changed_{64}, angle_{256};
+  IntegerCoder intensity_{16, 4}, source_{16, 1};
+  CodersByValue bits_, class_, user_data_;
+  std::array<std::uint16_t, 16> intensities_{};
+  PositionCoder position_;
+};
+
+/// GPSTIME11, version 2: no change, the same difference as before plus a little, or a jump.
+class GpsTimeCoder {
+ public:
+  void encode(ArithmeticEncoder& out, const LazPoint& last, const LazPoint& point) {
+    const auto step = static_cast<std::int64_t>(point.gps_time - last.gps_time);
+    const bool near = step >= -0x80000000LL && step < 0x80000000LL;
+    const bool none = difference_ == 0;
+    out.symbol(none ? after_none_ : multiple_, step == 0 ? (none ? 0 : 511)
+                                               : near    ? 1
+                                                         : (none ? 2 : 512));
+    if (step == 0) return;
+    if (near) {
+      time_.encode(out, difference_, step, none ? 0 : 1);
+      if (none) difference_ = step;
+      return;
+    }
+    time_.encode(out, static_cast<std::int32_t>(last.gps_time >> 32),
+                 static_cast<std::int32_t>(point.gps_time >> 32), 8);
+    out.bits(32, static_cast<std::uint32_t>(point.gps_time));
+    difference_ = 0;
+  }
+
+ private:
+  SymbolCoder multiple_{516}, after_none_{6};
+  IntegerCoder time_{32, 9};
+  std::int64_t difference_ = 0;
+};
+
+/// RGB12, version 2, without the values that follow from red: the reader does not need them.
+class ColourCoder {
+ public:
+  void encode(ArithmeticEncoder& out, const LazPoint& last, const LazPoint& point) {
+    unsigned changed = 64;
+    for (unsigned byte = 0; byte < 6; ++byte) {
+      if (byte_of(point, byte) != byte_of(last, byte)) changed |= 1u << byte;
+    }
+    out.symbol(changed_, changed);
+    for (const unsigned byte : {0, 1, 2, 4, 3, 5}) {
+      if (changed >> byte & 1u) out.symbol(bytes_[byte], byte_of(point, byte));
+    }
+  }
+
+ private:
+  static unsigned byte_of(const LazPoint& point, unsigned byte) {
+    return point.colour[byte / 2] >> (byte % 2 * 8) & 255u;
+  }
+  SymbolCoder changed_{128};
+  std::vector<SymbolCoder> bytes_ = std::vector<SymbolCoder>(6, SymbolCoder(256));
+};
+
+/// The layers of POINT14 that hold coordinates. Only returns of a pulse of up to two.
+class Point14Coder {
+ public:
+  explicit Point14Coder(const LazPoint& first) : current_(first.channel) { start(current_, first); }
+
+  void encode(const LazPoint& point) {
+    Channel* channel = &channels_.at(current_);
+    const LazPoint& before = channel->last;
+    const unsigned context = (before.number == 1 ? 1 : 0) +
+                             (before.number >= before.returns ? 2 : 0) +
+                             (channel->time_changed ? 4 : 0);
+    const bool other = point.channel != current_;
+    const bool fresh = other && !channels_.contains(point.channel);
+    const LazPoint last = other && !fresh ? channels_.at(point.channel).last : before;
+    const bool time = point.gps_time != last.gps_time;
+    const unsigned step = (point.number + 16 - last.number) % 16;
+    const unsigned kind = step == 0 ? 0 : step == 1 ? 1 : step == 15 ? 2 : 3;
+    plane.symbol(channel->changed[context], (other ? 64 : 0) + (time ? 16 : 0) +
+                                                (point.returns != last.returns ? 4 : 0) + kind);
+    if (other) {
+      plane.symbol(channel->next_channel, (point.channel + 3 - current_) % 4);
+      if (fresh) start(point.channel, before);
+      current_ = point.channel;
+      channel = &channels_.at(current_);
+    }
+    if (point.returns != last.returns) encode_16(channel->returns, last.returns, point.returns);
+    if (kind == 3 && time) encode_16(channel->number, last.number, point.number);
+    if (kind == 3 && !time) plane.symbol(channel->number_same_time, step - 2);
+    const unsigned map = 2 * (point.returns * (point.returns - 1) / 2 + point.number - 1);
+    channel->position.encode(plane, height, last, point, map + (time ? 1 : 0),
+                             point.returns - point.number);
+    channel->last = point;
+    channel->time_changed = time;
+  }
+
+  ArithmeticEncoder plane, height;
+
+ private:
+  struct Channel {
+    LazPoint last;
+    bool time_changed = false;
+    std::vector<SymbolCoder> changed = std::vector<SymbolCoder>(8, SymbolCoder(128));
+    SymbolCoder next_channel{3}, number_same_time{13};
+    std::map<unsigned, SymbolCoder> returns, number;
+    PositionCoder position;
+  };
+
+  void start(unsigned channel, const LazPoint& last) {
+    Channel& started = channels_[channel];
+    started.last = last;
+    started.position.heights.fill(last.position[2]);
+  }
+  void encode_16(std::map<unsigned, SymbolCoder>& coders, unsigned last, unsigned value) {
+    plane.symbol(coders.try_emplace(last, 16u).first->second, value);
+  }
+
+  std::map<unsigned, Channel> channels_;
+  unsigned current_;
+};
+
+}  // namespace clearway::test

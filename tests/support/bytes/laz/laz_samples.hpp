@@ -1,0 +1,56 @@
+#pragma once
+
+#include <random>
+
+#include "io/formats/point_reader.hpp"
+#include "support/bytes/laz/laz_bytes.hpp"
+
+namespace clearway::test {
+
+/// Points that take the coder through all its widths, contexts and changes.
+inline std::vector<LazPoint> laz_points(std::size_t count, bool formats_6_to_8, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  const auto below = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
+  std::vector<LazPoint> points(count);
+  LazPoint point;
+  for (LazPoint& next : points) {
+    for (std::int32_t& value : point.position) {
+      const unsigned bits = below(8) == 0 ? 32 : below(12);
+      const auto step = static_cast<std::uint32_t>(random() & ((std::uint64_t{1} << bits) - 1));
+      value = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) +
+                                        (below(2) ? step : 0 - step));
+    }
+    point.returns = 1 + below(formats_6_to_8 ? 2 : 3);
+    point.number = 1 + below(point.returns);
+    if (formats_6_to_8 && below(5) == 0) point.channel = below(4);
+    if (below(2)) point.intensity = static_cast<std::uint16_t>(random());
+    if (below(6) == 0) point.classification = static_cast<std::uint8_t>(random());
+    if (below(6) == 0) point.user_data = static_cast<std::uint8_t>(random());
+    if (below(6) == 0) point.source = static_cast<std::uint16_t>(random());
+    if (below(6) == 0) point.angle = static_cast<std::int8_t>(random());
+    if (below(3)) point.gps_time += below(9) == 0 ? std::uint64_t{random()} << 32 : below(1000);
+    for (auto& value : point.colour) value = static_cast<std::uint16_t>(value + below(300));
+    next = point;
+  }
+  return points;
+}
+
+/// A file of a point format with extra bytes where the format is odd.
+inline LazBytes laz_bytes(unsigned format, std::size_t count) {
+  LazBytes laz;
+  laz.las.format = format;
+  laz.las.minor = format < 6 ? 2 : 4;
+  laz.las.extra_bytes = format % 2 * 3;
+  laz.points = laz_points(count, format >= 6);
+  return laz;
+}
+
+inline std::vector<std::array<std::int32_t, 3>> positions_of(const std::vector<LazPoint>& points) {
+  std::vector<std::array<std::int32_t, 3>> positions;
+  for (const LazPoint& point : points) positions.push_back(point.position);
+  return positions;
+}
+
+constexpr unsigned kLazFormats[] = {0, 1, 2, 3, 6, 7, 8};
+
+}  // namespace clearway::test

@@ -1,0 +1,282 @@
+#include "support/engines/engines.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <list>
+#include <optional>
+#include <utility>
+
+#include "core/query/search_result.hpp"
+#include "core/sweep/tolerance.hpp"
+#include "cpu/brute_force.hpp"
+#include "cpu/kdtree_engine.hpp"
+#include "cpu/sweep_engine.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
+#include "support/engines/check_profile.hpp"
+#include "support/engines/grid_runs.hpp"
+#include "support/engines/host_sweep.hpp"
+
+namespace clearway {
+namespace {
+
+SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads) {
+  NoProgress progress;
+  return {run_kdtree(cloud, query, {threads}, progress), ClearanceSet()};
+}
+
+SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads) {
+  return run_sweep(cloud, query, threads,
+                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
+                     return std::make_unique<SweepEngine>(of, filter, layout);
+                   });
+}
+
+/// The bodies of the CUDA engine as loops, with lists of open work from ample to none.
+SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
+  return run_sweep(cloud, query, threads,
+                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
+                     const std::uint32_t entries = layout.slots % 3 == 0   ? 0
+                                                   : layout.slots % 3 == 1 ? 50
+                                                                           : 100'000;
+                     return std::make_unique<HostSweep>(of, filter.ref(), layout, entries);
+                   });
+}
+
+SearchResult grid(const PackedCloud& cloud, const Query& query, int threads) {
+  return {run_grid(cloud, query, {.threads = threads}), ClearanceSet()};
+}
+
+std::vector<Engine> under_test{{"kdtree", kdtree, true, false, false},
+                               {"sweep", sweep, true, true, true},
+                               {"sweep as on CUDA", sweep_as_on_cuda, true, true, true},
+                               {"grid", grid, false, false, false}};
+
+/// Three for every fifth run, else one: in scenes this small, threads mostly wait for each other.
+/// The runs of a scene are no multiple of five, so every engine and kind of query has its turn.
+int next_threads() {
+  static int runs = 0;
+  return ++runs % 5 == 0 ? 3 : 1;
+}
+
+/// A model with its tree and field, which many runs of a scene share.
+class PreparedModel {
+ public:
+  PreparedModel(const Query& query, int threads)
+      : points_(query.model),
+        radius_(search_radius(query)),
+        reach_(reach_of(query)),
+        threads_(threads),
+        tree_(points_),
+        field_(tree_, radius_, {.reach = reach_}, threads) {}
+  PreparedModel(const PreparedModel&) = delete;
+  PreparedModel& operator=(const PreparedModel&) = delete;
+
+  bool is_for(const Query& query, int threads) const {
+    return radius_ == search_radius(query) && reach_ == reach_of(query) && threads_ == threads &&
+           std::ranges::equal(points_, query.model, same_bits);
+  }
+  const ModelTree& tree() const { return tree_; }
+  const ModelField& field() const { return field_; }
+
+ private:
+  static double reach_of(const Query& query) { return std::max(query.clearance, query.profile); }
+
+  /// A field is the same only for the very same numbers, the sign of a zero included.
+  static bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+  std::vector<Vec3> points_;
+  double radius_, reach_;
+  int threads_;
+  ModelTree tree_;
+  ModelField field_;
+};
+
+/// That of an earlier run, where one of the last four had the same. Valid until the next call.
+const PreparedModel& prepared_model(const Query& query, int threads) {
+  static std::list<PreparedModel> last;
+  for (const PreparedModel& model : last) {
+    if (model.is_for(query, threads)) return model;
+  }
+  if (last.size() == 4) last.pop_back();
+  return last.emplace_front(query, threads);
+}
+
+/// First poses by brute force, at poses and between them.
+struct Expected {
+  Expected(const std::vector<Vec3>& positions, Query query) {
+    query.between_poses = false;
+    at_poses = brute_force_first_poses(positions, query);
+    query.between_poses = true;
+    between_poses = brute_force_first_poses(positions, query);
+  }
+
+  std::vector<std::uint32_t> at_poses, between_poses;
+};
+
+std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
+                            Query query) {
+  std::uint64_t colliding = 0;
+  for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
+  for (const Engine& engine : engines()) {
+    if (query.between_poses && !engine.between_poses) continue;
+    for (const bool first_pose : {false, true}) {
+      query.first_pose = first_pose;
+      const int threads = next_threads();
+      const HitSet hits = engine.run(cloud, query, threads).hits;
+      CAPTURE(engine.name, threads, first_pose, query.between_poses, cloud.cell_points(),
+              cloud.cells().size());
+      std::uint64_t wrong = 0;
+      for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
+        if (!cloud.is_used(slot)) {
+          wrong += hits.contains(slot);
+          continue;
+        }
+        const std::uint32_t pose = expected[cloud.source(slot)];
+        wrong += hits.contains(slot) != (pose != HitSet::kNever);
+        if (first_pose) wrong += hits.first_pose(slot) != pose;
+      }
+      CHECK(wrong == 0);
+      CHECK(hits.count() == colliding);
+    }
+  }
+  return colliding;
+}
+
+using Oracle = std::vector<Clearance>;
+
+/// Every clearance and every hit, a set or with first poses.
+std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, const Oracle& least,
+                               const std::vector<std::uint32_t>& first_poses, const Query& query) {
+  const double limit = query.clearance * query.clearance;
+  const int threads = next_threads();
+  const SearchResult answer = engine.run(cloud, query, threads);
+  CAPTURE(engine.name, threads, query.clearance, query.radius, query.first_pose,
+          cloud.cell_points());
+  std::uint64_t wrong = 0, wrong_hits = 0, found = 0;
+  for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
+    Clearance expected;
+    std::uint32_t pose = HitSet::kNever;
+    if (cloud.is_used(slot)) {
+      const Clearance& oracle = least[cloud.source(slot)];
+      if (oracle.squared < limit) expected = oracle;
+      pose = first_poses[cloud.source(slot)];
+    }
+    found += expected.found();
+    wrong += answer.clearances.at(slot) != expected;
+    wrong_hits += answer.hits.contains(slot) != (pose != HitSet::kNever);
+    if (query.first_pose) wrong_hits += answer.hits.first_pose(slot) != pose;
+  }
+  CHECK(wrong == 0);
+  CHECK(wrong_hits == 0);
+  CHECK(answer.clearances.count() == found);
+  return found;
+}
+
+std::uint64_t check_clearances(const MemoryCloud& cloud, const Oracle& least,
+                               const std::vector<std::uint32_t>& first_poses, const Query& query) {
+  std::uint64_t found = 0;
+  for (const Engine& engine : engines()) {
+    if (engine.clearances) found = check_clearances(engine, cloud, least, first_poses, query);
+  }
+  return found;
+}
+
+Query with_clearance(Query query, double clearance, bool first_pose) {
+  query.clearance = clearance;
+  query.first_pose = first_pose;
+  return query;
+}
+
+std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Query query) {
+  query.between_poses = true;
+  const std::uint64_t swept = check_results(cloud, expected.between_poses, query);
+  query.between_poses = false;
+  const std::uint64_t colliding = check_results(cloud, expected.at_poses, query);
+  CHECK(swept >= colliding);
+  return colliding;
+}
+
+}  // namespace
+
+std::span<const Engine> engines() { return under_test; }
+
+SearchResult run_sweep(const PackedCloud& cloud, const Query& asked, int threads,
+                       const MakeSweep& make) {
+  NoProgress progress;
+  std::optional<ThinnedQuery> thinned;
+  if (asked.tolerance > 0) thinned.emplace(asked);
+  const Query& query = thinned ? thinned->query() : asked;
+  if (query.model.empty()) {
+    return {HitSet(cloud.entry_count(), query.first_pose), ClearanceSet(cloud.entry_count())};
+  }
+  const PreparedModel& prepared = prepared_model(query, threads);
+  const ModelTree& model = prepared.tree();
+  const ModelField& field = prepared.field();
+  const MotionTree motion(query.poses, model.box(), query.between_poses);
+  const SweepFilter filter(query, motion, model, field, cloud);
+  const std::vector<PlannedCell> cells = plan(cloud, filter);
+  const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
+                          .page_bytes = 2 * smallest_page_bytes(cloud, cells),
+                          .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
+  const std::unique_ptr<PageEngine> engine = make(filter, cloud, layout);
+  PageEngine* const engines[] = {engine.get()};
+  StageTimes times;
+  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), engines,
+                   query, threads, progress, times);
+}
+
+void test_only(std::vector<Engine> engines) { under_test = std::move(engines); }
+
+std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
+                                               const Quantisation& quantisation, Query query) {
+  query.between_poses = true;
+  const auto expected = brute_force_first_poses(positions_of(points, quantisation), query);
+  check_results(MemoryCloud(points, quantisation, {128, 0}), expected, query);
+  return expected;
+}
+
+std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
+                            const Query& query, const MemoryCloudOptions& packing) {
+  const auto environment = positions_of(points, quantisation);
+  const Expected expected(environment, query);
+  const MemoryCloud cloud(points, quantisation, packing);
+  check_clearances(cloud, brute_force_clearances(environment, query), expected.at_poses,
+                   with_clearance(query, 2.5 * query.radius, points.size() % 2 == 0));
+  check_profile(cloud, environment, with_profile(query, points.size()));
+  return check_packed(cloud, expected, query);
+}
+
+std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
+                            const Query& query) {
+  const auto environment = positions_of(points, quantisation);
+  const Expected expected(environment, query);
+  const Oracle least = brute_force_clearances(environment, query);
+  std::uint64_t colliding = 0;
+  double of_radius = 0.4;
+  bool first_pose = false;
+  std::size_t variant = points.size();
+  for (const MemoryCloudOptions& packing :
+       {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
+        MemoryCloudOptions{128, 500}}) {
+    const MemoryCloud cloud(points, quantisation, packing);
+    colliding = check_packed(cloud, expected, query);
+    check_clearances(cloud, least, expected.at_poses,
+                     with_clearance(query, of_radius * query.radius, first_pose));
+    check_profile(cloud, environment, with_profile(query, variant++));
+    first_pose = !first_pose;
+    of_radius *= 2.5;
+  }
+  return colliding;
+}
+
+std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
+                               const Query& query) {
+  const auto environment = positions_of(points, quantisation);
+  return check_clearances(MemoryCloud(points, quantisation, {256, 0}),
+                          brute_force_clearances(environment, query),
+                          brute_force_first_poses(environment, query), query);
+}
+
+}  // namespace clearway

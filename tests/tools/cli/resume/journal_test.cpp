@@ -1,0 +1,150 @@
+// Journals of the program that are refused, damaged, torn or in use.
+#include <catch2/catch.hpp>
+
+#include "tools/cli/resume/slow_hall.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+TEST_CASE("a run that is refused leaves no journal") {
+  const Work work;
+  check_refused(work.run("--memory 1K"), 4, "too little");
+  CHECK(work.files().empty());
+  check_refused(work.run("--between-poses"), 2, "--engine sweep");
+  CHECK(work.files().empty());
+}
+
+TEST_CASE("what is no journal is left alone") {
+  const Work work;
+  put_bytes(work.journal, "a diary");
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 2, "move it away");
+  }
+  CHECK(bytes_of(work.journal) == "a diary");
+  std::filesystem::remove(work.journal);
+  std::filesystem::create_symlink(work.folder / "elsewhere", work.journal);
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 2, "move it away");
+  }
+  CHECK_FALSE(std::filesystem::exists(work.folder / "elsewhere"));
+}
+
+TEST_CASE("a flipped byte of a journal is detected or does no harm") {
+  const Work work;
+  work.start_and(SIGKILL);
+  const std::string whole = bytes_of(work.journal).substr(0, 700);
+  put_bytes(work.journal, whole);
+  REQUIRE(run_program(work.folder, "verify " + quoted(work.journal)).exit_code <= 1);
+  std::filesystem::remove(work.journal);
+  REQUIRE(work.run("").exit_code == 0);
+  const std::string expected = bytes_of(work.output);
+  for (std::size_t at = 0; at < whole.size(); at += 7) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 8);
+    put_bytes(work.journal, bytes);
+    CAPTURE(at);
+    const Outcome verified = run_program(work.folder, "verify " + quoted(work.journal));
+    CHECK(verified.exit_code <= 1);
+    if (at >= 16) CHECK_THAT(verified.out, Contains("record "));
+    if (at % 13 != 0) continue;
+    std::filesystem::remove(work.output);
+    const Outcome outcome = work.run("--resume");
+    if (outcome.exit_code != 2) CHECK(outcome.exit_code == (verified.exit_code == 0 ? 0 : 3));
+    if (outcome.exit_code == 0) {
+      CHECK((bytes_of(work.output) == expected));
+    } else {
+      CHECK((outcome.exit_code == 2 || outcome.exit_code == 3));
+      CHECK_FALSE(std::filesystem::exists(work.output));
+    }
+  }
+}
+
+TEST_CASE("verify tells a torn tail, which resuming cuts off, from damage") {
+  const Work work;
+  work.start_and(SIGKILL, "--journal-interval 0");
+  const std::string whole =
+      bytes_of(work.journal).substr(0, JournalReader(work.journal).whole_bytes());
+  const auto verify = [&](const std::string& bytes) {
+    put_bytes(work.journal, bytes);
+    return run_program(work.folder, "verify " + quoted(work.journal));
+  };
+  const Outcome sound = verify(whole);
+  CHECK(sound.exit_code == 0);
+  CHECK(sound.out == work.journal.string() + ": sound\n");
+  const Outcome empty = verify(whole.substr(0, 5));
+  CHECK(empty.exit_code == 0);
+  CHECK_THAT(empty.out, Contains("it ends before its first record"));
+  CHECK(verify("").exit_code == 0);
+
+  std::string bytes = whole;
+  bytes[100] = static_cast<char>(bytes[100] ^ 1);
+  const Outcome damaged = verify(bytes);
+  CHECK(damaged.exit_code == 1);
+  CHECK_THAT(damaged.out, Contains("record 0 at byte 16 is damaged") && Contains(": damaged\n"));
+  check_refused(work.run("--resume"), 3, "record 0 at byte 16 is damaged");
+
+  const Outcome torn = verify(whole.substr(0, whole.size() - 3));
+  CHECK(torn.exit_code == 0);
+  CHECK_THAT(torn.out, Contains(" is torn, with ") && Contains("--resume cuts that off") &&
+                           Contains(": sound\n"));
+  const Outcome resumed = work.run("--resume");
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains(" is torn, with ") && Contains("resumes with"));
+}
+
+TEST_CASE("two runs of one output: the second is refused and leaves the first's journal alone") {
+  const Work work;
+  Process first(work.command(""), work.folder / "log.txt");
+  work.wait_for_records(first, 5);
+  for (const char* options : {"", "--resume", "--force"}) {
+    check_refused(work.run(options), 4, "another process is writing it");
+  }
+  CHECK(first.wait() == 0);
+  CHECK(work.files() == Names{"out.h5"});
+}
+
+TEST_CASE("options of the journal that make no sense are refused") {
+  const Work work;
+  for (const char* seconds : {"-1", "nan", "x", "4000"}) {
+    check_refused(work.run(std::string("--journal-interval ") + seconds), 2, "--journal-interval");
+  }
+  CHECK(work.run("--journal-interval 0").exit_code == 0);
+}
+
+namespace {
+
+/// The same journal, of a run with another value.
+void replace_value(const std::filesystem::path& journal, const std::string& name,
+                   const std::string& value) {
+  std::filesystem::rename(journal, journal.string() + ".before");
+  const JournalReader before(journal.string() + ".before");
+  JournalIdentity identity = before.identity().value();
+  for (auto& [field, found] : identity) {
+    if (field == name) found = value;
+  }
+  JournalWriter writer = JournalWriter::create(journal, identity, 0);
+  before.for_each([&](JournalPayload payload) {
+    JournalRecord record;
+    while (!payload.at_end()) record.put(payload.take<std::byte>());
+    writer.append(record);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("first poses between poses as version 0.1.0 defined them are not resumed") {
+  const Work work;
+  Process process(work.command("--between-poses", "0.1", "kdtree"), work.folder / "log.txt");
+  work.wait_for_records(process, 3);
+  process.send(SIGKILL);
+  process.wait();
+  const std::string found = bytes_of(work.journal);
+  replace_value(work.journal, "first_pose", "yes");
+  check_refused(work.run("--resume --between-poses", "0.1", "kdtree"), 2,
+                "its first_pose is yes, expected closed way");
+  put_bytes(work.journal, found);
+  const Outcome resumed = work.run("--resume --between-poses", "0.1", "kdtree");
+  CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.err, Contains("resumes with"));
+}

@@ -1,0 +1,150 @@
+#include "cli/conflicts/conflict_comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "cli/support/trajectory_options.hpp"
+#include "core/util/format.hpp"
+#include "findings/match_conflicts.hpp"
+
+namespace clearway::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// A result and its conflicts.
+struct Compared {
+  std::string file;
+  double radius;
+  Conflicts conflicts;
+};
+
+Compared find_side(ConflictComparison& options, const std::filesystem::path& file,
+                   const std::filesystem::path& trajectory) {
+  const Result result(file);
+  const std::vector<Pose> poses = read_poses(trajectory, options.trajectory_options, result);
+  return {file.string(), result.parameters().radius, find_conflicts(result, poses, options.find)};
+}
+
+const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
+  return conflicts.listed[id - 1];
+}
+
+std::string line_of(const Conflict& c) {
+  return fmt::format("  {:>5}  {:>19}  {:>11} points  {:>7}  {:.3f} {:.3f} {:.3f}\n", c.id,
+                     fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to),
+                     format_count(c.points), name_of(c.side), c.centroid.x, c.centroid.y,
+                     c.centroid.z);
+}
+
+std::string list_text(const char* title, const Conflicts& conflicts,
+                      const std::vector<std::uint32_t>& ids, std::size_t show) {
+  std::string text = std::string(title) + ": " + format_count(ids.size()) + "\n";
+  for (std::size_t i = 0; i < std::min(show, ids.size()); ++i) {
+    text += line_of(conflict_at(conflicts, ids[i]));
+  }
+  if (ids.size() > show) text += "  and " + format_count(ids.size() - show) + " more\n";
+  return text;
+}
+
+std::string text_of(const Compared& a, const Compared& b, const ConflictMatch& match,
+                    std::size_t show) {
+  std::string text;
+  for (const auto& [name, side] : {std::pair("a", &a), std::pair("b", &b)}) {
+    text += fmt::format("{}: {} conflicts in {}\n", name,
+                        format_count(side->conflicts.listed.size()), side->file);
+  }
+  if (a.radius != b.radius) {
+    text += "queries differ: radius: " + format_number(a.radius) + " / " + format_number(b.radius) +
+            " m\n";
+  }
+  text += list_text("new, only in b", b.conflicts, match.added, show);
+  text += list_text("gone, only in a", a.conflicts, match.gone, show);
+  text += "the same in both: " + format_count(match.same.size()) + "\n";
+  return text + (match.added.empty() ? "no new conflicts\n" : "new conflicts\n");
+}
+
+ordered_json json_of_conflict(const Conflict& c) {
+  ordered_json out{{"id", c.id},
+                   {"points", c.points},
+                   {"source", c.source},
+                   {"lo", {c.box.lo.x, c.box.lo.y, c.box.lo.z}},
+                   {"hi", {c.box.hi.x, c.box.hi.y, c.box.hi.z}},
+                   {"centroid", {c.centroid.x, c.centroid.y, c.centroid.z}},
+                   {"chainage_from", c.chainage_from},
+                   {"chainage_to", c.chainage_to},
+                   {"least_distance", nullptr},
+                   {"side", name_of(c.side)}};
+  if (c.least_distance) out["least_distance"] = *c.least_distance;
+  return out;
+}
+
+ordered_json json_of_list(const Conflicts& conflicts, const std::vector<std::uint32_t>& ids) {
+  auto out = ordered_json::array();
+  for (const std::uint32_t id : ids) out.push_back(json_of_conflict(conflict_at(conflicts, id)));
+  return out;
+}
+
+std::string json_of(const Compared& a, const Compared& b, const ConflictMatch& match) {
+  const auto side = [](const Compared& of) {
+    return ordered_json{
+        {"file", of.file}, {"radius", of.radius}, {"conflicts", of.conflicts.listed.size()}};
+  };
+  auto same = ordered_json::array();
+  for (const auto& [in_a, in_b] : match.same) {
+    same.push_back({{"a", json_of_conflict(conflict_at(a.conflicts, in_a))},
+                    {"b", json_of_conflict(conflict_at(b.conflicts, in_b))}});
+  }
+  const ordered_json out{{"a", side(a)},
+                         {"b", side(b)},
+                         {"new", json_of_list(b.conflicts, match.added)},
+                         {"gone", json_of_list(a.conflicts, match.gone)},
+                         {"same", same}};
+  // Names of files need not be UTF-8.
+  return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
+                             CLI::Option* conflicts) {
+  const std::vector<CLI::Option*> before = command.get_options();
+  command.add_option("--trajectory", options.trajectory, "The trajectory of A, and of B")
+      ->type_name("FILE");
+  command
+      .add_option("--trajectory-b", options.trajectory_b,
+                  "The trajectory of B, where it is another")
+      ->type_name("FILE");
+  add_conflict_options(command, options);
+  for (CLI::Option* option : command.get_options()) {
+    if (std::ranges::find(before, option) == before.end()) option->needs(conflicts);
+  }
+}
+
+bool compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
+                       const std::filesystem::path& b, std::size_t show, bool json) {
+  if (options.trajectory.empty()) {
+    throw UsageError("--conflicts needs --trajectory, the trajectory of the runs");
+  }
+  convert_lengths(options.lengths, Result(a));
+  ConsoleProgress progress;
+  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
+  options.find.stop = &stop_flag();
+  const Compared in_a = find_side(options, a, options.trajectory);
+  const Compared in_b = find_side(
+      options, b, options.trajectory_b.empty() ? options.trajectory : options.trajectory_b);
+  const ConflictMatch match = match_conflicts(in_a.conflicts, in_b.conflicts, options.find.gap);
+  print(json ? json_of(in_a, in_b, match) : text_of(in_a, in_b, match, show));
+  return match.added.empty();
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,80 @@
+#include "cli/conflicts/conflict_inputs.hpp"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/trajectory_options.hpp"
+#include "core/util/format.hpp"
+#include "io/formats/wkt.hpp"
+#include "io/result/result.hpp"
+#include "io/system/input_error.hpp"
+#include "io/system/xxh64.hpp"
+#include "io/trajectory/content_hash.hpp"
+
+namespace clearway::tool {
+namespace {
+
+constexpr double kSpacingsInRadius = 4;  // as clearway run samples meshes
+
+std::optional<double> metres_of(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::kFoot:
+      return 0.3048;
+    case LengthUnit::kUsSurveyFoot:
+      return 1200.0 / 3937;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void add_conflict_options(CLI::App& command, ConflictCommand& options) {
+  options.lengths.add(command, "--gap", options.find.gap,
+                      "Points at most this far apart belong together (default: 0.3)");
+  command
+      .add_option("--min-points", options.find.min_points,
+                  "Groups of fewer points are counted, not listed")
+      ->type_name("N")
+      ->check(CLI::Range(1.0, 1e15))
+      ->capture_default_str();
+  options.lengths.add(command, "--split", options.find.split,
+                      "Cut groups that are longer than this along the path at multiples of it; 0: "
+                      "never (default: 25)",
+                      LengthRange::kFromZero);
+  add_memory_option(command, options.find.memory_bytes);
+  add_threads_option(command, options.find.threads);
+  add_trajectory_options(command, options.trajectory_options);
+}
+
+void convert_lengths(const LengthOptions& lengths, const Result& result) {
+  const auto metres = metres_of(horizontal_unit(result.reader().header().crs_wkt));
+  if (metres) lengths.convert(*metres);
+}
+
+std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
+                             const Result& result) {
+  options.default_crs = result.reader().header().crs_wkt;
+  std::vector<Message> remarks;
+  std::vector<Pose> poses = read_trajectory(path, options, &remarks);
+  for (const Message& remark : remarks) log_message(remark);
+  return poses;
+}
+
+std::vector<Vec3> read_model_of(const std::filesystem::path& path, ModelOptions options,
+                                const Result& result) {
+  if (options.spacing == 0) options.spacing = result.parameters().radius / kSpacingsInRadius;
+  std::vector<Vec3> points = read_model(path, options);
+  const ResultHeader& header = result.reader().header();
+  const std::uint64_t hash = hash_of_model(points);
+  if (points.size() == header.model_points && hash == header.model_hash) return points;
+  refuse(path.string(), "is not the model of " + result.reader().name() + ": it has " +
+                            format_count(points.size()) + " points with the hash " +
+                            hash_text(hash) + ", expected " + format_count(header.model_points) +
+                            " with the hash " + hash_text(header.model_hash) +
+                            "; give the file of the run, with the same options");
+}
+
+}  // namespace clearway::tool

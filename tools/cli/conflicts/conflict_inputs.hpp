@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "clearway/conflicts.hpp"
+#include "clearway/model.hpp"
+#include "clearway/result.hpp"
+#include "clearway/trajectory.hpp"
+#include "cli/support/lengths.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace clearway::tool {
+
+/// What commands that find conflicts take beside the results.
+struct ConflictCommand {
+  ConflictOptions find;
+  TrajectoryOptions trajectory_options;
+  LengthOptions lengths;
+};
+
+/// --gap, --min-points, --split, --memory, --threads and the options of trajectories.
+void add_conflict_options(CLI::App& command, ConflictCommand& options);
+
+/// Turns lengths that were given with a unit into the result's.
+void convert_lengths(const LengthOptions& lengths, const Result& result);
+
+/// The poses of a result. Warnings are told.
+std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
+                             const Result& result);
+
+/// The points of the model that a result is of. Throws InputError for another model.
+std::vector<Vec3> read_model_of(const std::filesystem::path& path, ModelOptions options,
+                                const Result& result);
+
+}  // namespace clearway::tool

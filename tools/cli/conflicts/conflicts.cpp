@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/conflicts/conflict_inputs.hpp"
+#include "cli/conflicts/conflict_text.hpp"
+#include "cli/input_roles.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "cli/support/trajectory_options.hpp"
+#include "core/geometry/point_box.hpp"
+#include "findings/conflict_warnings.hpp"
+#include "io/conflicts/conflict_summary.hpp"
+#include "io/conflicts/write_conflicts.hpp"
+#include "io/system/pending_file.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct ConflictsCommand : ConflictCommand {
+  std::filesystem::path result, trajectory, model;
+  std::vector<std::filesystem::path> outputs;
+  ModelOptions model_options;
+  std::string date = ConflictFile::kNoDate;
+  std::size_t show = 20;
+  bool force = false;
+  bool json = false;
+};
+
+/// An output that is not there yet.
+struct ConflictOutput {
+  ConflictOutput(const std::filesystem::path& path, bool overwrite)
+      : format(conflict_format_of(path)), pending(path, overwrite) {}
+
+  ConflictFormat format;
+  PendingFile pending;
+};
+
+using Outputs = std::vector<std::unique_ptr<ConflictOutput>>;
+
+Outputs open_outputs(const ConflictsCommand& options) {
+  Outputs out;
+  for (const std::filesystem::path& path : options.outputs) conflict_format_of(path);
+  for (const std::filesystem::path& path : options.outputs) {
+    refuse_overwriting(path, {options.result, options.trajectory, options.model});
+    out.push_back(std::make_unique<ConflictOutput>(path, options.force));
+  }
+  return out;
+}
+
+void run_conflicts(ConflictsCommand& options) {
+  const Outputs outputs = open_outputs(options);
+  check_is_trajectory(options.trajectory);
+  const Result result(options.result);
+  convert_lengths(options.lengths, result);
+  ConsoleProgress progress;
+  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
+  options.find.stop = &stop_flag();
+  const std::vector<Pose> poses =
+      read_poses(options.trajectory, options.trajectory_options, result);
+  std::vector<Vec3> model;
+  if (!options.model.empty()) {
+    model = read_model_of(options.model, options.model_options, result);
+    options.find.model_box = box_of(model);
+  }
+  const bool drawn = std::ranges::any_of(
+      outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
+  std::vector<std::uint32_t> conflict_of;
+  const Conflicts conflicts =
+      find_conflicts(result, poses, options.find, drawn ? &conflict_of : nullptr);
+  ConflictPictures pictures{{}, std::move(model)};
+  if (drawn) pictures.points = conflict_points(result.reader(), conflicts, conflict_of);
+  ConflictFile file{
+      conflicts,   options.find, result.reader().header(), poses, conflict_warnings(conflicts),
+      options.date};
+  for (const auto& output : outputs) {
+    write_conflicts(file, pictures, output->format, output->pending.partial());
+  }
+  for (const auto& output : outputs) output->pending.publish();
+  for (const Message& warning : file.warnings) log_message(warning);
+  print(options.json ? "{\n" + summary_json(file) + "\n}\n" : conflict_text(file, options.show));
+}
+
+/// A day, or a time in UTC, as ISO 8601 has them.
+std::string full_date(const std::string& text) {
+  const std::string full = text.size() == 10 ? text + "T00:00:00Z" : text;
+  constexpr std::string_view kForm = "0000-00-00T00:00:00Z";
+  bool good = full.size() == kForm.size();
+  for (std::size_t i = 0; good && i < kForm.size(); ++i) {
+    const bool digit = full[i] >= '0' && full[i] <= '9';
+    good = kForm[i] == '0' ? digit : full[i] == kForm[i];
+  }
+  const auto number = [&](std::size_t at, std::size_t digits) {
+    return static_cast<unsigned>(std::stoul(full.substr(at, digits)));
+  };
+  good =
+      good &&
+      std::chrono::year_month_day(std::chrono::year(static_cast<int>(number(0, 4))),
+                                  std::chrono::month(number(5, 2)), std::chrono::day(number(8, 2)))
+          .ok() &&
+      number(11, 2) < 24 && number(14, 2) < 60 && number(17, 2) < 60;
+  if (good) return full;
+  throw CLI::ValidationError("--date", text +
+                                           ": expected a day such as 2025-03-31, or a time such "
+                                           "as 2025-03-31T12:00:00Z");
+}
+
+void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char* description) {
+  static const std::map<std::string, Axis> kAxes{
+      {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
+      {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
+      {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
+  command
+      .add_option_function<std::string>(
+          name, [&axis](const std::string& text) { axis = kAxes.at(text); }, description)
+      ->type_name("AXIS")
+      ->check(CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
+}
+
+void add_sides(CLI::App& command, ConflictsCommand& options) {
+  add_axis(command, "--forward", options.find.forward,
+           "Axis of the model that points ahead, for example +y (default: +x)");
+  add_axis(command, "--up", options.find.up,
+           "Axis of the model that points up, for example -z (default: +z)");
+  command
+      .add_option("--model", options.model, "The model of the run: for the sides of older results")
+      ->type_name("FILE");
+  add_model_options(command, options.model_options, options.lengths);
+}
+
+}  // namespace
+
+void add_conflicts(CLI::App& program) {
+  const auto options = std::make_shared<ConflictsCommand>();
+  CLI::App* command = program.add_subcommand(
+      "conflicts", "Group the colliding points of a result to conflicts, place by place");
+  command->add_option("RESULT", options->result, "Result of clearway run with --first-pose")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--trajectory", options->trajectory, "The trajectory of the run")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "Output: .csv, .json, .geojson, .gpkg or .bcf; may be given several times")
+      ->type_name("FILE");
+  add_conflict_options(*command, *options);
+  add_sides(*command, *options);
+  command->add_option("--show", options->show, "Print a table of so many conflicts")
+      ->type_name("N")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  command
+      ->add_option_function<std::string>(
+          "--date", [&date = options->date](const std::string& text) { date = full_date(text); },
+          "Date that BCF and GeoPackage show, for example 2025-03-31 (default: 2000-01-01, so that "
+          "equal conflicts give equal files)")
+      ->type_name("DATE");
+  command->add_flag("--force", options->force, "Overwrite existing outputs");
+  command->add_flag("--json", options->json, "Print one JSON object, without the conflicts");
+  command->footer(
+      "Points at most the gap apart belong to one conflict, also through other points. Conflicts "
+      "are\n"
+      "numbered along the path. Those of a result with clearances have their least distance; the\n"
+      "table then begins with the worst.\n"
+      "Example: clearway conflicts out.h5 --trajectory path.txt -o conflicts.csv");
+  command->callback([options] {
+    run_stoppable(options->result, kStartsAgain, [&] { run_conflicts(*options); });
+  });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,167 @@
+#include "clearway/report.hpp"
+
+#include <spdlog/fmt/chrono.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+
+#include "clearway/clearway.hpp"
+#include "cli/commands.hpp"
+#include "cli/input_roles.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "cli/support/trajectory_options.hpp"
+#include "core/util/format.hpp"
+#include "core/util/message_log.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/system/pending_file.hpp"
+#include "search/checks/query_warnings.hpp"
+
+namespace clearway::tool {
+namespace {
+
+constexpr double kReportSpacingsInRadius = 4;  // as run samples a mesh
+
+struct ReportCommand {
+  std::filesystem::path result, environment, model, trajectory, output;
+  ModelOptions model_options;
+  TrajectoryOptions trajectory_options;
+  ReportOptions report;
+  bool json = false;
+};
+
+std::string now_in_utc() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
+}
+
+std::string file_name(const std::filesystem::path& path) {
+  const std::filesystem::path name = path.filename();
+  return name.empty() ? path.parent_path().filename().string() : name.string();
+}
+
+void name_files(ReportCommand& options) {
+  options.report.result_name = file_name(options.result);
+  options.report.environment_name = file_name(options.environment);
+  options.report.model_name = file_name(options.model);
+  options.report.trajectory_name = file_name(options.trajectory);
+  if (options.report.date.empty()) options.report.date = now_in_utc();
+}
+
+Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {
+  std::vector<Message>& warnings = options.report.warnings;
+  ModelOptions how = options.model_options;
+  if (how.spacing == 0) how.spacing = result.parameters().radius / kReportSpacingsInRadius;
+  std::vector<Vec3> model = read_model(options.model, how, &warnings);
+  options.trajectory_options.default_crs = store.crs_wkt();
+  std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options,
+                                            &warnings, &options.report.labels);
+  return {std::move(model), std::move(poses), result.parameters()};
+}
+
+void log_summary(const ReportCommand& options, const ReportSummary& summary,
+                 const Result& result) {
+  spdlog::info("{}: {}, {} colliding points, {} conflicts, {}", options.output.string(),
+               summary.clear ? "clear" : "conflict", format_count(result.size()),
+               format_count(summary.conflicts.listed.size()), format_size(summary.bytes));
+  spdlog::info("open it in a browser: it is one file and needs no network");
+}
+
+void run_report(ReportCommand& options) {
+  ConsoleProgress progress;
+  options.report.conflicts.progress = [&progress](const ProgressUpdate& update) {
+    progress.update(update);
+  };
+  options.report.conflicts.stop = &stop_flag();
+  refuse_overwriting(options.output,
+                     {options.result, options.environment, options.model, options.trajectory});
+  check_is_model(options.model);
+  check_is_trajectory(options.trajectory);
+  const Result result(options.result);
+  const Store store(options.environment);
+  const Query query = read_query_again(options, result, store);
+  const MessageCallback quiet = nullptr;
+  MessageLog log(quiet, options.report.warnings);
+  warn_of_query(store.reader(), query, log);
+  name_files(options);
+  const ReportSummary summary = write_report(result, store, query.model, query.poses,
+                                             options.output, options.report);
+  log_summary(options, summary, result);
+  if (options.json) print(summary.facts + "\n");
+}
+
+void add_report_inputs(CLI::App& command, ReportCommand& options) {
+  command.add_option("RESULT", options.result, "Result of clearway run")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--env", options.environment, "The store that was searched")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--model", options.model, "The model that was moved")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
+      ->type_name("FILE")
+      ->required();
+  command.add_option("-o,--output", options.output, "The page, an HTML file")
+      ->type_name("FILE")
+      ->required();
+  add_model_options(command, options.model_options);
+  add_trajectory_options(command, options.trajectory_options);
+}
+
+void add_page_options(CLI::App& command, ReportOptions& options) {
+  command.add_option("--title", options.title, "Title of the page (default: names of the files)")
+      ->type_name("TEXT");
+  command.add_option("--date", options.date, "Date on the page (default: now, in UTC)")
+      ->type_name("TEXT");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--classes",
+          [&options](const std::vector<std::string>& texts) {
+            options.classes.clear();
+            for (const std::string& text : texts) {
+              options.classes.push_back(parse_length("--classes", text).value);
+            }
+          },
+          "Distances below which a point is a hit, near, or to be watched, for example "
+          "0.05,0.1,0.3 (default: the radius and the clearance)")
+      ->delimiter(',')
+      ->type_name("METRES,...");
+  command
+      .add_option("--max-points", options.max_points,
+                  "Environment points on the page at most; they are thinned evenly")
+      ->type_name("N")
+      ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{20'000'000}))
+      ->capture_default_str();
+  command.add_flag("--force", options.overwrite, "Overwrite an existing page");
+}
+
+}  // namespace
+
+void add_report(CLI::App& program) {
+  const auto options = std::make_shared<ReportCommand>();
+  CLI::App* command = program.add_subcommand(
+      "report", "Write a page that shows what a run found: one HTML file for any browser");
+  add_report_inputs(*command, *options);
+  add_page_options(*command, options->report);
+  add_memory_option(*command, options->report.conflicts.memory_bytes);
+  add_threads_option(*command, options->report.conflicts.threads);
+  command->add_flag("--json", options->json, "Print what the page says as one JSON object");
+  command->footer(
+      "Store, model and trajectory are those of the run: they are compared by their hashes.\n"
+      "Ask the run for --first-pose, --clearance and --profile: the page shows all of them.\n"
+      "Example: clearway report out.h5 --env site.h5 --model car.ply --trajectory path.txt -o "
+      "report.html");
+  command->callback(
+      [options] { run_stoppable(options->output, kStartsAgain, [&] { run_report(*options); }); });
+}
+
+}  // namespace clearway::tool
