@@ -1,4 +1,5 @@
 // The calls of the library as a program that embeds it sees them.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 

@@ -51,11 +51,11 @@ void HostProfile::keep_least(const PageRef& page, bool one_each,
   std::size_t kept = 0;
   for (const ProfileFact& fact : facts) {
     ProfileFact* const best = kept > 0 ? &facts[kept - 1] : nullptr;
-    if (best == nullptr || best->pose != fact.pose) {
+    const bool is_first = best == nullptr || best->pose != fact.pose;
+    if (!is_first && best->squared < fact.squared) continue;
+    if (is_first || !one_each) {
       facts[kept++] = fact;
-    } else if (best->squared == fact.squared && !one_each) {
-      facts[kept++] = fact;
-    } else if (best->squared == fact.squared && source_of(fact) < source_of(*best)) {
+    } else if (source_of(fact) < source_of(*best)) {
       *best = fact;
     }
   }

@@ -208,7 +208,7 @@ class ProfileSearch {
     Warp::each([&](std::uint32_t lane) {
       if ((open >> lane & 1) == 0) return;
       ++statistics_[lane].exact_tests;
-      search_point(pose, e[lane], bounds[lane].near, least[lane], m[lane]);
+      search_point(pose, e[lane], least[lane], m[lane]);
     });
     take(begin, least, e, m);
   }
@@ -223,28 +223,38 @@ class ProfileSearch {
     return squared_distance(e, transform(sweep_.motion.poses[pose], m));
   }
 
-  CLEARWAY_HD void offer(std::uint32_t pose, const Vec3& e, const Vec3& m, double& least,
+  CLEARWAY_HD bool offer(std::uint32_t pose, const Vec3& e, const Vec3& m, double& least,
                          Vec3& near) const {
     const double squared = squared_at(pose, e, m);
-    if (!(squared < least)) return;
+    if (!(squared < least)) return false;
     least = squared;
     near = m;
+    return true;
   }
 
   /// Offers every model point that may have a d2 of at most the best.
-  CLEARWAY_HD void search_point(std::uint32_t pose, const Vec3& e, std::uint32_t near,
-                                double& least, Vec3& near_point) const {
+  CLEARWAY_HD void search_point(std::uint32_t pose, const Vec3& e, double& least,
+                                Vec3& near) const {
     const InversePose& back = sweep_.motion.inverse_poses[pose];
     const Vec3 x = back.apply(e);
-    const ModelTreeRef::Nearest nearest =
-        sweep_.model.nearest(x, near == ModelFieldRef::kNone ? 0 : near);
-    if (farther(back.least, nearest.squared_distance, blocks_.reach())) return;
-    offer(pose, e, sweep_.model.points[nearest.point], least, near_point);
+    double ball = squared_ball(back, least);
+    sweep_.model.any(
+        [&](const Box& box) {
+          return least_squared_distance(box, x) > ball ? ModelTreeRef::Step::kSkip
+                                                       : ModelTreeRef::Step::kEnter;
+        },
+        [&](const Vec3& m) {
+          if (!(squared_distance(m, x) > ball) && offer(pose, e, m, least, near)) {
+            ball = squared_ball(back, least);
+          }
+          return false;
+        });
+  }
+
+  /// Model points beyond it, seen from the point pulled back, have only d2 above what is known.
+  CLEARWAY_HD double squared_ball(const InversePose& back, double least) const {
     const double ball = reach_of(least < bound_ ? least : bound_) / back.least * kRoundedUp;
-    sweep_.model.any_within(x, ball * ball * kRoundedUp, [&](const Vec3& m) {
-      offer(pose, e, m, least, near_point);
-      return false;
-    });
+    return ball * ball * kRoundedUp;
   }
 
   /// The least of the lanes' d2, where nothing known is better.

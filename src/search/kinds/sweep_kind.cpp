@@ -15,6 +15,10 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
   return {bytes, bytes + bytes / 4};
 }
 
+/// Of the field on the CPU: at every pose a profile looks at all points near the model, and the
+/// field decides which of them need a search of it.
+constexpr double kProfileFineness = 2;
+
 }  // namespace
 
 /// With a tolerance the result depends on the field, which memory must not decide.
@@ -57,7 +61,7 @@ CpuSweepKind::CpuSweepKind(const StoreReader& store, const Query& query,
                            const SearchOptions& options)
     : SweepKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                  .threads = options.threads},
-                store, query, options, 1) {}
+                store, query, options, query.profile > 0 ? kProfileFineness : 1) {}
 
 std::uint64_t CpuSweepKind::host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const {
   const auto threads = static_cast<std::uint32_t>(options_.threads);

@@ -1,0 +1,63 @@
+#include "support/engines/check_profile.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "cpu/brute_force.hpp"
+#include "support/engines/engines.hpp"
+
+namespace clearway {
+namespace {
+
+/// The nearest point of every pose.
+std::uint64_t check_profile(const Engine& engine, const MemoryCloud& cloud,
+                            const std::vector<NearestPoint>& expected, const Query& query) {
+  static int runs = 0;
+  const int threads = ++runs % 5 == 0 ? 3 : 1;
+  const SearchResult answer = engine.run(cloud, query, threads);
+  CAPTURE(engine.name, threads, query.profile, query.clearance, query.radius, query.first_pose,
+          cloud.cell_points());
+  REQUIRE(answer.profile.poses() == (query.model.empty() ? 0 : expected.size()));
+  std::uint64_t wrong = 0, found = 0;
+  for (std::size_t pose = 0; pose < answer.profile.poses(); ++pose) {
+    const ProfilePoint& point = answer.profile.at(pose);
+    wrong += point.squared != expected[pose].squared || point.source != expected[pose].source;
+    if (!point.found()) continue;
+    ++found;
+    wrong += !cloud.is_used(point.entry) || cloud.source(point.entry) != point.source;
+  }
+  CHECK(wrong == 0);
+  CHECK(answer.profile.count() == found);
+  return found;
+}
+
+}  // namespace
+
+std::uint64_t check_profile(const MemoryCloud& cloud, const std::vector<Vec3>& positions,
+                            const Query& query) {
+  const std::vector<NearestPoint> expected = brute_force_profile(positions, query);
+  std::uint64_t found = 0;
+  for (const Engine& engine : engines()) {
+    if (engine.clearances) found = check_profile(engine, cloud, expected, query);
+  }
+  return found;
+}
+
+Query with_profile(Query query, std::size_t variant) {
+  constexpr double kOfRadius[] = {0.3, 1, 1.7, 6, 40};
+  query.profile = kOfRadius[variant % 5] * query.radius;
+  query.clearance = variant % 3 == 0 ? 0.8 * query.radius : 0;
+  query.first_pose = variant % 2 == 0;
+  return query;
+}
+
+std::uint64_t check_profile(std::span<const Quantum> points, const Quantisation& quantisation,
+                            const Query& query) {
+  const auto environment = positions_of(points, quantisation);
+  std::uint64_t found = 0;
+  for (const std::uint32_t cell_points : {64U, 256U, 65536U}) {
+    found = check_profile(MemoryCloud(points, quantisation, {cell_points, 0}), environment, query);
+  }
+  return found;
+}
+
+}  // namespace clearway
