@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "findings/neighbourhood.hpp"
+#include "findings/group/neighbourhood.hpp"
 
 namespace clearway {
 
