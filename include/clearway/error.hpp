@@ -38,6 +38,7 @@ enum class Remedy {
   kAskForClearance,
   kAskForFirstPose,
   kSameTrajectory,  ///< the file and options that the search had
+  kAskForProfile,
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kResume,        ///< the same call goes on from what was finished
 };

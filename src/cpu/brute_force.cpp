@@ -1,5 +1,7 @@
 #include "cpu/brute_force.hpp"
 
+#include <limits>
+
 #include "core/geometry/predicate.hpp"
 #include "core/query/hit_set.hpp"
 
@@ -69,6 +71,25 @@ std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
     }
   }
   return least;
+}
+
+std::vector<NearestPoint> brute_force_profile(std::span<const Vec3> environment,
+                                              const Query& query) {
+  const double limit = rounded_product(query.profile, query.profile);
+  std::vector<NearestPoint> profile(query.poses.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t i = 0; i < query.poses.size(); ++i) {
+    NearestPoint best{std::numeric_limits<double>::infinity(), ~std::uint64_t{0}};
+    const std::vector<Vec3> moved = moved_model(query, i);
+    for (std::size_t e = 0; e < environment.size(); ++e) {
+      for (const Vec3& m : moved) {
+        const double squared = squared_distance(environment[e], m);
+        if (squared < limit && squared < best.squared) best = {squared, e};
+      }
+    }
+    profile[i] = best;
+  }
+  return profile;
 }
 
 }  // namespace clearway

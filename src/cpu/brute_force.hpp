@@ -21,4 +21,15 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
 std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
                                               const Query& query);
 
+/// The nearest point of a pose, and the index in the environment as its source.
+struct NearestPoint {
+  double squared;  ///< the least d2, infinity where none is below the square of the profile's D
+  std::uint64_t source;
+};
+
+/// Of every pose over all points: the least d2, and the smallest source that has it. Likewise an
+/// oracle.
+std::vector<NearestPoint> brute_force_profile(std::span<const Vec3> environment,
+                                              const Query& query);
+
 }  // namespace clearway

@@ -93,6 +93,8 @@ void CudaPageEngine::enqueue(const Slot& slot, const CudaPagePlan& plan) const {
                     .hits = result.arrays.hits.in(slot.result.data()).data(),
                     .first_poses = result.arrays.first_poses.in(slot.result.data()).data(),
                     .clearances = result.arrays.clearances.in(slot.result.data()).data(),
+                    .facts = result.arrays.facts.in(slot.result.data()),
+                    .fact_counts = result.arrays.fact_counts.in(slot.result.data()).data(),
                     .work = slot.work.data(),
                     .stream = stream});
   slot.searched.record(stream);
@@ -106,7 +108,13 @@ PageResult CudaPageEngine::finish(std::uint32_t index) {
   const Slot& slot = slots_[index];
   slot.finished.synchronise();
   const ResultRun run(slot.shape, search_->parts());
-  PageResult result = run.arrays.in(slot.host_result.data(), run.blocks);
+  const std::byte* found = slot.host_result.data();
+  PageResult result = run.arrays.in(found, run.blocks);
+  if (search_->parts().profile) {
+    result.profile =
+        search_->profile(index, {slot.host_upload.data(), slot.shape}, run.arrays.facts.in(found),
+                         run.arrays.fact_counts.in(found).front().facts);
+  }
   result.upload = {clock_->time_of(slot.begun), clock_->time_of(slot.uploaded)};
   result.compute = {clock_->time_of(slot.uploaded), clock_->time_of(slot.searched)};
   return result;

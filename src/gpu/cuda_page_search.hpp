@@ -34,8 +34,10 @@ struct CudaPage {
   const std::byte* plan;
   std::uint64_t tasks;
   std::uint64_t* hits;
-  std::uint32_t* first_poses;  ///< null where not asked for
-  Clearance* clearances;       ///< likewise
+  std::uint32_t* first_poses;    ///< null where not asked for
+  Clearance* clearances;         ///< likewise
+  std::span<ProfileFact> facts;  ///< likewise
+  ProfileCounts* fact_counts;
   std::byte* work;
   cudaStream_t stream;
 };
@@ -62,6 +64,14 @@ class CudaPageSearch {
   /// Clears and fills the page's result. Enqueued on its stream, not synchronised. Throws
   /// ResourceError.
   virtual void enqueue(const CudaPage& page) const = 0;
+
+  /// Makes a profile of what was listed of a page, both on the host: valid until the slot's next
+  /// page. Only with a profile.
+  virtual std::span<const ProfileFact> profile(std::uint32_t /*slot*/, const PageRef& /*page*/,
+                                               std::span<const ProfileFact> /*listed*/,
+                                               std::uint32_t /*count*/) {
+    return {};
+  }
 
  protected:
   /// The device is the current one from here on.

@@ -1,5 +1,8 @@
 #include "gpu/sweep_engine.hpp"
 
+#include <algorithm>
+
+#include "core/sweep/host_profile.hpp"
 #include "gpu/cuda_page_search.hpp"
 #include "gpu/sweep_on_device.hpp"
 #include "gpu/sweep_work_arrays.hpp"
@@ -8,7 +11,9 @@ namespace clearway {
 namespace {
 
 ResultParts parts_of(const SweepRef& sweep) {
-  return {.first_pose = sweep.first_pose, .clearance = sweep.clearance > 0};
+  return {.first_pose = sweep.first_pose,
+          .clearance = sweep.clearance > 0,
+          .profile = sweep.profile > 0};
 }
 
 /// Blocks of a page at the most.
@@ -36,7 +41,14 @@ class SweepSearch final : public CudaPageSearch {
         quantisation_(cloud.quantisation()),
         size_(size_of_slot(sweep, cloud, layout)),
         on_device_(put_on_device(sweep, arrays_)),
-        work_(work_run_, sweep, most_blocks(cloud, layout)) {}
+        work_(work_run_, sweep, most_blocks(cloud, layout)),
+        sweep_(sweep),
+        cloud_(cloud),
+        facts_(layout.slots) {
+    if (!(sweep.profile > 0)) return;
+    ProfileBestValues values(sweep);
+    bests_ = put_on_device(sweep, values.ref(), arrays_);
+  }
 
   const CudaSlotSize& slot_size() const override { return size_; }
 
@@ -49,6 +61,20 @@ class SweepSearch final : public CudaPageSearch {
                         .clearances = page.clearances,
                         .work = work_.in(page.work)};
     search_sweep(job, on_device_.tallies, resident_, page.stream);
+    if (page.facts.empty()) return;
+    const ProfileList list{page.facts.data(), page.fact_counts,
+                           static_cast<std::uint32_t>(page.facts.size())};
+    search_profile(job, bests_, list, on_device_.tallies, resident_, page.stream);
+  }
+
+  std::span<const ProfileFact> profile(std::uint32_t slot, const PageRef& page,
+                                       std::span<const ProfileFact> listed,
+                                       std::uint32_t count) override {
+    std::vector<ProfileFact>& facts = facts_[slot];
+    facts.assign(listed.begin(), listed.begin() + static_cast<std::ptrdiff_t>(
+                                                      std::min<std::size_t>(count, listed.size())));
+    HostProfile(cloud_, sweep_).complete(page, count, facts);
+    return facts;
   }
 
   SweepStatistics statistics() const {
@@ -69,6 +95,10 @@ class SweepSearch final : public CudaPageSearch {
   SweepOnDevice on_device_;
   ArrayRun work_run_;
   SweepWorkArrays work_;
+  ProfileBests bests_{};  ///< on the device, with a profile
+  const SweepRef sweep_;  ///< on the host
+  const PackedCloud& cloud_;
+  std::vector<std::vector<ProfileFact>> facts_;  ///< by slot
 };
 
 }  // namespace
@@ -84,6 +114,7 @@ SweepStatistics CudaSweepEngine::statistics() const {
 std::uint64_t cuda_sweep_bytes(const SweepRef& sweep) {
   DeviceArrayCount count;
   put_on_device(sweep, count);
+  put_on_device(sweep, ProfileBests{}, count);
   return count.bytes();
 }
 

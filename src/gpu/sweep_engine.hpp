@@ -13,8 +13,8 @@ namespace clearway {
 /// searches a block of points (core/sweep/sweep_block.hpp). All memory is taken when it is made.
 class CudaSweepEngine final : public CudaPageEngine {
  public:
-  /// Uploads what `sweep` refers to; nothing of the arguments is needed afterwards. Throws
-  /// ResourceError with CUDA's reason.
+  /// Uploads what `sweep` refers to. With a profile that and the cloud outlive it, else nothing of
+  /// the arguments is needed afterwards. Throws ResourceError with CUDA's reason.
   CudaSweepEngine(int device, const SweepRef& sweep, const PackedCloud& cloud,
                   const SlotLayout& layout);
 

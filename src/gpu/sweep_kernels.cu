@@ -1,3 +1,4 @@
+#include "core/sweep/profile_page.hpp"
 #include "core/sweep/sweep_block.hpp"
 #include "gpu/cuda_check.hpp"
 #include "gpu/sweep_kernels.hpp"
@@ -79,6 +80,23 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   tally(tallies, statistics);
 }
 
+/// Warps take one task after the other.
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    search_profile_kernel(const __grid_constant__ SweepPage job, const ProfileBests bests,
+                          const ProfileList list, unsigned long long* tallies) {
+  using Task = ProfileTask<CudaWarp>;
+  __shared__ typename Task::Shared shared[kWarpsPerBlock];
+  const auto count = static_cast<std::uint32_t>(Task::count(job.page.shape));
+  CudaWarp::PerLane<SweepStatistics> statistics;
+  Task task(job, bests, list, shared[threadIdx.x / kWarpLanes], statistics);
+  for (;;) {
+    const std::uint32_t index = CudaWarp::add(&list.counts->tasks, 1, count);
+    if (index >= count) break;
+    task.search(index);
+  }
+  tally(tallies, statistics[0]);
+}
+
 }  // namespace
 
 unsigned resident_sweep_blocks(int device) {
@@ -103,6 +121,13 @@ void search_sweep(const SweepPage& page, unsigned long long* tallies, unsigned r
   search_walks_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
   check_cuda(cudaGetLastError());
   search_items_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
+  check_cuda(cudaGetLastError());
+}
+
+void search_profile(const SweepPage& page, const ProfileBests& bests, const ProfileList& list,
+                    unsigned long long* tallies, unsigned resident_blocks, cudaStream_t stream) {
+  check_cuda(cudaMemsetAsync(list.counts, 0, sizeof(ProfileCounts), stream));
+  search_profile_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, bests, list, tallies);
   check_cuda(cudaGetLastError());
 }
 

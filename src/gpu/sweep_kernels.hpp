@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/sweep/sweep_page.hpp"
+#include "core/sweep/sweep_profile.hpp"
 
 namespace clearway {
 
@@ -20,5 +21,10 @@ unsigned resident_sweep_blocks(int device);
 /// Enqueued on `stream`, not synchronised. Throws ResourceError.
 void search_sweep(const SweepPage& page, unsigned long long* tallies, unsigned resident_blocks,
                   cudaStream_t stream);
+
+/// Lists the nearest points of a page at its poses. tallies: as of search_sweep. Enqueued on
+/// `stream`, not synchronised. Throws ResourceError.
+void search_profile(const SweepPage& page, const ProfileBests& bests, const ProfileList& list,
+                    unsigned long long* tallies, unsigned resident_blocks, cudaStream_t stream);
 
 }  // namespace clearway

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/sweep/sweep_profile.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "gpu/sweep_kernels.hpp"
 
@@ -32,6 +33,18 @@ SweepOnDevice put_on_device(const SweepRef& sweep, Arrays& arrays) {
   move(ref.motion.inverse_poses, poses);
   move(ref.motion.poses, poses);
   return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice::kTallies)};
+}
+
+/// Likewise what is known of the poses; none without a profile.
+template <typename Arrays>
+ProfileBests put_on_device(const SweepRef& sweep, const ProfileBests& bests, Arrays& arrays) {
+  if (!(sweep.profile > 0)) return {};
+  const auto move = [&](double* values, std::size_t count) {
+    return const_cast<double*>(arrays.copy(static_cast<const double*>(values), count));
+  };
+  const std::size_t poses = sweep.motion.pose_count;
+  return {bests.limit, move(bests.of_pose, poses),
+          move(bests.of_node, poses == 0 ? 0 : 2 * poses - 1)};
 }
 
 }  // namespace clearway

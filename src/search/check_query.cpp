@@ -18,6 +18,7 @@ namespace {
 void check_tolerance(const QueryParameters& query, Engine engine) {
   const char* other = query.first_pose      ? "first poses"
                       : query.clearance > 0 ? "clearances"
+                      : query.profile > 0   ? "a profile"
                       : query.between_poses ? "motion between poses"
                                             : nullptr;
   if (other != nullptr) {
@@ -41,6 +42,7 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   };
   check("the radius", query.radius, false);
   check("the clearance", query.clearance, true);
+  check("the profile's distance", query.profile, true);
   check("the tolerance", query.tolerance, true);
   check("the field's voxel", options.field_voxel, true);
   check("the grid cell", options.grid_cell, true);
@@ -69,6 +71,13 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   }
   if (query.clearance > 0 && engine != Engine::kSweep) {
     refuse_engine(name_of(engine), "has no clearances");
+  }
+  if (query.profile > 0 && query.between_poses) {
+    throw UsageError(
+        "a profile and motion between poses cannot be combined: a profile is at poses");
+  }
+  if (query.profile > 0 && engine != Engine::kSweep) {
+    refuse_engine(name_of(engine), "has no profile");
   }
   if (query.between_poses && engine == Engine::kGrid) {
     refuse_engine(name_of(engine), "searches at poses, not between them");

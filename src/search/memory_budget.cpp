@@ -1,6 +1,7 @@
 #include "search/memory_budget.hpp"
 
 #include "clearway/error.hpp"
+#include "core/query/profile_set.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway {
@@ -19,7 +20,8 @@ std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
 std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) {
   const std::uint64_t a_slot = (query.first_pose ? sizeof(std::uint32_t) : 0) +
                                (query.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
-  return store.entry_count() / 8 + a_slot * store.entry_count();
+  const std::uint64_t a_pose = query.profile > 0 ? sizeof(ProfilePoint) + sizeof(double) : 0;
+  return store.entry_count() / 8 + a_slot * store.entry_count() + a_pose * query.poses.size();
 }
 
 void check_memory(std::uint64_t needed, std::uint64_t allowed) {

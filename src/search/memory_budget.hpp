@@ -15,7 +15,8 @@ std::uint64_t program_bytes(int threads);
 /// Index of the store, model and poses.
 std::uint64_t input_bytes(const StoreReader& store, const Query& query);
 
-/// Hits, first poses and clearances of all points.
+/// Hits, first poses and clearances of all points, nearest points and chainage of all
+/// poses.
 std::uint64_t search_result_bytes(const StoreReader& store, const Query& query);
 
 /// Throws ResourceError naming what is needed where that is more than `allowed`.

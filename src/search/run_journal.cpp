@@ -45,6 +45,7 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
                            {"engine", engine},
                            {"device", device},
                            {kReplaces, yes_or_no(replaces)}};
+  if (header.profile > 0) identity.emplace_back("profile", format_number(header.profile));
   if (header.tolerance > 0) {  // then the answer depends on the field
     identity.emplace_back("field_voxel", format_number(options.field_voxel));
   }

@@ -2,12 +2,15 @@
 
 #include <tbb/task_arena.h>
 
+#include <cmath>
 #include <memory>
 
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
@@ -94,6 +97,13 @@ class Search {
     report_.was_finished = true;
     report_.colliding_points = result.collisions();
     report_.clearance_points = result.clearances();
+    ProfileRowStream profile(result);
+    std::uint32_t pose = 0;
+    for (ProfileRows rows; profile.read(rows);) {
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        report_pose(pose++, rows.distance[i], rows.source[i]);
+      }
+    }
   }
 
   /// Device kAuto goes on where the run that is resumed was.
@@ -163,7 +173,10 @@ class Search {
   void publish(const Found& found) {
     const Stopwatch write;
     try {
-      write_result(store_, found.result, header_, pending_.partial(), found.write_bytes, progress_);
+      const std::vector<double> chainage =
+          query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
+      write_result(store_, found.result, header_, pending_.partial(), found.write_bytes, progress_,
+                   chainage);
       pending_.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);
@@ -174,7 +187,22 @@ class Search {
     report_.bytes_read = touched.bytes;
     report_.colliding_points = found.result.hits.count();
     report_.clearance_points = found.result.clearances.count();
+    report_profile(found.result.profile);
     report_.seconds.write = write.seconds();
+  }
+
+  void report_profile(const ProfileSet& profile) {
+    for (std::uint32_t pose = 0; pose < profile.poses(); ++pose) {
+      const ProfilePoint& point = profile.at(pose);
+      report_pose(pose, std::sqrt(point.squared), point.source);
+    }
+  }
+
+  void report_pose(std::uint32_t pose, double distance, std::uint64_t source) {
+    if (std::isinf(distance)) return;
+    ++report_.profile_poses;
+    if (report_.least && report_.least->distance <= distance) return;
+    report_.least = {distance, pose, source};
   }
 
   const Stopwatch total_;

@@ -3,6 +3,13 @@
 #include <cassert>
 
 namespace clearway {
+
+std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                       std::uint32_t point) {
+  return std::uint64_t{cells[point / cloud.cell_entries()].cell} * cloud.cell_entries() +
+         point % cloud.cell_entries();
+}
+
 void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                   const PageResult& answer, SearchResult& all) {
   assert(answer.hits.size() == cells.size() * cloud.blocks_per_cell());
@@ -21,6 +28,12 @@ void collect_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
     for (std::size_t entry = 0; entry < clearances.size(); ++entry) {
       if (clearances[entry].found()) all.clearances.set(first_entry + entry, clearances[entry]);
     }
+  }
+  for (const ProfileFact& fact : answer.profile) {
+    const std::uint64_t entry = entry_of(cloud, cells, fact.point);
+    const auto index = static_cast<std::uint32_t>(fact.point % cloud.cell_entries());
+    const std::uint32_t cell = cells[fact.point / cloud.cell_entries()].cell;
+    all.profile.offer(fact.pose, {fact.squared, cloud.source_of(cell, index), entry});
   }
 }
 

@@ -20,6 +20,7 @@ JournalledWork journalled_work(const JournalReader& journal) {
         break;
       }
       case JournalRecordKind::kMarks:
+      case JournalRecordKind::kProfile:
         break;
       default:
         payload.refuse("of an unknown kind");

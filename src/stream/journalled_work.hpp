@@ -7,7 +7,12 @@
 namespace clearway {
 
 /// What a record of a search's journal holds; its first byte.
-enum class JournalRecordKind : std::uint8_t { kCell = 1, kMarks = 2, kFinishedPoses = 3 };
+enum class JournalRecordKind : std::uint8_t {
+  kCell = 1,
+  kMarks = 2,
+  kFinishedPoses = 3,
+  kProfile = 4
+};
 
 /// How far the run of a journal came. Throws InputError for a record that is none of a run.
 struct JournalledWork {

@@ -149,7 +149,9 @@ class Lane {
     times.compute = found.compute;
     times.collect.begin = Clock::now();
     collect_page(pages_.cloud, cells, found, pages_.answer);
-    if (pages_.journal != nullptr) pages_.journal->append_page(cells, found);
+    if (pages_.journal != nullptr) {
+      pages_.journal->append_page(cells, found, pages_.answer.profile);
+    }
     times.collect.end = Clock::now();
     free_slots_.give_back(slot);
     pages_.progress.advance(points_of(pages_.cloud, cells));
@@ -180,7 +182,8 @@ SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> ce
                        const Query& query, int threads, Progress& progress, StageTimes& times,
                        SearchJournal* journal) {
   SearchResult answer{HitSet(cloud.entry_count(), query.first_pose),
-                      ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0)};
+                      ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0),
+                      query.profile > 0 ? ProfileSet(query.poses.size()) : ProfileSet()};
   if (journal != nullptr) journal->restore(answer);
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   const ThreadLimit limit(threads);

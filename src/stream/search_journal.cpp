@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/predicate.hpp"
+#include "stream/collect_page.hpp"
 #include "stream/journalled_work.hpp"
 
 namespace clearway {
@@ -13,6 +15,9 @@ namespace {
 using enum JournalRecordKind;
 
 constexpr std::uint64_t kMostCountBytes = 10;
+
+/// Of a profile, in one record.
+constexpr std::size_t kMostFacts = 4096;
 
 std::uint64_t bit_of(std::size_t index) { return std::uint64_t{1} << index; }
 
@@ -83,7 +88,7 @@ SearchJournal::SearchJournal(std::filesystem::path path, JournalIdentity identit
 
 void SearchJournal::note_finished() {
   if (read_ == nullptr) return;
-  replay_all(nullptr, nullptr);  // checks them all
+  replay_all({});  // checks them all
   read_->for_each([this](JournalPayload payload) {
     const auto kind = payload.take<JournalRecordKind>();
     if (kind == kCell) finished_cells_[take_cell(payload)] = true;
@@ -97,15 +102,18 @@ void SearchJournal::note_finished() {
 
 // ---- reading
 
-void SearchJournal::replay_all(HitSet* hits, ClearanceSet* clearances) const {
+void SearchJournal::replay_all(const Target& target) const {
   if (read_ == nullptr) return;
   read_->for_each([&](JournalPayload payload) {
     switch (payload.take<JournalRecordKind>()) {
       case kCell:
-        replay_cell(payload, hits, clearances);
+        replay_cell(payload, target.hits, target.clearances);
+        break;
+      case kProfile:
+        replay_profile(payload, target.profile);
         break;
       case kMarks:
-        replay_marks(payload, hits);
+        replay_marks(payload, target.hits);
         break;
       case kFinishedPoses:
         PoseRange(payload, query_.poses.size());
@@ -192,6 +200,25 @@ void SearchJournal::replay_marks(JournalPayload& payload, HitSet* hits) const {
   }
 }
 
+void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile) const {
+  if (!(query_.profile > 0)) payload.refuse("of a profile that was not asked for");
+  const double limit = rounded_product(query_.profile, query_.profile);
+  for (std::uint64_t facts = payload.take_count(); facts > 0; --facts) {
+    const std::uint32_t pose = take_pose(payload);
+    const auto squared = payload.take<double>();
+    if (!(squared >= 0 && squared < limit)) payload.refuse("a distance that is none");
+    const std::uint64_t entry = payload.take_count();
+    const std::uint64_t cell = entry / cloud_.cell_entries(), index = entry % cloud_.cell_entries();
+    if (cell >= cloud_.cells().size() || index >= cloud_.cells()[cell].count) {
+      payload.refuse("a point that the store does not have");
+    }
+    if (profile == nullptr) continue;
+    const std::uint64_t source =
+        cloud_.source_of(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(index));
+    profile->offer(pose, {squared, source, entry});
+  }
+}
+
 bool SearchJournal::poses_finished(std::uint32_t first, std::uint32_t count) const {
   const auto begin = finished_poses_.begin() + first;
   return std::find(begin, begin + count, false) == begin + count;
@@ -216,7 +243,34 @@ bool SearchJournal::is_in_place() const {
   return read_ != nullptr && read_->file().is_at(path_);
 }
 
-void SearchJournal::append_page(std::span<const PlannedCell> cells, const PageResult& answer) {
+/// In records of a bounded size, before the cells count as finished. What another page has bettered
+/// is left out: if that page is not finished, it is searched again, and the best is always kept.
+void SearchJournal::append_profile(std::span<const PlannedCell> cells,
+                                   std::span<const ProfileFact> facts, const ProfileSet& profile) {
+  std::vector<const ProfileFact*> held;
+  held.reserve(std::min(facts.size(), kMostFacts));
+  while (!facts.empty()) {
+    held.clear();
+    for (; !facts.empty() && held.size() < kMostFacts; facts = facts.subspan(1)) {
+      const ProfileFact& fact = facts.front();
+      if (profile.holds(fact.pose, entry_of(cloud_, cells, fact.point))) held.push_back(&fact);
+    }
+    if (held.empty()) return;
+    JournalRecord record;
+    record.put(kProfile);
+    record.put_count(held.size());
+    for (const ProfileFact* fact : held) {
+      record.put_count(fact->pose);
+      record.put(fact->squared);
+      record.put_count(entry_of(cloud_, cells, fact->point));
+    }
+    append(record);
+  }
+}
+
+void SearchJournal::append_page(std::span<const PlannedCell> cells, const PageResult& answer,
+                                const ProfileSet& profile) {
+  append_profile(cells, answer.profile, profile);
   JournalRecord record;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto hits = part_of_cell(answer.hits, i, cloud_.blocks_per_cell());
@@ -279,7 +333,12 @@ std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& q
       (clearance ? kWordBytes + kBlockPoints * (sizeof(double) + kPoseBytes) : 0);
   constexpr std::uint64_t kRecordBytes = 64;
   // A vector that grows is there twice for a moment, the new one twice as large.
-  const std::uint64_t record = 3 * (kRecordBytes + cloud.blocks_per_cell() * block);
+  const std::uint64_t of_profile =
+      query.profile > 0
+          ? kMostFacts * (sizeof(void*) + 3 * (sizeof(double) + kPoseBytes + kMostCountBytes))
+          : 0;
+  const std::uint64_t record =
+      std::max(3 * (kRecordBytes + cloud.blocks_per_cell() * block), of_profile);
   return static_cast<std::uint64_t>(threads) * record +
          (cloud.cells().size() + query.poses.size()) / 8;
 }

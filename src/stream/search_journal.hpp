@@ -27,14 +27,17 @@ class SearchJournal final : public PoseJournal {
                 const PackedCloud& cloud, const Query& query, double interval_seconds);
 
   /// Adds what the file held to `answer`, of the same cloud and query.
-  void restore(SearchResult& answer) const { replay_all(&answer.hits, &answer.clearances); }
+  void restore(SearchResult& answer) const {
+    replay_all({&answer.hits, &answer.clearances, &answer.profile});
+  }
   bool cell_finished(std::uint32_t cell) const { return finished_cells_[cell]; }
 
-  /// Keeps the answer of a page of these cells. Thread safe.
-  void append_page(std::span<const PlannedCell> cells, const PageResult& answer);
+  /// Keeps the answer of a page of these cells, which `profile` has taken in. Thread safe.
+  void append_page(std::span<const PlannedCell> cells, const PageResult& answer,
+                   const ProfileSet& profile);
 
   // PoseJournal
-  void restore(HitSet& hits) const override { replay_all(&hits, nullptr); }
+  void restore(HitSet& hits) const override { replay_all({&hits, nullptr, nullptr}); }
   bool poses_finished(std::uint32_t first, std::uint32_t count) const override;
   void append_marks(std::span<PoseMark> marks) override;
   void append_finished_poses(std::uint32_t first, std::uint32_t count) override;
@@ -46,10 +49,20 @@ class SearchJournal final : public PoseJournal {
   static std::uint64_t most_bytes(const PackedCloud& cloud, const Query& query, int threads);
 
  private:
+  /// Where what is read goes; null for what is only checked.
+  struct Target {
+    HitSet* hits = nullptr;
+    ClearanceSet* clearances = nullptr;
+    ProfileSet* profile = nullptr;
+  };
+
   void note_finished();
   void append(JournalRecord& record);
-  void replay_all(HitSet* hits, ClearanceSet* clearances) const;
+  void append_profile(std::span<const PlannedCell> cells, std::span<const ProfileFact> facts,
+                      const ProfileSet& profile);
+  void replay_all(const Target& target) const;
   void replay_cell(JournalPayload& payload, HitSet* hits, ClearanceSet* clearances) const;
+  void replay_profile(JournalPayload& payload, ProfileSet* profile) const;
   void replay_marks(JournalPayload& payload, HitSet* hits) const;
   std::uint32_t take_cell(JournalPayload& payload) const;
   std::uint32_t take_pose(JournalPayload& payload) const;

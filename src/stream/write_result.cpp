@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cloud/kd_order.hpp"
+#include "stream/write_profile.hpp"
 
 namespace clearway {
 namespace {
@@ -184,8 +185,8 @@ void write_set(const StoreReader& store, const Set& set, std::uint64_t count,
 }  // namespace
 
 void write_result(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
-                  const std::filesystem::path& path, std::uint64_t memory_bytes,
-                  Progress& progress) {
+                  const std::filesystem::path& path, std::uint64_t memory_bytes, Progress& progress,
+                  std::span<const double> chainage) {
   const HitSet& hits = answer.hits;
   const ClearanceSet& clearances = answer.clearances;
   const std::uint64_t collisions = hits.count();
@@ -220,6 +221,7 @@ void write_result(const StoreReader& store, const SearchResult& answer, const Re
           append_rows(writer, rows, store.quantisation());
         });
   }
+  if (header.profile > 0) write_profile(store, answer.profile, chainage, writer, progress);
   writer.finish();
   progress.end();
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
@@ -11,13 +12,14 @@
 namespace clearway {
 
 /// Writes the colliding points, and the clearances where the header asks for them, to a result file
-/// at `path`, ascending by source index. Takes at most `memory_bytes`, but no less than
+/// at `path`, ascending by source index; then the profile where the header asks for it. chainage:
+/// of every pose then, metres. Takes at most `memory_bytes`, but no less than
 /// least_write_bytes(): where the rows exceed them, in several passes over the cells that have
 /// some, each for the next range of source indices. Throws InputError for a damaged cell,
 /// ResourceError for a full disk, Interrupted when the progress asks to stop.
 void write_result(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
-                  const std::filesystem::path& path, std::uint64_t memory_bytes,
-                  Progress& progress);
+                  const std::filesystem::path& path, std::uint64_t memory_bytes, Progress& progress,
+                  std::span<const double> chainage = {});
 
 /// The least memory in which write_result works, bytes.
 std::uint64_t least_write_bytes();

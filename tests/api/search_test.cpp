@@ -142,6 +142,46 @@ TEST_CASE("a search that is stopped goes on to the same bytes") {
   }
 }
 
+TEST_CASE("a profile has the same bytes whatever the threads, the memory and the stops") {
+  ApiScene scene;
+  scene.query.profile = 0.2;
+  const auto convert_to = [&](const std::string& name, std::uint32_t cell_points) {
+    convert({scene.folder / "wall.las"}, scene.folder / name, {.cell_points = cell_points});
+    return Store(scene.folder / name);
+  };
+  const Store store(scene.folder / "wall.h5"), other = convert_to("other.h5", 700);
+  const auto whole = scene.folder / "whole.h5", output = scene.folder / "out.h5";
+  const SearchReport report = search(store, scene.query, whole, {.threads = 1});
+  CHECK(report.profile_poses == 200);
+  REQUIRE(report.least);
+  const Profile profile = Result(whole).profile();
+  CHECK(report.least->distance == profile.distance[report.least->pose]);
+  CHECK(report.least->source == profile.source[report.least->pose]);
+  CHECK(*std::min_element(profile.distance.begin(), profile.distance.end()) ==
+        report.least->distance);
+  const auto check_same = [&] {
+    CHECK((bytes_of(output) == bytes_of(whole)));
+    const SearchReport again =
+        search(store, scene.query, output, {.device = Device::kCpu, .resume = true});
+    CHECK(again.was_finished);
+    CHECK(again.profile_poses == 200);
+    REQUIRE(again.least);
+    CHECK(again.least->pose == report.least->pose);
+    std::filesystem::remove(output);
+  };
+  search(store, scene.query, output, {.threads = 3, .memory_bytes = 40 << 20});
+  check_same();
+  search(other, scene.query, output, {.threads = 2});
+  check_same();
+  std::atomic<bool> stop = false;
+  SearchOptions options{.device = Device::kCpu, .threads = 1, .stop = &stop};
+  options.progress = [&](const ProgressUpdate& update) { stop = stop || update.done > 9000; };
+  CHECK_THROWS_AS(search(store, scene.query, output, options), Interrupted);
+  stop = false;
+  CHECK(search(store, scene.query, output, {.threads = 2, .resume = true}).resumed_cells > 0);
+  check_same();
+}
+
 TEST_CASE("progress never passes its total and ends finished") {
   const ApiScene scene;
   ProgressCheck conversion, run;

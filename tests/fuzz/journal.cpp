@@ -17,7 +17,7 @@ using namespace clearway::test;
 
 namespace {
 
-enum Kind : std::uint8_t { kFirstPose = 1, kClearance = 2, kPayloads = 4 };
+enum Kind : std::uint8_t { kFirstPose = 1, kClearance = 2, kPayloads = 4, kProfile = 8 };
 
 constexpr double kNever = 1e9;  // seconds
 const JournalIdentity kIdentity{{"query", "any"}};
@@ -34,6 +34,7 @@ Query query_of(std::uint8_t kind) {
   query.poses = poses;
   query.first_pose = (kind & kFirstPose) != 0;
   query.clearance = (kind & kClearance) != 0 ? 0.3 : 0;
+  query.profile = (kind & kProfile) != 0 ? 0.3 : 0;
   return query;
 }
 
@@ -68,6 +69,12 @@ void check_result(const SearchResult& answer, const Query& query) {
       require(answer.clearances.at(slot).pose < query.poses.size());
     }
   }
+  for (std::uint64_t pose = 0; pose < answer.profile.poses(); ++pose) {
+    const ProfilePoint& point = answer.profile.at(pose);
+    if (!point.found()) continue;
+    require(cloud().is_used(point.entry) && point.squared >= 0);
+    require(cloud().source(point.entry) == point.source);
+  }
 }
 
 bool same(const SearchResult& a, const SearchResult& b, const Query& query) {
@@ -76,12 +83,16 @@ bool same(const SearchResult& a, const SearchResult& b, const Query& query) {
     if (query.first_pose && a.hits.first_pose(slot) != b.hits.first_pose(slot)) return false;
     if (query.clearance > 0 && a.clearances.at(slot) != b.clearances.at(slot)) return false;
   }
+  for (std::uint64_t pose = 0; pose < a.profile.poses(); ++pose) {
+    if (a.profile.at(pose) != b.profile.at(pose)) return false;
+  }
   return true;
 }
 
 SearchResult restored(const SearchJournal& journal, const Query& query) {
   SearchResult answer{HitSet(cloud().entry_count(), query.first_pose),
-                      ClearanceSet(query.clearance > 0 ? cloud().entry_count() : 0)};
+                      ClearanceSet(query.clearance > 0 ? cloud().entry_count() : 0),
+                      query.profile > 0 ? ProfileSet(query.poses.size()) : ProfileSet()};
   journal.restore(answer);
   return answer;
 }

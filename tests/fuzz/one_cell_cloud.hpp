@@ -36,6 +36,7 @@ class OneCellCloud final : public PackedCloud {
     }
     return chunks;
   }
+  std::uint64_t source_of(std::uint32_t, std::uint32_t index) const override { return index; }
 
  private:
   std::span<const std::byte> chunk_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/sweep/model_field.hpp"
@@ -16,14 +17,15 @@ inline const Quantisation kTenths{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
 class PlannedScene {
  public:
   explicit PlannedScene(const MemoryCloudOptions& packing = {256, 2000}, std::size_t points = 9000,
-                        std::size_t pose_count = 80, bool first_pose = true, double clearance = 0)
+                        std::size_t pose_count = 80, bool first_pose = true, double clearance = 0,
+                        double profile = 0)
       : cloud_points(quantise(random_points(random_, kRoom, points), kTenths)),
         model(random_points(random_, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}, 60)),
         poses(smooth_path(random_, kWay, pose_count)),
         cloud(cloud_points, kTenths, packing),
-        query{model, poses, {0.1, first_pose, false, clearance}},
+        query{model, poses, {0.1, first_pose, false, clearance, profile}},
         tree(model),
-        field(tree, query.radius, {.reach = clearance}, 1),
+        field(tree, query.radius, {.reach = std::max(clearance, profile)}, 1),
         motion(poses, tree.box()),
         filter(query, motion, tree, field, cloud),
         cells(plan(cloud, filter)) {}

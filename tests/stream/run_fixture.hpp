@@ -91,6 +91,10 @@ class TestCloud final : public PackedCloud {
     return cloud_.read_packed(cell, to);
   }
 
+  std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const override {
+    return cloud_.source_of(cell, index);
+  }
+
   Act before_read;
   mutable std::atomic<std::uint32_t> reads{0};
 

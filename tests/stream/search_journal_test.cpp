@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -50,14 +51,18 @@ std::uint64_t difference(const PackedCloud& cloud, const SearchResult& a, const 
     if (query.first_pose) differ += a.hits.first_pose(slot) != b.hits.first_pose(slot);
     if (query.clearance > 0) differ += a.clearances.at(slot) != b.clearances.at(slot);
   }
+  differ += a.profile.poses() != b.profile.poses();
+  for (std::uint64_t pose = 0; pose < std::min(a.profile.poses(), b.profile.poses()); ++pose) {
+    differ += a.profile.at(pose) != b.profile.at(pose);
+  }
   return differ;
 }
 
 /// One query, answered with a journal from run to run.
 class JournalledScene {
  public:
-  JournalledScene(bool first_pose, double clearance)
-      : scene({64, 0}, 9000, 150, first_pose, clearance) {}
+  JournalledScene(bool first_pose, double clearance, double profile = 0)
+      : scene({64, 0}, 9000, 150, first_pose, clearance, profile) {}
 
   /// Goes on with the journal, where there is one, until the progress asks to stop or it is done.
   std::optional<SearchResult> sweep(std::uint64_t most_pages) {
@@ -145,11 +150,14 @@ void open_with(const JournalledScene& s, const std::string& bytes) {
 TEST_CASE("a sweep stopped again and again gives the answer of one that was not") {
   for (const bool first_pose : {false, true}) {
     for (const double clearance : {0.0, 0.3}) {
-      CAPTURE(first_pose, clearance);
-      JournalledScene whole(first_pose, clearance), parts(first_pose, clearance);
+      const double profile = first_pose ? 0 : 0.5 - clearance;
+      CAPTURE(first_pose, clearance, profile);
+      JournalledScene whole(first_pose, clearance, profile);
+      JournalledScene parts(first_pose, clearance, profile);
       const std::optional<SearchResult> expected = whole.sweep(kNoStop);
       REQUIRE(expected);
       REQUIRE(expected->hits.count() > 100);
+      REQUIRE((expected->profile.count() > 50) == (profile > 0));
       std::optional<SearchResult> answer;
       int runs = 0;
       while (!answer) {
@@ -165,6 +173,23 @@ TEST_CASE("a sweep stopped again and again gives the answer of one that was not"
       CHECK(journalled_work(JournalReader(parts.path)).cells == whole.scene.cells.size());
     }
   }
+}
+
+TEST_CASE("a sweep with a profile goes on from a journal cut at any record") {
+  JournalledScene s(false, 0, 0.4);
+  const std::optional<SearchResult> expected = s.sweep(kNoStop);
+  REQUIRE(expected);
+  REQUIRE(expected->profile.count() > 50);
+  const std::string whole = bytes_of(s.path);
+  std::uint64_t finished = 0;
+  for (std::size_t bytes = whole.size(); bytes > 200; bytes -= whole.size() / 40) {
+    put_bytes(s.path, whole.substr(0, bytes));
+    finished += journalled_work(JournalReader(s.path)).cells;
+    const std::optional<SearchResult> answer = s.sweep(kNoStop);
+    REQUIRE(answer);
+    CHECK(difference(s.scene.cloud, *answer, *expected, s.scene.query) == 0);
+  }
+  CHECK(finished > 100);
 }
 
 TEST_CASE("a kdtree search stopped again and again gives the answer of one that was not") {
@@ -208,6 +233,7 @@ TEST_CASE("a kdtree search goes on from a journal cut at any record") {
 
 TEST_CASE("records that are not of the cloud and the query are refused") {
   const JournalledScene set(false, 0), poses(true, 0), clearances(false, 0.3);
+  const JournalledScene profile(false, 0, 0.5);
   const std::string bits("\1\0\0\0\0\0\0\0", 8), none(8, '\0');
   const std::string cell0("\1\0\1\0", 4);  // cell 0, one word, the first
   CHECK_NOTHROW(open_with(set, cell0 + bits));
@@ -239,7 +265,15 @@ TEST_CASE("records that are not of the cloud and the query are refused") {
   for (const double squared :
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     refused(clearances, clearance + distance(squared) + '\5', "a distance that is none");
+    refused(profile, "\4\1\5" + distance(squared) + '\7', "a distance that is none");
   }
+  CHECK_NOTHROW(open_with(profile, "\4\1\5" + distance(0.01) + '\7'));
+  refused(profile, "\4\1\5" + distance(0.25) + '\7', "a distance that is none");
+  refused(profile, "\4\2\5" + distance(0.01) + '\7', "ends too early");
+  refused(profile, "\4\1\xff\x7f" + distance(0.01) + '\7', "a pose past the trajectory's end");
+  refused(profile, "\4\1\5" + distance(0.01) + "\xff\xff\x7f",
+          "a point that the store does not have");
+  refused(set, "\4\1\5" + distance(0.01) + '\7', "of a profile that was not asked for");
 }
 
 TEST_CASE("a cell without hits costs a few bytes") {
@@ -254,7 +288,7 @@ TEST_CASE("a cell without hits costs a few bytes") {
     const std::vector<std::uint64_t> hits(s.scene.cloud.blocks_per_cell());
     const std::vector<std::uint32_t> poses(s.scene.cloud.cell_entries(), HitSet::kNever);
     const std::vector<Clearance> clearances(s.scene.cloud.cell_entries());
-    journal.append_page(std::span(s.scene.cells).first(1), {hits, poses, clearances});
+    journal.append_page(std::span(s.scene.cells).first(1), {hits, poses, clearances, {}}, {});
   }
   CHECK(std::filesystem::file_size(s.path) <= empty + 32 + 5);
 }

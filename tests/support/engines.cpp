@@ -65,7 +65,7 @@ class PreparedModel {
   PreparedModel(const Query& query, int threads)
       : points_(query.model),
         radius_(search_radius(query)),
-        reach_(query.clearance),
+        reach_(reach_of(query)),
         threads_(threads),
         tree_(points_),
         field_(tree_, radius_, {.reach = reach_}, threads) {}
@@ -73,13 +73,15 @@ class PreparedModel {
   PreparedModel& operator=(const PreparedModel&) = delete;
 
   bool is_for(const Query& query, int threads) const {
-    return radius_ == search_radius(query) && reach_ == query.clearance && threads_ == threads &&
+    return radius_ == search_radius(query) && reach_ == reach_of(query) && threads_ == threads &&
            std::ranges::equal(points_, query.model, same_bits);
   }
   const ModelTree& tree() const { return tree_; }
   const ModelField& field() const { return field_; }
 
  private:
+  static double reach_of(const Query& query) { return std::max(query.clearance, query.profile); }
+
   /// A field is the same only for the very same numbers, the sign of a zero included.
   static bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -139,6 +141,46 @@ std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uin
     }
   }
   return colliding;
+}
+
+/// The nearest point of every pose.
+std::uint64_t check_profile(const Engine& engine, const MemoryCloud& cloud,
+                            const std::vector<NearestPoint>& expected, const Query& query) {
+  const int threads = next_threads();
+  const SearchResult answer = engine.run(cloud, query, threads);
+  CAPTURE(engine.name, threads, query.profile, query.clearance, query.radius, query.first_pose,
+          cloud.cell_points());
+  REQUIRE(answer.profile.poses() == (query.model.empty() ? 0 : expected.size()));
+  std::uint64_t wrong = 0, found = 0;
+  for (std::size_t pose = 0; pose < answer.profile.poses(); ++pose) {
+    const ProfilePoint& point = answer.profile.at(pose);
+    wrong += point.squared != expected[pose].squared || point.source != expected[pose].source;
+    if (!point.found()) continue;
+    ++found;
+    wrong += !cloud.is_used(point.entry) || cloud.source(point.entry) != point.source;
+  }
+  CHECK(wrong == 0);
+  CHECK(answer.profile.count() == found);
+  return found;
+}
+
+std::uint64_t check_profile(const MemoryCloud& cloud, const std::vector<Vec3>& positions,
+                            const Query& query) {
+  const std::vector<NearestPoint> expected = brute_force_profile(positions, query);
+  std::uint64_t found = 0;
+  for (const Engine& engine : engines()) {
+    if (engine.clearances) found = check_profile(engine, cloud, expected, query);
+  }
+  return found;
+}
+
+/// D of a profile, from far below the radius to far above it.
+Query with_profile(Query query, std::size_t variant) {
+  constexpr double kOfRadius[] = {0.3, 1, 1.7, 6, 40};
+  query.profile = kOfRadius[variant % 5] * query.radius;
+  query.clearance = variant % 3 == 0 ? 0.8 * query.radius : 0;
+  query.first_pose = variant % 2 == 0;
+  return query;
 }
 
 using Oracle = std::vector<Clearance>;
@@ -241,6 +283,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
   const MemoryCloud cloud(points, quantisation, packing);
   check_clearances(cloud, brute_force_clearances(environment, query), expected.at_poses,
                    with_clearance(query, 2.5 * query.radius, points.size() % 2 == 0));
+  check_profile(cloud, environment, with_profile(query, points.size()));
   return check_packed(cloud, expected, query);
 }
 
@@ -252,6 +295,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
   std::uint64_t colliding = 0;
   double of_radius = 0.4;
   bool first_pose = false;
+  std::size_t variant = points.size();
   for (const MemoryCloudOptions& packing :
        {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
         MemoryCloudOptions{128, 500}}) {
@@ -259,10 +303,21 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
     colliding = check_packed(cloud, expected, query);
     check_clearances(cloud, least, expected.at_poses,
                      with_clearance(query, of_radius * query.radius, first_pose));
+    check_profile(cloud, environment, with_profile(query, variant++));
     first_pose = !first_pose;
     of_radius *= 2.5;
   }
   return colliding;
+}
+
+std::uint64_t check_profile(std::span<const Quantum> points, const Quantisation& quantisation,
+                            const Query& query) {
+  const auto environment = positions_of(points, quantisation);
+  std::uint64_t found = 0;
+  for (const std::uint32_t cell_points : {64U, 256U, 65536U}) {
+    found = check_profile(MemoryCloud(points, quantisation, {cell_points, 0}), environment, query);
+  }
+  return found;
 }
 
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,

@@ -19,7 +19,7 @@ struct Engine {
   std::string name;
   SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads);
   bool between_poses;  ///< whether it answers such queries
-  bool clearances;     ///< likewise
+  bool clearances;     ///< likewise, and profiles
   bool tolerance;      ///< likewise
 };
 
@@ -55,5 +55,9 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
 /// The clearances that the query asks for. Returns how many there are.
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
                                const Query& query);
+
+/// The profile that the query asks for, in several packings. Returns how many poses have a point.
+std::uint64_t check_profile(std::span<const Quantum> points, const Quantisation& quantisation,
+                            const Query& query);
 
 }  // namespace clearway

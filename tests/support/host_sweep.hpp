@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
+#include "core/sweep/host_profile.hpp"
+#include "core/sweep/profile_page.hpp"
 #include "core/sweep/sweep_block.hpp"
 
 namespace clearway {
@@ -20,7 +23,10 @@ class HostSweep final : public PageEngine {
         quantisation_(cloud.quantisation()),
         pool_(cloud, query_of(sweep), layout),
         results_(layout.slots),
-        entries_(entries) {}
+        entries_(entries),
+        profile_(cloud, sweep_),
+        bests_(sweep_),
+        facts_(layout.slots) {}
 
   std::uint32_t slots() const override { return pool_.layout().slots; }
   std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
@@ -43,9 +49,26 @@ class HostSweep final : public PageEngine {
                 2 * entries_, entries_,       entries_,     entries_};
     run(job);
     results_[slot] = pool_.result(slot, shape.cells);
+    if (sweep_.profile > 0) search_profile(slot, job);
   }
 
  private:
+  /// As on a device, whose list may be too short.
+  void search_profile(std::uint32_t slot, const SweepPage& job) {
+    std::vector<ProfileFact>& facts = facts_[slot];
+    facts.assign(entries_, {});
+    ProfileCounts counts{};
+    const ProfileList list{facts.data(), &counts, entries_};
+    HostWarp::PerLane<SweepStatistics> statistics;
+    ProfileTask<HostWarp>::Shared shared;
+    for (std::uint32_t task = 0; task < ProfileTask<HostWarp>::count(job.page.shape); ++task) {
+      ProfileTask<HostWarp>(job, bests_.ref(), list, shared, statistics).search(task);
+    }
+    const std::lock_guard lock(mutex_);
+    profile_.complete(job.page, counts.facts, facts);
+    results_[slot].profile = facts;
+  }
+
   static Query query_of(const SweepRef& sweep) {
     Query query;
     query.first_pose = sweep.first_pose;
@@ -80,6 +103,10 @@ class HostSweep final : public PageEngine {
   PagePool pool_;
   std::vector<PageResult> results_;
   std::uint32_t entries_;
+  HostProfile profile_;
+  ProfileBestValues bests_;
+  std::vector<std::vector<ProfileFact>> facts_;  ///< by slot
+  std::mutex mutex_;
 };
 
 }  // namespace clearway

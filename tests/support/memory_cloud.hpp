@@ -37,6 +37,10 @@ class MemoryCloud final : public PackedCloud {
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                        std::span<std::byte> to) const override;
 
+  std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const override {
+    return source(std::uint64_t{cell} * cell_entries() + index);
+  }
+
   /// Index, in the points given, of the point in a used slot.
   std::uint64_t source(std::uint64_t slot) const { return sources_[slot]; }
   bool is_used(std::uint64_t slot) const {

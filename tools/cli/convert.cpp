@@ -12,11 +12,15 @@
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
+#include "cli/support/sources_json.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
+#include "core/geometry/quantum_box.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/store/store_reader.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -42,23 +46,36 @@ std::optional<double> regular_size_of(const std::string& layout) {
   return size;
 }
 
-nlohmann::ordered_json array_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+nlohmann::ordered_json box_json(const StoreReader& store) {
+  if (store.tree().empty()) return nullptr;
+  const Box box = position_box(store.quantisation(), store.tree()[0].box);
+  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
+}
 
-nlohmann::ordered_json json_of(const ConvertReport& report, double total_seconds) {
-  nlohmann::ordered_json out{{"was_finished", report.was_finished}};
+/// Of a store that was there already, what only a conversion knows is null.
+nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArguments& options,
+                               double total_seconds) {
+  const StoreReader store(options.output);
+  const StoreMetadata& metadata = store.metadata();
+  nlohmann::ordered_json out = program_json({{"output", options.output}});
+  for (const auto& input : options.inputs) out["files"]["inputs"].push_back(input.string());
+  out["was_finished"] = report.was_finished;
+  out["points"] = metadata.point_count;
+  out["cells"] = store.cells().size();
+  out["non_finite"] = metadata.input_points - metadata.point_count;
+  out["absent"] = nullptr;
+  out["scale"] = metadata.quantisation.scale;
+  out["offset"] = metadata.quantisation.offset;
+  out["box"] = box_json(store);
+  out["sources"] = sources_json(metadata);
+  out["largest_change"] = nullptr;
+  out["temporary_bytes"] = nullptr;
+  out["output_bytes"] = std::filesystem::file_size(options.output);
   if (!report.was_finished) {
-    out["points"] = report.points;
-    out["cells"] = report.cells;
     out["non_finite"] = report.non_finite_points;
     out["absent"] = report.absent_points;
-    out["scale"] = array_of(report.scale);
-    out["offset"] = array_of(report.offset);
-    out["box"] = nullptr;
-    if (report.box)
-      out["box"] = {{"lo", array_of(report.box->lo)}, {"hi", array_of(report.box->hi)}};
     out["largest_change"] = report.largest_change;
     out["temporary_bytes"] = report.temporary_bytes;
-    out["output_bytes"] = report.output_bytes;
   }
   out["warnings"] = warnings_json(report.warnings);
   out["seconds"] = {{"total", total_seconds},
@@ -99,7 +116,7 @@ void run_convert(ConvertArguments& options) {
   watch_call(conversion, progress);
   const ConvertReport report = convert(options.inputs, options.output, conversion);
   log_report(options, report);
-  if (options.json) print(json_of(report, total.seconds()).dump(2) + "\n");
+  if (options.json) print(text_of_json(json_of(report, options, total.seconds())));
 }
 
 }  // namespace

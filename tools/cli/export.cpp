@@ -3,35 +3,114 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
+#include "clearway/error.hpp"
+#include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
+#include "io/export/export_profile.hpp"
 #include "io/export/export_result.hpp"
+#include "io/export/export_scan_records.hpp"
+#include "io/trajectory/content_hash.hpp"
 
 namespace clearway::tool {
 namespace {
 
 struct ExportOptions {
-  std::filesystem::path result, output;
+  std::filesystem::path result, output, trajectory;
+  std::vector<std::filesystem::path> scans;
+  TrajectoryOptions trajectory_options;
   std::string what = "collisions";
   bool force = false;
+  bool json = false;
 };
 
-void export_rows(const ExportOptions& options) {
-  const ResultReader result(options.result);
+void check_combination(const ExportOptions& options) {
+  if (!options.scans.empty() && options.what != "collisions") {
+    throw UsageError("--scans is for the colliding points: leave out --what " + options.what);
+  }
+  if (!options.trajectory.empty() && options.what != "profile") {
+    throw UsageError("--trajectory names the poses of a profile: it needs --what profile");
+  }
+}
+
+/// Of the trajectory, which has to be that of the result.
+PoseLabels labels_for(const ResultReader& result, ExportOptions& options) {
+  PoseLabels labels;
+  if (options.trajectory.empty()) return labels;
+  options.trajectory_options.default_crs = result.header().crs_wkt;
+  std::vector<Message> remarks;
+  const std::vector<Pose> poses =
+      read_trajectory(options.trajectory, options.trajectory_options, &remarks, &labels);
+  if (poses.size() != result.header().poses ||
+      hash_of_trajectory(poses) != result.header().trajectory_hash) {
+    throw InputError(options.trajectory.string() + ": has other poses than the trajectory of " +
+                     result.name() + "; expected the same file and options as for the run");
+  }
+  return labels;
+}
+
+/// What was written, and how many rows.
+struct Exported {
+  std::uint64_t rows;
+  const char* unit;
+};
+
+Exported export_table(const ResultReader& result, ExportOptions& options) {
   ConsoleProgress progress;
   if (options.what == "clearance") {
     export_clearances(result, options.output, options.force, progress);
-    spdlog::info("{}: {} clearances", options.output.string(), format_count(result.clearances()));
-    return;
+    if (!result.header().has_clearance_xyz()) {
+      spdlog::warn("{}: is of version 2; its clearances have no coordinates, run the query again",
+                   options.result.string());
+    }
+    return {result.clearances(), "clearances"};
   }
-  export_result(result, options.output, options.force, progress);
-  spdlog::info("{}: {} colliding points", options.output.string(),
-               format_count(result.collisions()));
+  if (options.what == "profile") {
+    export_profile(result, labels_for(result, options), options.output, options.force, progress);
+    return {result.profile_rows(), "poses"};
+  }
+  if (options.scans.empty()) {
+    export_result(result, options.output, options.force, progress);
+  } else {
+    export_scan_records(result, options.scans, options.output, options.force, progress);
+  }
+  return {result.collisions(), "colliding points"};
 }
+
+void run_export(ExportOptions& options) {
+  check_combination(options);
+  const ResultReader result(options.result);
+  const Exported exported = export_table(result, options);
+  spdlog::info("{}: {} {}", options.output.string(), format_count(exported.rows), exported.unit);
+  if (!options.json) return;
+  nlohmann::ordered_json out =
+      program_json({{"result", options.result}, {"output", options.output}});
+  out["what"] = options.what;
+  out["with_records_of_scans"] = !options.scans.empty();
+  out["rows"] = exported.rows;
+  print(text_of_json(out));
+}
+
+constexpr const char* kFooter =
+    "Formats, with coordinates in the environment's unit, normally metres:\n"
+    "  .las  integers, scale, offset and CRS of the scans; first_pose as extra bytes\n"
+    "  .ply  binary little-endian, double x y z, uint first_pose\n"
+    "  .xyz  text: x y z\n"
+    "  .csv  text with a header: source,x,y,z,first_pose\n"
+    "first_pose counts from 0 and is there where the result has it. source is the point's index\n"
+    "in the order of the scans. Text has enough digits to give back each coordinate exactly.\n"
+    "--what clearance has distance and pose in the place of first_pose, .xyz too.\n"
+    "--what profile is CSV only: pose,time,name,chainage,distance,source,x,y,z.\n"
+    "--scans copies records of LAS, all of one point format, with all their fields.\n"
+    "Example: clearway export out.h5 -o colliding.las";
 
 }  // namespace
 
@@ -49,23 +128,23 @@ void add_export(CLI::App& program) {
       ->required();
   command
       ->add_option("--what", options->what,
-                   "collisions, or clearance: CSV of what run --clearance found")
-      ->check(CLI::IsMember({"collisions", "clearance"}))
+                   "collisions; clearance, what run --clearance found; or profile, a line a pose")
+      ->check(CLI::IsMember({"collisions", "clearance", "profile"}))
       ->capture_default_str();
+  command
+      ->add_option("--scans", options->scans,
+                   "Copy the points' own records out of these scans, as convert got them; LAS only")
+      ->type_name("PATH...");
+  command
+      ->add_option("--trajectory", options->trajectory,
+                   "Of the run: adds its times and names to a profile")
+      ->type_name("FILE");
+  add_trajectory_options(*command, options->trajectory_options);
   command->add_flag("--force", options->force, "Overwrite an existing output");
-  command->footer(
-      "Formats, with coordinates in the environment's unit, normally metres:\n"
-      "  .las  integers, scale, offset and CRS of the scans; first_pose as extra bytes\n"
-      "  .ply  binary little-endian, double x y z, uint first_pose\n"
-      "  .xyz  text: x y z\n"
-      "  .csv  text with a header: source,x,y,z,first_pose\n"
-      "        with --what clearance: source,distance,pose\n"
-      "first_pose counts from 0 and is there where the result has it. source is the point's "
-      "index\n"
-      "in the order of the scans. Text has enough digits to give back each coordinate exactly.\n"
-      "Example: clearway export out.h5 -o colliding.las");
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->footer(kFooter);
   command->callback(
-      [options] { run_stoppable(options->output, kStartsAgain, [&] { export_rows(*options); }); });
+      [options] { run_stoppable(options->output, kStartsAgain, [&] { run_export(*options); }); });
 }
 
 }  // namespace clearway::tool

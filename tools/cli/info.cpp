@@ -8,6 +8,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
+#include "cli/support/sources_json.hpp"
 #include "cli/support/standard_output.hpp"
 #include "core/geometry/point_box.hpp"
 #include "io/inspect/file_kind.hpp"
@@ -38,11 +39,6 @@ ordered_json describe(const StoreReader& store) {
   const StoreMetadata& m = store.metadata();
   std::uint64_t packed = 0;
   for (const std::uint32_t bytes : store.index().bytes) packed += bytes;
-  ordered_json sources = ordered_json::array();
-  for (const SourceFile& source : m.sources) {
-    sources.push_back(
-        {{"name", source.name}, {"bytes", source.bytes}, {"xxh64", hash_text(source.xxh64)}});
-  }
   return {{"kind", "store"},
           {"version", kStoreVersion},
           {"points", m.point_count},
@@ -58,7 +54,7 @@ ordered_json describe(const StoreReader& store) {
           {"crs_wkt", m.crs_wkt},
           {"points_hash", hash_text(m.points_hash)},
           {"fingerprint", hash_text(store.fingerprint())},
-          {"sources", sources}};
+          {"sources", sources_json(m)}};
 }
 
 ordered_json describe(const ResultReader& result) {
@@ -185,6 +181,15 @@ ordered_json describe(const std::filesystem::path& file) {
   }
 }
 
+/// Which source indices come from a file.
+std::string indices_text(const ordered_json& source) {
+  if (source["points"].is_null()) return "";
+  const auto first = source["first_source"].get<std::uint64_t>();
+  const auto points = source["points"].get<std::uint64_t>();
+  if (points == 0) return ", no points";
+  return fmt::format(", source indices {} to {}", first, first + points - 1);
+}
+
 std::string text_of(const ordered_json& description) {
   std::size_t width = 0;
   for (const auto& [key, value] : description.items()) width = std::max(width, key.size());
@@ -192,9 +197,9 @@ std::string text_of(const ordered_json& description) {
   for (const auto& [key, value] : description.items()) {
     if (key == "sources") {
       for (const auto& source : value) {
-        text += fmt::format("{:<{}}  {} ({} bytes, xxh64 {})\n", "source", width,
+        text += fmt::format("{:<{}}  {} ({} bytes, xxh64 {}){}\n", "source", width,
                             source["name"].get<std::string>(), source["bytes"].get<std::uint64_t>(),
-                            source["xxh64"].get<std::string>());
+                            source["xxh64"].get<std::string>(), indices_text(source));
       }
     } else {
       text += fmt::format("{:<{}}  {}\n", key, width,

@@ -10,7 +10,7 @@ using namespace clearway::tool;
 
 void add_commands(CLI::App& program, int& exit_code) {
   add_convert(program);
-  add_run(program);
+  add_run(program, exit_code);
   add_export(program);
   add_conflicts(program);
   add_compare(program, exit_code);

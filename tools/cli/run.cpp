@@ -12,9 +12,12 @@
 #include "cli/memory_use.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/exit_code.hpp"
+#include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
+#include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -26,6 +29,12 @@ constexpr const char* kHowToResume =
     "the same command with --resume, without --force, continues from the finished work";
 
 constexpr double kSpacingsInRadius = 4;  // of a mesh, where no spacing is given
+
+/// What the result says, for people.
+struct Answer {
+  Verdict verdict;
+  PoseLabels labels;
+};
 
 /// Beside what the library reports.
 struct ProgramReport {
@@ -62,37 +71,46 @@ nlohmann::ordered_json tolerance_of(const SearchReport& report, double metres) {
           {"settled_by_bounds", spared.resolved_by_bounds}};
 }
 
-/// Of a result that was there already no engine searched.
+/// Whether a value is known of this run; otherwise null.
+template <typename Value>
+nlohmann::ordered_json known(bool is_known, const Value& value) {
+  return is_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+/// Of a result that was there already no engine searched: what only a search knows is null.
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
-                               const ProgramReport& program) {
-  nlohmann::ordered_json out{{"environment_points", report.environment_points},
-                             {"model_points", report.model_points},
-                             {"poses", report.poses},
-                             {"colliding_points", report.colliding_points},
-                             {"clearance_points", report.clearance_points},
-                             {"engine", nullptr},
-                             {"device", nullptr}};
-  if (!report.was_finished) {
-    out["engine"] = name_of(report.engine);
-    out["device"] = name_of(report.device);
-    out["searches"] = report.searches;
-    out["field_voxel"] = report.field_voxel;
-    out["grid_cell"] = report.grid_cell;
-  }
+                               const Answer& answer, const ProgramReport& program) {
+  const bool searched = !report.was_finished;
+  nlohmann::ordered_json out = program_json({{"env", options.environment},
+                                             {"model", options.model},
+                                             {"trajectory", options.trajectory},
+                                             {"output", options.output}});
+  out["radius"] = options.query.radius;
+  out["was_finished"] = report.was_finished;
+  out["environment_points"] = report.environment_points;
+  out["model_points"] = report.model_points;
+  out["poses"] = report.poses;
+  out["colliding_points"] = report.colliding_points;
+  out["clearance_points"] = report.clearance_points;
+  out["profile_poses"] = report.profile_poses;
+  add_verdict(answer.verdict, answer.labels, out);
+  out["engine"] = known(searched, name_of(report.engine));
+  out["device"] = known(searched, name_of(report.device));
+  out["searches"] = known(searched, report.searches);
+  out["field_voxel"] = known(searched, report.field_voxel);
+  out["grid_cell"] = known(searched, report.grid_cell);
   out["cells_total"] = report.cells_total;
   out["cells_read"] = report.cells_read;
   out["bytes_read"] = report.bytes_read;
-  if (!report.was_finished) {
-    out["resumed_cells"] = report.resumed_cells;
-    out["resumed_poses"] = report.resumed_poses;
-    out["pages"] = report.pages;
-    out["page_bytes"] = report.page_bytes;
-    out["slots"] = report.slots;
-    out["needed_host_bytes"] = report.needed_host_bytes;
-  }
+  out["resumed_cells"] = known(searched, report.resumed_cells);
+  out["resumed_poses"] = known(searched, report.resumed_poses);
+  out["pages"] = known(searched, report.pages);
+  out["page_bytes"] = known(searched, report.page_bytes);
+  out["slots"] = known(searched, report.slots);
+  out["needed_host_bytes"] = known(searched, report.needed_host_bytes);
   out["peak_host_bytes"] = program.peak_host_bytes + report.pinned_bytes;
   out["peak_device_bytes"] = report.peak_device_bytes;
-  if (!report.was_finished) out["tolerance"] = tolerance_of(report, options.query.tolerance);
+  out["tolerance"] = tolerance_of(report, options.query.tolerance);
   out["seconds"] = seconds_of(report.seconds, program);
   out["warnings"] = warnings_json(report.warnings);
   return out;
@@ -128,14 +146,14 @@ void log_report(const SearchReport& report, const RunOptions& options, double se
 }
 
 /// Warnings of the inputs are told at once, and go into the report with those of the search.
-Query read_query(RunOptions& options, const Store& store) {
+Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   std::vector<Message>& warnings = options.search.input_warnings;
   ModelOptions how = options.model_options;
   if (how.spacing == 0) how.spacing = options.query.radius / kSpacingsInRadius;
   std::vector<Vec3> model = read_model(options.model, how, &warnings);
   options.trajectory_options.default_crs = store.crs_wkt();
   std::vector<Pose> poses =
-      read_trajectory(options.trajectory, options.trajectory_options, &warnings);
+      read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
   for (const Message& warning : warnings) log_message(warning);
   return {std::move(model), std::move(poses), options.query};
 }
@@ -156,7 +174,13 @@ Store open_environment(const std::filesystem::path& path) {
   }
 }
 
-void run(RunOptions& options) {
+std::string unit_of(const Store& store) {
+  const std::string unit = store.length_unit();
+  return unit == "foot" ? "ft" : unit == "us-survey-foot" ? "US ft" : "m";
+}
+
+/// Whether no point collides.
+bool run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
   ConsoleProgress progress;
@@ -167,20 +191,28 @@ void run(RunOptions& options) {
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
   if (const auto metres = metres_of(store)) options.lengths.convert(*metres);
-  const Query query = read_query(options, store);
+  Answer answer;
+  const Query query = read_query(options, store, answer.labels);
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();
   log_report(report, options, program.total_seconds);
+  program.peak_host_bytes = memory.peak_bytes();
+  answer.verdict = verdict_of(ResultReader(options.output), query.poses);
+  const std::string sentence =
+      verdict_text(answer.verdict, answer.labels, unit_of(store), caveat(report));
   if (options.json) {
-    program.peak_host_bytes = memory.peak_bytes();
-    print(json_of(report, options, program).dump(2) + "\n");
+    spdlog::info("{}", sentence);
+    print(text_of_json(json_of(report, options, answer, program)));
+  } else {
+    print(sentence + "\n");
   }
+  return answer.verdict.is_clear();
 }
 
 }  // namespace
 
-void add_run(CLI::App& program) {
+void add_run(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = program.add_subcommand(
       "run", "Find every environment point within the radius of the moving model");
@@ -191,12 +223,19 @@ void add_run(CLI::App& program) {
       "The first pose is the first one that touches the point. With --between-poses it is the "
       "pose\n"
       "from which the first way starts that touches the point. A way includes both its ends.\n"
+      "Prints one sentence: clear or conflict, the first place, and the least distance where\n"
+      "--clearance or --profile asks for it. With --fail-on-collision the exit code is 1 where a\n"
+      "point collides.\n"
       "Engine, device, threads and memory do not change the result. With --tolerance the device\n"
       "and --field-voxel do.\n"
       "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 -o "
       "out.h5");
-  command->callback(
-      [options] { run_stoppable(options->output, kHowToResume, [&] { run(*options); }); });
+  command->callback([options, &exit_code] {
+    run_stoppable(options->output, kHowToResume, [&] {
+      const bool clear = run(*options);
+      if (!clear && options->fail_on_collision) exit_code = kDiffers;
+    });
+  });
 }
 
 }  // namespace clearway::tool

@@ -41,6 +41,10 @@ void add_query(CLI::App& command, RunOptions& options) {
       command, "--clearance", options.query.clearance,
       "Also report the least distance, and its pose, of every point closer than this, for "
       "example 0.5; engine sweep only");
+  options.lengths.add(
+      command, "--profile", options.query.profile,
+      "Also report for every pose the least distance below this, and its point, for example 0.5; "
+      "engine sweep only");
   command.add_flag("--between-poses", options.query.between_poses,
                    "Move every model point on a straight segment from each pose to the next");
   options.lengths.add(
@@ -125,6 +129,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->capture_default_str();
   command.add_flag("--strict", options.search.strict,
                    "Refuse to search where anything is warned of (exit code 3)");
+  command.add_flag("--fail-on-collision", options.fail_on_collision,
+                   "Exit with code 1 where a point collides");
   command.add_flag("--json", options.json, "Print one JSON object about the run");
 }
 

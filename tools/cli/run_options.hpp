@@ -21,6 +21,7 @@ struct RunOptions {
   ModelOptions model_options;
   TrajectoryOptions trajectory_options;
   LengthOptions lengths;
+  bool fail_on_collision = false;
   bool json = false;
 };
 

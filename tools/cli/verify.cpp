@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "clearway/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program_json.hpp"
 #include "cli/support/standard_output.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/journal/journal.hpp"
@@ -38,7 +40,7 @@ Findings verify_journal(const std::filesystem::path& file) {
   if (journal.torn().empty()) return {};
   return {{},
           file.string() + ": " + journal.torn() +
-              "; a run with --resume cuts that off and computes it again\n"};
+              "; a run with --resume cuts that off and computes it again"};
 }
 
 Findings findings_of(const std::filesystem::path& file) {
@@ -55,21 +57,39 @@ Findings findings_of(const std::filesystem::path& file) {
   }
 }
 
-bool run_verify(const std::filesystem::path& file) {
-  const Findings found = findings_of(file);
+struct VerifyOptions {
+  std::filesystem::path file;
+  bool json = false;
+};
+
+bool run_verify(const VerifyOptions& options) {
+  const Findings found = findings_of(options.file);
+  const bool sound = found.faults.empty();
+  if (options.json) {
+    nlohmann::ordered_json out = program_json({{"file", options.file}});
+    out["sound"] = sound;
+    out["faults"] = found.faults;
+    out["remark"] = nullptr;
+    if (!found.remark.empty()) out["remark"] = found.remark;
+    print(text_of_json(out));
+    return sound;
+  }
   for (const std::string& fault : found.faults) print(fault + "\n");
-  print(found.remark);
-  print(found.faults.empty() ? file.string() + ": sound\n" : file.string() + ": damaged\n");
-  return found.faults.empty();
+  if (!found.remark.empty()) print(found.remark + "\n");
+  print(options.file.string() + (sound ? ": sound\n" : ": damaged\n"));
+  return sound;
 }
 
 }  // namespace
 
 void add_verify(CLI::App& program, int& exit_code) {
-  auto file = std::make_shared<std::filesystem::path>();
+  auto options = std::make_shared<VerifyOptions>();
   CLI::App* command = program.add_subcommand(
       "verify", "Re-read and check everything in a store, a result or a journal");
-  command->add_option("FILE", *file, "Store, result or journal")->type_name("FILE")->required();
+  command->add_option("FILE", options->file, "Store, result or journal")
+      ->type_name("FILE")
+      ->required();
+  command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
       "Names every damaged cell (at most 20), or the first damaged record of a journal.\n"
       "A killed run can leave a torn tail: such a journal is sound, and the tail is named.\n"
@@ -77,7 +97,7 @@ void add_verify(CLI::App& program, int& exit_code) {
       "Exit code 1: damaged, or not a complete store or result.\n"
       "Exit code 4: the file cannot be opened.\n"
       "Example: clearway verify site.h5");
-  command->callback([file, &exit_code] { exit_code = run_verify(*file) ? 0 : 1; });
+  command->callback([options, &exit_code] { exit_code = run_verify(*options) ? 0 : 1; });
 }
 
 }  // namespace clearway::tool

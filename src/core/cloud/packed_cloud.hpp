@@ -48,6 +48,10 @@ class PackedCloud {
   virtual std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                                std::span<std::byte> to) const = 0;
 
+  /// The source index of a point, by its place in its cell. Thread safe. Throws InputError where
+  /// the cell is damaged.
+  virtual std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const = 0;
+
   std::uint32_t blocks_per_cell() const {
     return static_cast<std::uint32_t>(divide_up(cell_points(), kBlockPoints));
   }

@@ -8,6 +8,7 @@
 
 #include "core/page/page.hpp"
 #include "core/query/clearance_set.hpp"
+#include "core/query/profile_set.hpp"
 
 namespace clearway {
 
@@ -29,7 +30,9 @@ struct PageResult {
   std::span<const std::uint64_t> hits;         ///< blocks_per_cell words a cell, bit i is point i
   std::span<const std::uint32_t> first_poses;  ///< where asked for, blocks_per_cell * 64 a cell
   std::span<const Clearance> clearances;       ///< likewise
-  Interval upload{}, compute{};                ///< when the page was sent, and searched
+  /// Where asked for: with the true profile's points that are in the page, none of them tied.
+  std::span<const ProfileFact> profile{};
+  Interval upload{}, compute{};  ///< when the page was sent, and searched
 };
 
 /// Of values that a page has `size` of a cell, those of its cell `index`; none where it has none.

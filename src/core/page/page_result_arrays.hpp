@@ -9,6 +9,7 @@ namespace clearway {
 /// What a query asks for beside the colliding points.
 struct ResultParts {
   bool first_pose, clearance;
+  bool profile = false;  ///< as a device lists it
 };
 
 /// The arrays of a PageResult of so many blocks in a run of bytes; those not asked for are empty.
@@ -16,7 +17,9 @@ struct PageResultArrays {
   PageResultArrays(ArrayRun& run, std::uint64_t blocks, const ResultParts& parts)
       : hits(run.add<std::uint64_t>(blocks)),
         clearances(run.add<Clearance>(parts.clearance ? blocks * kBlockPoints : 0)),
-        first_poses(run.add<std::uint32_t>(parts.first_pose ? blocks * kBlockPoints : 0)) {}
+        first_poses(run.add<std::uint32_t>(parts.first_pose ? blocks * kBlockPoints : 0)),
+        facts(run.add<ProfileFact>(parts.profile ? blocks + kFactsAhead : 0)),
+        fact_counts(run.add<ProfileCounts>(parts.profile ? 1 : 0)) {}
 
   /// What was found in the first `blocks` of them, in the run at `begin`.
   PageResult in(const std::byte* begin, std::size_t blocks) const {
@@ -31,6 +34,12 @@ struct PageResultArrays {
   ArrayPlace<std::uint64_t> hits;
   ArrayPlace<Clearance> clearances;
   ArrayPlace<std::uint32_t> first_poses;
+  ArrayPlace<ProfileFact> facts;
+  ArrayPlace<ProfileCounts> fact_counts;
+
+ private:
+  /// Facts that there is room for beside one a block. Most poses of a cell have one or none.
+  static constexpr std::uint64_t kFactsAhead = 1024;
 };
 
 }  // namespace clearway

@@ -2,6 +2,7 @@
 
 #include "core/query/clearance_set.hpp"
 #include "core/query/hit_set.hpp"
+#include "core/query/profile_set.hpp"
 
 namespace clearway {
 
@@ -9,6 +10,7 @@ namespace clearway {
 struct SearchResult {
   HitSet hits;
   ClearanceSet clearances;  ///< without entries unless asked for
+  ProfileSet profile = {};  ///< without poses unless asked for
 };
 
 }  // namespace clearway

@@ -43,6 +43,7 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
            .radius = search_radius(query),
            .resolved_from = query.radius,
            .clearance = query.clearance,
+           .profile = query.profile,
            .rounding = rounding_of(query, motion, field, cloud),
            .first_pose = query.first_pose,
            .between_poses = query.between_poses} {
@@ -51,14 +52,26 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+  narrow(box, nodes, 0, out, statistics);
+}
+
+void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
+                         std::vector<std::uint32_t>& out) const {
+  SweepStatistics not_counted;
+  narrow(box, nodes, ref_.profile * kRoundedUp, out, not_counted);
+}
+
+/// at_least: a distance within which every pose matters.
+void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes, double at_least,
+                         std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
   out.clear();
   const Vec3 centre = centre_of(box);
   const double rho = half_diagonal(box);
-  const double limit =
-      ref_.clearance > 0
-          ? ref_.clearance_limit(centre, rho, nodes.data(),
-                                 static_cast<std::uint32_t>(nodes.size()), statistics)
-          : ref_.radius;
+  const double limit = std::max(
+      at_least, ref_.clearance > 0
+                    ? ref_.clearance_limit(centre, rho, nodes.data(),
+                                           static_cast<std::uint32_t>(nodes.size()), statistics)
+                    : ref_.radius);
   for (const std::uint32_t node : nodes) narrow_node(centre, rho, limit, node, out, statistics);
 }
 

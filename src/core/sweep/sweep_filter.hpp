@@ -36,11 +36,9 @@ class SweepFilter final : public PoseReach {
   void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
 
+  /// The same for the plan: with a profile also those that may be within its distance.
   void narrow(const Box& box, std::span<const std::uint32_t> nodes,
-              std::vector<std::uint32_t>& out) const override {
-    SweepStatistics not_counted;
-    narrow(box, nodes, out, not_counted);
-  }
+              std::vector<std::uint32_t>& out) const override;
 
   /// Whether the model touches e at a pose of `nodes`, or between poses on the way from one to the
   /// next.
@@ -53,6 +51,8 @@ class SweepFilter final : public PoseReach {
                            SweepStatistics& statistics) const;
 
  private:
+  void narrow(const Box& box, std::span<const std::uint32_t> nodes, double at_least,
+              std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
   void narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t node,
                    std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
   SweepRef::Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,

@@ -42,6 +42,7 @@ struct SweepRef {
   double
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
   double clearance;   ///< 0: not asked for
+  double profile;     ///< likewise
   double rounding;    ///< metres, of a test of one point at one pose
   bool first_pose;
   bool between_poses;

@@ -50,6 +50,16 @@ struct CudaWarp {
 #endif
   }
 
+  /// A value that other warps may change meanwhile, read once for all lanes.
+  template <typename Read>
+  CLEARWAY_HD static double once([[maybe_unused]] Read read) {
+#ifdef __CUDA_ARCH__
+    return __shfl_sync(0xffffffff, read(), 0);
+#else
+    return 0;
+#endif
+  }
+
   /// Replaces every lane's value by the sum of those of the lanes before it. Returns the sum of
   /// all.
   CLEARWAY_HD static std::uint32_t sum_before([[maybe_unused]] PerLane<std::uint32_t>& values) {
@@ -111,6 +121,11 @@ struct HostWarp {
     double least = values[0];
     for (const double value : values.values) least = value < least ? value : least;
     return least;
+  }
+
+  template <typename Read>
+  static double once(Read read) {
+    return read();
   }
 
   static std::uint32_t sum_before(PerLane<std::uint32_t>& values) {

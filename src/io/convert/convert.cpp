@@ -161,7 +161,12 @@ class Conversion {
                         .unit = environment.unit(),
                         .crs_wkt = environment.crs_wkt(),
                         .points_hash = counted.points_hash,
-                        .sources = std::move(sources)};
+                        .sources = std::move(sources),
+                        .source_points = {}};
+    if (environment.files().size() > 1) {
+      report_.metadata.source_points = environment.points_of_files();
+      report_.metadata.source_points.resize(report_.metadata.sources.size());  // files of poses
+    }
     report_.absent_points = environment.absent_points();
     report_.non_finite_points = environment.non_finite_points();
     const Quantisation& quanta = environment.quantisation();

@@ -68,6 +68,8 @@ class EnvironmentSource {
   std::uint64_t non_finite_points() const { return non_finite_points_; }
   /// The source index of the first of them.
   std::uint64_t first_non_finite() const { return first_non_finite_; }
+  /// Of each of files(), source indices; complete once read() has returned false.
+  const std::vector<std::uint64_t>& points_of_files() const { return points_of_files_; }
   /// Records of the files that hold no point, by their format's rules.
   std::uint64_t absent_points() const { return absent_points_; }
   /// Largest |stored - read| of any coordinate, metres.

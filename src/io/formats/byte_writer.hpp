@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstring>
@@ -27,6 +28,14 @@ class ByteWriter {
   /// The text's first `bytes` bytes, zeros where it is shorter.
   void put_text(std::string_view text, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) put(i < text.size() ? text[i] : '\0');
+  }
+
+  void put_bytes(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+      const std::size_t count = std::min(bytes.size(), kBufferBytes);
+      std::memcpy(room(count), bytes.data(), count);
+      bytes = bytes.subspan(count);
+    }
   }
 
   void flush() {

@@ -13,6 +13,8 @@ inline const std::string kStoreFormat = "clearway store";
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
 inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
 
+inline constexpr const char* kSourcePoints = "points";  ///< of /sources, where there are several
+
 /// The datasets of /cells, row-major. Four chunks a cell: x, y, z, source.
 struct CellIndex {
   std::vector<std::uint32_t> count;    // [cells]

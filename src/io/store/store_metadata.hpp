@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,15 @@ struct StoreMetadata {
   std::string crs_wkt;
   std::uint64_t points_hash = 0;
   std::vector<SourceFile> sources;
+  /// Source points of each of them, 0 for files of poses. Empty where the scan is one, and in
+  /// stores of 0.1.0.
+  std::vector<std::uint64_t> source_points;
+
+  /// Of one of the sources, where that is known.
+  std::optional<std::uint64_t> points_of_source(std::size_t source) const {
+    if (!source_points.empty()) return source_points[source];
+    return sources.size() == 1 ? std::optional(input_points) : std::nullopt;
+  }
 };
 
 /// "metre", "foot", "us-survey-foot", "degree", "unknown".

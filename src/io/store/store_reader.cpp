@@ -26,7 +26,8 @@ StoreReader::StoreReader(const std::filesystem::path& path)
       cells_(cells_of(index_.cells)),
       tree_(build_cell_tree(index_.top, cells_)),
       checked_(cells_.size()),
-      read_(cells_.size()) {}
+      read_(cells_.size()),
+      sources_checked_(cells_.size()) {}
 
 std::span<const std::byte> StoreReader::checked_chunk(std::uint32_t cell, int dataset) const {
   const std::size_t i = 4 * std::size_t{cell} + static_cast<std::size_t>(dataset);
@@ -81,6 +82,17 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::peek(std::uint32_t cell) c
 
 PackedChunk<std::uint64_t> StoreReader::sources(std::uint32_t cell) const {
   return chunk<std::uint64_t>(cell, 3, checked_chunk(cell, 3));
+}
+
+std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) const {
+  const std::atomic_ref checked(sources_checked_[cell]);
+  if (checked.load(std::memory_order_acquire) == 0) {
+    checked_chunk(cell, 3);
+    checked.store(1, std::memory_order_release);
+  }
+  const std::size_t i = 4 * std::size_t{cell} + 3;
+  const auto bytes = map_.bytes().subspan(index_.cells.address[i], index_.cells.bytes[i]);
+  return chunk<std::uint64_t>(cell, 3, bytes)[index];
 }
 
 std::uint64_t StoreReader::packed_bytes(std::uint32_t cell) const {
@@ -140,7 +152,8 @@ std::uint64_t StoreReader::allocated_bytes() const {
   const auto bytes = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
   return bytes(index_.cells.count) + bytes(index_.cells.box) + bytes(index_.cells.address) +
          bytes(index_.cells.bytes) + bytes(index_.cells.xxh64) + bytes(index_.top) + bytes(cells_) +
-         bytes(tree_) + bytes(index_.blocks) + bytes(checked_) + bytes(read_);
+         bytes(tree_) + bytes(index_.blocks) + bytes(checked_) + bytes(read_) +
+         bytes(sources_checked_);
 }
 
 }  // namespace clearway

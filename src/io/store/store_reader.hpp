@@ -42,6 +42,8 @@ class StoreReader final : public PackedCloud {
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const override;
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
+  /// The packed source indices are checked against their hash at the first call for a cell.
+  std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const override;
   /// Reads the file, not the map: one call where x, y and z are adjacent in it.
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                        std::span<std::byte> to) const override;
@@ -71,6 +73,7 @@ class StoreReader final : public PackedCloud {
   /// Per cell: 1 when the hashes of x, y and z were found right in the map.
   mutable std::vector<std::uint8_t> checked_;
   mutable std::vector<std::uint8_t> read_;  ///< per cell: 1 when they were read past the map
+  mutable std::vector<std::uint8_t> sources_checked_;  ///< per cell: 1 when they were, of the map
 };
 
 }  // namespace clearway

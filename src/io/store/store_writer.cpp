@@ -62,6 +62,9 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hdf5::write_dataset<std::uint8_t>(group, "names", names);
   hdf5::write_dataset<std::uint64_t>(group, "bytes", bytes);
   hdf5::write_dataset<std::uint64_t>(group, "xxh64", contents);
+  if (!metadata.source_points.empty()) {
+    hdf5::write_dataset<std::uint64_t>(group, kSourcePoints, metadata.source_points);
+  }
   hashes.add(names);
   hashes.add(bytes);
   hashes.add(contents);

@@ -187,9 +187,11 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
 
 std::vector<Pose> read_trajectory(const std::filesystem::path& path,
                                   const TrajectoryOptions& options, std::vector<Message>* remarks,
-                                  PoseLabels* /*labels*/) {
-  if (remarks == nullptr) return read_without_doubts(path, options).poses;
-  TrajectoryFile found = read_trajectory_file(path, options);
+                                  PoseLabels* labels) {
+  TrajectoryFile found =
+      remarks == nullptr ? read_without_doubts(path, options) : read_trajectory_file(path, options);
+  if (labels != nullptr) *labels = {std::move(found.times), std::move(found.names)};
+  if (remarks == nullptr) return std::move(found.poses);
   remarks->insert(remarks->end(), std::make_move_iterator(found.remarks.begin()),
                   std::make_move_iterator(found.remarks.end()));
   return std::move(found.poses);

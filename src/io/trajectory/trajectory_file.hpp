@@ -14,7 +14,8 @@ namespace clearway {
 /// What a file holds and how it was understood.
 struct TrajectoryFile {
   std::vector<Pose> poses;
-  std::vector<double> times;  ///< seconds, one a pose; empty where the file has none
+  std::vector<double> times;       ///< seconds, one a pose; empty where the file has none
+  std::vector<std::string> names;  ///< likewise
   TrajectoryFormat format = TrajectoryFormat::kAuto;
   std::string crs;             ///< that latitudes and longitudes were turned into, or empty
   double metres_per_unit = 1;  ///< of the positions, 1 but for a CRS in another unit

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cpu/sweep_engine.hpp"
 #include "gpu/grid_engine.hpp"
 #include "gpu/sweep_engine.hpp"
 #include "search/check_query.hpp"
@@ -64,8 +65,9 @@ class CudaSweepKind final : public SweepKind {
       : SweepKind(needs_of(store, options, device, 1), store, query, options, kFieldFineness),
         gpus_(device.gpus) {}
 
-  std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t) const override {
-    return gpus_.size() * layout.slots * cuda_sweep_pinned_bytes(filter_->ref(), store_, layout);
+  std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override {
+    return gpus_.size() * (layout.slots * cuda_sweep_pinned_bytes(filter_->ref(), store_, layout) +
+                           SweepEngine::profile_bytes(store_, query_, layout, most_poses));
   }
   std::uint64_t device_bytes(const SlotLayout& layout) const override {
     const SweepRef& sweep = filter_->ref();

@@ -30,7 +30,7 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
   field_.emplace(trees.model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
                                    .fineness = fineness_,
-                                   .reach = query_.clearance,
+                                   .reach = std::max(query_.clearance, query_.profile),
                                    .most_bytes = most_bytes},
                  options_.threads);
   return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
@@ -62,7 +62,8 @@ CpuSweepKind::CpuSweepKind(const StoreReader& store, const Query& query,
 std::uint64_t CpuSweepKind::host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const {
   const auto threads = static_cast<std::uint32_t>(options_.threads);
   return layout.slots * PagePool::slot_bytes(store_, query_, layout) +
-         std::min(layout.slots, threads) * CellSearch::most_bytes(store_, query_, most_poses);
+         std::min(layout.slots, threads) * CellSearch::most_bytes(store_, query_, most_poses) +
+         SweepEngine::profile_bytes(store_, query_, layout, most_poses);
 }
 
 PageEngines CpuSweepKind::make(const SlotLayout& layout) {

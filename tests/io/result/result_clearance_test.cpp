@@ -1,7 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include "clearway/error.hpp"
-#include "io/export/export_result.hpp"
 #include "io/result/compare_results.hpp"
 #include "io/result/verify_result.hpp"
 #include "support/result_fixture.hpp"
@@ -133,22 +131,4 @@ TEST_CASE("clearances are compared where both results have them") {
   CHECK_FALSE(one_sided.clearances);
   REQUIRE(one_sided.queries.size() == 1);
   CHECK(one_sided.queries[0].a == "0.75 m");
-}
-
-TEST_CASE("clearances are exported as CSV") {
-  const ScratchFolder folder;
-  ResultHeader header = header_with_clearance();
-  const Vec3 at = position(header.quantisation, 1, 2, 3);
-  write_result(folder / "a.h5", header, {}, 1000, {{3, 9}, {at, at}, {0.5, 0.1}, {7, 0}});
-  NoProgress progress;
-  export_clearances(ResultReader(folder / "a.h5"), folder / "a.csv", false, progress);
-  CHECK(bytes_of(folder / "a.csv") == "source,distance,pose\n3,0.5,7\n9,0.1,0\n");
-  CHECK_THROWS_AS(
-      export_clearances(ResultReader(folder / "a.h5"), folder / "a.las", false, progress),
-      UsageError);
-  header.clearance = 0;
-  write_result(folder / "b.h5", header, {});
-  CHECK_THROWS_AS(
-      export_clearances(ResultReader(folder / "b.h5"), folder / "b.csv", false, progress),
-      UsageError);
 }

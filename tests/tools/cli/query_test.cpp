@@ -114,6 +114,32 @@ TEST_CASE("clearances are those of brute force, beside the same collisions") {
   CHECK_THAT(compare.out, Contains("clearance"));
 }
 
+TEST_CASE("a profile is that of brute force, beside the same collisions") {
+  const Work work{Hall::small()};
+  const Inputs inputs;
+  REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5", "--profile 0.4").exit_code == 0);
+  Query query = inputs.query();
+  query.profile = 0.4;
+  query.first_pose = false;
+  const std::vector<NearestPoint> expected = brute_force_profile(inputs.environment, query);
+  const ResultReader result(work.folder / "out.h5");
+  ProfileRows rows;
+  REQUIRE(result.profile_rows() == expected.size());
+  REQUIRE(ProfileRowStream(result).read(rows));
+  std::uint64_t wrong = 0, found = 0;
+  for (std::size_t pose = 0; pose < expected.size(); ++pose) {
+    wrong += rows.distance[pose] != std::sqrt(expected[pose].squared);
+    wrong += rows.source[pose] != expected[pose].source;
+    if (std::isinf(rows.distance[pose])) continue;
+    ++found;
+    wrong += rows.xyz[pose] != inputs.environment[rows.source[pose]];
+  }
+  CHECK(wrong == 0);
+  CHECK(found > expected.size() / 2);
+  CHECK(same_rows(read_rows(result), brute_collisions(inputs, query)));
+  CHECK(work.run("verify " + work.path("out.h5")).exit_code == 0);
+}
+
 TEST_CASE("clearances below the radius leave the set as it is") {
   const Work work;
   REQUIRE(work.run_hall(work.hall / "site.h5", "out.h5", "--clearance 0.05").exit_code == 0);
@@ -221,10 +247,21 @@ TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
   }
   check_refused(work.run_hall(site, "out.h5", "--clearance 0.4 --engine kdtree"), 2,
                 "--engine sweep");
+  for (const char* engine : {"grid", "kdtree"}) {
+    const Outcome refused =
+        work.run_hall(site, "out.h5", std::string("--profile 0.4 --engine ") + engine);
+    check_refused(refused, 2, "--engine sweep");
+    CHECK_THAT(refused.err, Contains(std::string("engine ") + engine + " has no profile"));
+  }
+  check_refused(work.run_hall(site, "out.h5", "--profile 0.4 --between-poses"), 2,
+                "a profile and motion between poses cannot be combined");
+  check_refused(work.run_hall(site, "out.h5", "--profile 0.4 --tolerance 0.01"), 2,
+                "a tolerance and a profile cannot be combined");
   for (const char* value : {"0", "-1", "x", "nan", "inf"}) {
     CAPTURE(value);
     check_refused(work.run_hall(site, "out.h5", std::string("--clearance ") + value), 2,
                   "--clearance");
+    check_refused(work.run_hall(site, "out.h5", std::string("--profile ") + value), 2, "--profile");
     check_refused(work.run_hall(site, "out.h5", std::string("--field-voxel ") + value), 2,
                   "--field-voxel");
   }

@@ -1,6 +1,7 @@
 // Real scans through the built program: the known answer for the street, and what is refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -115,8 +116,8 @@ void check_against_brute_force(const Crop& crop, double radius) {
   REQUIRE(run_program(folder, "convert " + quoted(folder / "crop.las") + " -o " +
                                   quoted(folder / "crop.h5") + " --cell-points 1000")
               .exit_code == 0);
-  REQUIRE(run_program(folder, "run --first-pose --env " + quoted(folder / "crop.h5") + " --model " +
-                                  quoted(folder / "model.ply") + " --trajectory " +
+  REQUIRE(run_program(folder, "run --first-pose --profile 0.5 --env " + quoted(folder / "crop.h5") +
+                                  " --model " + quoted(folder / "model.ply") + " --trajectory " +
                                   quoted(folder / "path.txt") + " --radius " +
                                   std::to_string(radius) + " -o " + quoted(folder / "out.h5"))
               .exit_code == 0);
@@ -131,7 +132,17 @@ void check_against_brute_force(const Crop& crop, double radius) {
   }
   CHECK(expected.size() > 100);
   CHECK(expected.size() < crop.points.size());
-  CHECK(same_rows(read_rows(ResultReader(folder / "out.h5")), expected));
+  const ResultReader result(folder / "out.h5");
+  CHECK(same_rows(read_rows(result), expected));
+  Query query{crop.model, crop.poses, {radius}};
+  query.profile = 0.5;
+  ProfileRows profile;
+  REQUIRE(ProfileRowStream(result).read(profile));
+  const auto nearest = brute_force_profile(positions, query);
+  for (std::size_t pose = 0; pose < nearest.size(); ++pose) {
+    CHECK(profile.distance[pose] == std::sqrt(nearest[pose].squared));
+    CHECK(profile.source[pose] == nearest[pose].source);
+  }
 }
 
 Outcome convert_file(const ScratchFolder& folder, const std::filesystem::path& file,

@@ -80,6 +80,8 @@ std::string advice_on(const Error& error) {
       return "; run with --first-pose";
     case Remedy::kSameTrajectory:
       return ". --trajectory takes the file of the run, with the same options";
+    case Remedy::kAskForProfile:
+      return "; run with --profile";
     case Remedy::kModelSpacing:
       return "; --model-spacing " +
              (error.amount() > 0 ? format_number(error.amount()) : "METRES") +

@@ -2,7 +2,7 @@
 
 namespace clearway::tool {
 
-/// Of the program; `compare` and `verify` set kDiffers themselves.
+/// Of the program; `run`, `compare` and `verify` set kDiffers themselves.
 enum ExitCode {
   kDone = 0,
   kDiffers = 1,

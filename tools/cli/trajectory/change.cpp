@@ -64,8 +64,14 @@ void write_changed(const ChangeOptions& options, const Change& change) {
   refuse_overwriting(options.output, {options.input, options.model});
   PendingFile output(options.output, options.force);
   std::vector<Message> remarks;
-  const std::vector<Pose> before = read_trajectory(options.input, options.trajectory, &remarks);
+  PoseLabels labels;
+  const std::vector<Pose> before =
+      read_trajectory(options.input, options.trajectory, &remarks, &labels);
   for (const Message& remark : remarks) log_message(remark);
+  if (!labels.time.empty() || !labels.name.empty()) {
+    spdlog::info("{}: its times and names are left out, as the output has matrices only",
+                 options.input.string());
+  }
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   // No other place of a mesh is farther out than its vertices.
   const Box model =

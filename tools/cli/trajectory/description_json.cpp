@@ -19,6 +19,14 @@ ordered_json pose_json(const Pose& pose) {
           {"roll_degrees", angles.roll}};
 }
 
+/// A pose with its time and its name, where the file has them.
+ordered_json labelled_json(const TrajectoryFile& file, std::size_t pose) {
+  ordered_json out = pose_json(file.poses[pose]);
+  if (!file.times.empty()) out["time"] = file.times[pose];
+  if (!file.names.empty()) out["name"] = file.names[pose];
+  return out;
+}
+
 ordered_json axis_json(const BodyAxis& axis) {
   if (axis.cosine == 0) return nullptr;
   return {{"axis", axis_name(axis)}, {"mean_cosine", axis.cosine}};
@@ -48,8 +56,8 @@ ordered_json json_of(const Description& what) {
   ordered_json out{{"format", name_of(file.format)}, {"poses", s.poses}};
   if (!file.crs.empty()) out["crs"] = file.crs;
   if (s.poses > 0) {
-    out["first_pose"] = pose_json(file.poses.front());
-    out["last_pose"] = pose_json(file.poses.back());
+    out["first_pose"] = labelled_json(file, 0);
+    out["last_pose"] = labelled_json(file, file.poses.size() - 1);
     out["bounds"] = box_json(s.box);
   }
   out["length"] = s.length;

@@ -18,6 +18,13 @@ std::string pose_text(const Pose& pose) {
                      pose.translation[2], attitude_text(pose));
 }
 
+std::string labelled_text(const TrajectoryFile& file, std::size_t pose) {
+  std::string text = pose_text(file.poses[pose]);
+  if (!file.times.empty()) text += fmt::format("; time {}", file.times[pose]);
+  if (!file.names.empty()) text += "; " + file.names[pose];
+  return text;
+}
+
 std::string axis_text(const BodyAxis& axis, const char* where) {
   if (axis.cosine < kClearAxis)
     return fmt::format("no axis of the poses' frame {} throughout", where);
@@ -36,8 +43,8 @@ std::string time_text(const TrajectoryFile& file, double length) {
 void add_path_lines(const Description& what, Lines& lines) {
   const TrajectorySummary& s = what.summary;
   const char* const unit = what.file.metres_per_unit == 1 ? "m" : "units of the CRS";
-  lines.emplace_back("first pose", pose_text(what.file.poses.front()));
-  lines.emplace_back("last pose", pose_text(what.file.poses.back()));
+  lines.emplace_back("first pose", labelled_text(what.file, 0));
+  lines.emplace_back("last pose", labelled_text(what.file, what.file.poses.size() - 1));
   lines.emplace_back(
       "bounds", fmt::format("{:.3f} {:.3f} {:.3f} to {:.3f} {:.3f} {:.3f}", s.box.lo.x, s.box.lo.y,
                             s.box.lo.z, s.box.hi.x, s.box.hi.y, s.box.hi.z));

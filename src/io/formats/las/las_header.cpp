@@ -133,7 +133,8 @@ LasPublicHeader read_las_header(InputBuffer& input) {
   const std::byte* bytes = take_header(input, kHeaderBytes10).data();
   check_kind(input, bytes);
   const unsigned minor = load<std::uint8_t>(bytes + 25);
-  const bool internal_waveforms = (load<std::uint16_t>(bytes + 6) & kInternalWaveforms) != 0;
+  header.encoding = load<std::uint16_t>(bytes + 6);
+  const bool internal_waveforms = (header.encoding & kInternalWaveforms) != 0;
   header.header_bytes = load<std::uint16_t>(bytes + 94);
   header.points_offset = load<std::uint32_t>(bytes + 96);
   header.vlr_count = load<std::uint32_t>(bytes + 100);

@@ -17,8 +17,9 @@ struct LasPublicHeader {
   std::uint32_t vlr_count;
   std::uint16_t record_bytes;  ///< of a point record; coordinates are its first 12 bytes
   std::uint64_t points;
-  unsigned point_format;  ///< 0 to 10
-  bool compressed;        ///< LAZ
+  unsigned point_format;   ///< 0 to 10
+  bool compressed;         ///< LAZ
+  std::uint16_t encoding;  ///< the bits of "global encoding"
   Quantisation quantisation;
   std::uint64_t tail_offset;  ///< byte of the first extended variable length record
   std::uint32_t tail_count;   ///< number of those records; 0: none

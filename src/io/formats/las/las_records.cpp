@@ -31,6 +31,21 @@ void note_record(std::string_view user, unsigned id, std::span<const std::byte> 
   if (wkt && wkt->empty()) *wkt = padded_text(payload);
 }
 
+/// The first record of each kind that copies of points need.
+void keep_record(const std::string& user, unsigned id, std::span<const std::byte> payload,
+                 LasRecords& records) {
+  constexpr unsigned kExtraBytes = 4, kGeoKeys = 34735, kGeoTexts = 34737;
+  if (user == "LASF_Spec" && id == kExtraBytes && records.extra_bytes.empty()) {
+    records.extra_bytes.assign(payload.begin(), payload.end());
+  }
+  if (user != "LASF_Projection" || id < kGeoKeys || id > kGeoTexts) return;
+  for (const LasRecord& kept : records.geotiff) {
+    if (kept.id == id) return;
+  }
+  records.geotiff.push_back(
+      {user, static_cast<std::uint16_t>(id), {payload.begin(), payload.end()}});
+}
+
 bool is_about_crs(std::string_view user, unsigned id) {
   return (user == "LASF_Projection" || user == "liblas") && (id == 2112 || id == 34735);
 }
@@ -69,6 +84,7 @@ void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords
     const auto payload = input.take(length);
     if (payload.size() != length) refuse_cut_las(input, which);
     if (user == "laszip encoded") records.laz.assign(payload.begin(), payload.end());
+    keep_record(user, id, payload, records);
     note_record(user, id, payload, records.crs);
   }
   if (!input.skip(header.points_offset - input.position())) {

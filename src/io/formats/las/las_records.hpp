@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,10 +21,20 @@ struct LasCrs {
   void describe(CloudInfo& info) const;
 };
 
+/// A variable length record.
+struct LasRecord {
+  std::string user;
+  std::uint16_t id = 0;
+  std::vector<std::byte> payload;
+  friend bool operator==(const LasRecord&, const LasRecord&) = default;
+};
+
 /// What is kept of the records before the points.
 struct LasRecords {
   LasCrs crs;
   std::vector<std::byte> laz;  ///< how the points are compressed; empty where nothing says so
+  std::vector<std::byte> extra_bytes;  ///< descriptions of the points' extra bytes
+  std::vector<LasRecord> geotiff;      ///< the CRS in GeoTIFF's three records, where they are there
 };
 
 /// Reads the variable length records and leaves the input at the first point record.

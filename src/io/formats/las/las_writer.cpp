@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "io/formats/byte_writer.hpp"
+#include "io/formats/las/las_extra_bytes.hpp"
 
 /// Source: LAS specifications 1.2 and 1.4 R15 (ASPRS).
 namespace clearway {
@@ -12,9 +13,7 @@ namespace {
 constexpr std::uint16_t kHeaderSize12 = 227, kHeaderSize14 = 375;
 constexpr std::uint16_t kRecordBytes0 = 20, kRecordBytes6 = 30;
 constexpr std::uint32_t kVlrHeaderBytes = 54;
-constexpr std::uint16_t kExtraBytesVlrBytes = 192;
 constexpr std::uint16_t kWktFlag = 1 << 4;
-constexpr std::uint8_t kUint32 = 5;
 constexpr std::size_t kIdBytes = 32, kUserIdBytes = 16;
 constexpr const char* kWktUser = "LASF_Projection";
 constexpr std::uint16_t kWktRecord = 2112;
@@ -27,6 +26,7 @@ struct Layout {
   bool wkt_evlr;  ///< or, where it is too long for that, after them
   std::uint64_t wkt_bytes;
   std::uint16_t record_bytes;
+  std::uint16_t extra_fields;
   std::uint32_t vlrs;
   std::uint32_t points_offset;
 };
@@ -34,18 +34,20 @@ struct Layout {
 Layout layout_of(const LasHeader& header) {
   Layout out{};
   out.version_14 = header.points > std::numeric_limits<std::uint32_t>::max() ||
-                   !header.crs_wkt.empty() || header.first_pose;
+                   !header.crs_wkt.empty() || header.first_pose || header.distance;
   out.wkt_bytes = header.crs_wkt.empty() ? 0 : header.crs_wkt.size() + 1;  // with its zero byte
   out.wkt_evlr = out.wkt_bytes > std::numeric_limits<std::uint16_t>::max();
   out.wkt_vlr = out.wkt_bytes > 0 && !out.wkt_evlr;
-  const int extra = header.first_pose ? 4 : 0;
+  out.extra_fields =
+      static_cast<std::uint16_t>((header.first_pose ? 1 : 0) + (header.distance ? 2 : 0));
+  const int extra = (header.first_pose ? 4 : 0) + (header.distance ? 8 + 4 : 0);
   out.record_bytes =
       static_cast<std::uint16_t>((out.version_14 ? kRecordBytes6 : kRecordBytes0) + extra);
-  out.vlrs = (out.wkt_vlr ? 1 : 0) + (header.first_pose ? 1 : 0);
+  out.vlrs = (out.wkt_vlr ? 1 : 0) + (out.extra_fields > 0 ? 1 : 0);
   out.points_offset = out.version_14 ? kHeaderSize14 : kHeaderSize12;
   out.points_offset += out.vlrs * kVlrHeaderBytes;
   if (out.wkt_vlr) out.points_offset += static_cast<std::uint32_t>(out.wkt_bytes);
-  if (header.first_pose) out.points_offset += kExtraBytesVlrBytes;
+  out.points_offset += out.extra_fields * kLasExtraBytes;
   return out;
 }
 
@@ -103,14 +105,16 @@ void put_record_header(ByteWriter& out, const char* user, std::uint16_t record, 
   out.put_text(description, kIdBytes);
 }
 
-void put_extra_bytes_vlr(ByteWriter& out) {
-  put_record_header(out, "LASF_Spec", 4, kExtraBytesVlrBytes, "extra bytes");
-  out.put(std::uint16_t{0});
-  out.put(kUint32);
-  out.put(std::uint8_t{0});  // no minimum, maximum, scale, offset or value for "no data"
-  out.put_text("first_pose", kIdBytes);
-  out.put_text("", 4 + 5 * 24);
-  out.put_text("first pose that touches", kIdBytes);
+void put_extra_bytes_vlr(ByteWriter& out, const LasHeader& header, const Layout& layout) {
+  put_record_header(out, "LASF_Spec", 4,
+                    static_cast<std::uint16_t>(layout.extra_fields * kLasExtraBytes),
+                    "extra bytes");
+  if (header.first_pose) {
+    out.put(las_extra_bytes("first_pose", LasExtraType::kUint32, "first pose that touches"));
+  }
+  if (!header.distance) return;
+  out.put(las_extra_bytes("distance", LasExtraType::kDouble, "least distance to the model"));
+  out.put(las_extra_bytes("pose", LasExtraType::kUint32, "pose that has the distance"));
 }
 
 }  // namespace
@@ -159,20 +163,25 @@ LasWriter::LasWriter(const File& file, const LasHeader& header)
                       kWktDescription);
     out.put_text(header.crs_wkt, layout.wkt_bytes);
   }
-  if (header.first_pose) put_extra_bytes_vlr(out);
+  if (layout.extra_fields > 0) put_extra_bytes_vlr(out, header, layout);
 }
 
 LasWriter::~LasWriter() = default;
 
 void LasWriter::write(std::span<const std::array<std::int32_t, 3>> quanta,
-                      std::span<const std::uint32_t> first_pose) {
-  const bool with_pose = state_->header.first_pose;
-  if (first_pose.size() != (with_pose ? quanta.size() : 0)) {
-    throw std::logic_error("LasWriter: first poses do not match the header");
+                      const LasExtras& extras) {
+  const LasHeader& header = state_->header;
+  const std::size_t distances = header.distance ? quanta.size() : 0;
+  if (extras.first_pose.size() != (header.first_pose ? quanta.size() : 0) ||
+      extras.distance.size() != distances || extras.pose.size() != distances) {
+    throw std::logic_error("LasWriter: extra bytes do not match the header");
   }
   for (std::size_t i = 0; i < quanta.size(); ++i) {
     state_->put_point(quanta[i]);
-    if (with_pose) state_->out.put(first_pose[i]);
+    if (header.first_pose) state_->out.put(extras.first_pose[i]);
+    if (!header.distance) continue;
+    state_->out.put(extras.distance[i]);
+    state_->out.put(extras.pose[i]);
   }
   state_->written += quanta.size();
 }

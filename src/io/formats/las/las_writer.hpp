@@ -19,20 +19,26 @@ struct LasHeader {
   QuantumBox bounds{};      ///< holds every point; ignored for 0 points
   std::string crs_wkt{};    ///< empty: none
   bool first_pose = false;  ///< adds the extra-bytes field "first_pose", uint32
+  bool distance = false;    ///< adds the extra-bytes fields "distance", double, and "pose", uint32
+};
+
+/// Of some points, each as many as there are points where the header has it, none otherwise.
+struct LasExtras {
+  std::span<const std::uint32_t> first_pose{};
+  std::span<const double> distance{};
+  std::span<const std::uint32_t> pose{};
 };
 
 /// Writes LAS front to back, so that the output may be a pipe: version 1.2 with point format 0, or
-/// 1.4 with point format 6 where the count exceeds 32 bits, there is a CRS or there are first poses
-/// (extra bytes are defined since 1.4). Equal contents give equal bytes: no date is written.
+/// 1.4 with point format 6 where the count exceeds 32 bits, there is a CRS or there are extra bytes
+/// (defined since 1.4). Equal contents give equal bytes: no date is written.
 /// Buffered; the file stays the caller's.
 class LasWriter {
  public:
   LasWriter(const File& file, const LasHeader& header);
   ~LasWriter();
 
-  /// first_pose: as many as quanta where the header has it, empty otherwise.
-  void write(std::span<const std::array<std::int32_t, 3>> quanta,
-             std::span<const std::uint32_t> first_pose = {});
+  void write(std::span<const std::array<std::int32_t, 3>> quanta, const LasExtras& extras = {});
 
   /// Flushes. Throws std::logic_error unless exactly header.points points were written.
   void finish();

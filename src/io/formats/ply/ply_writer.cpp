@@ -14,6 +14,7 @@ std::string header_text(const PlyOutput& header) {
   text += "element vertex " + std::to_string(header.points) + "\n";
   for (const char* axis : {"x", "y", "z"}) text += type + axis + "\n";
   if (header.first_pose) text += "property uint first_pose\n";
+  if (header.distance) text += "property double distance\nproperty uint pose\n";
   return text + "end_header\n";
 }
 
@@ -24,9 +25,11 @@ PlyWriter::PlyWriter(const File& file, const PlyOutput& header) : out_(file), he
   out_.put_text(text, text.size());
 }
 
-void PlyWriter::write(std::span<const Vec3> points, std::span<const std::uint32_t> first_pose) {
-  if (first_pose.size() != (header_.first_pose ? points.size() : 0)) {
-    throw std::logic_error("PlyWriter: first poses do not match the header");
+void PlyWriter::write(std::span<const Vec3> points, const PlyExtras& extras) {
+  const std::size_t distances = header_.distance ? points.size() : 0;
+  if (extras.first_pose.size() != (header_.first_pose ? points.size() : 0) ||
+      extras.distance.size() != distances || extras.pose.size() != distances) {
+    throw std::logic_error("PlyWriter: properties do not match the header");
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -36,7 +39,10 @@ void PlyWriter::write(std::span<const Vec3> points, std::span<const std::uint32_
         out_.put(points[i][k]);
       }
     }
-    if (header_.first_pose) out_.put(first_pose[i]);
+    if (header_.first_pose) out_.put(extras.first_pose[i]);
+    if (!header_.distance) continue;
+    out_.put(extras.distance[i]);
+    out_.put(extras.pose[i]);
   }
   written_ += points.size();
 }

@@ -17,18 +17,25 @@ struct PlyOutput {
   std::uint64_t points = 0;
   PlyCoordinates coordinates = PlyCoordinates::kFloat64;
   bool first_pose = false;  ///< adds the property "first_pose", uint
+  bool distance = false;    ///< adds the properties "distance", double, and "pose", uint
   std::string comment{};    ///< one line; empty: none
 };
 
+/// Of some points, each as many as there are points where the header has it, none otherwise.
+struct PlyExtras {
+  std::span<const std::uint32_t> first_pose{};
+  std::span<const double> distance{};
+  std::span<const std::uint32_t> pose{};
+};
+
 /// Writes a point cloud as binary little-endian PLY, front to back: the element "vertex" with the
-/// properties x, y, z (double, or float rounded to nearest) and, where the header asks, first_pose
-/// (uint). Buffered; the file stays the caller's.
+/// properties x, y, z (double, or float rounded to nearest) and what else the header asks for.
+/// Buffered; the file stays the caller's.
 class PlyWriter {
  public:
   PlyWriter(const File& file, const PlyOutput& header);
 
-  /// first_pose: as many as points where the header has it, empty otherwise.
-  void write(std::span<const Vec3> points, std::span<const std::uint32_t> first_pose = {});
+  void write(std::span<const Vec3> points, const PlyExtras& extras = {});
 
   /// Flushes. Throws std::logic_error unless exactly header.points points were written.
   void finish();

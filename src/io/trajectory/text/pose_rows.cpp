@@ -23,6 +23,14 @@ double seconds_of(double time) {
                                          : 1);
 }
 
+/// Without blanks and quotes around it.
+std::string_view bare_text(std::string_view field) {
+  constexpr std::string_view kAround = " \t\"'";
+  const std::size_t first = field.find_first_not_of(kAround);
+  if (first == std::string_view::npos) return {};
+  return field.substr(first, field.find_last_not_of(kAround) + 1 - first);
+}
+
 }  // namespace
 
 Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
@@ -146,10 +154,7 @@ Objection PoseRows::add_columns(std::string_view line) {
     objection = pose_of_matrix(matrix, options_.allow_non_rigid, pose);
   }
   if (!objection.text.empty()) return objection;
-  if (columns_->time) {
-    const auto time = parse_whole_number(fields_[*columns_->time]);
-    if (time && std::isfinite(*time)) add_time(seconds_of(*time));
-  }
+  add_labels();
   push(pose);
   return {};
 }
@@ -165,11 +170,16 @@ Objection PoseRows::add_angles(const std::array<double, 3>& position) {
                      angles[0],
                      angles[1],
                      angles[2]});
+  add_labels();
+  return {};
+}
+
+void PoseRows::add_labels() {
   if (columns_->time) {
     const auto time = parse_whole_number(fields_[*columns_->time]);
     if (time && std::isfinite(*time)) add_time(seconds_of(*time));
   }
-  return {};
+  if (columns_->name) names_.emplace_back(bare_text(fields_[*columns_->name]));
 }
 
 Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
@@ -193,6 +203,7 @@ void PoseRows::finish(TrajectoryFile& out) {
   const bool angles = columns_ && columns_->rotation.size() == 3;
   if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
   if (times_.size() == out.poses.size()) out.times = std::move(times_);
+  if (names_.size() == out.poses.size()) out.names = std::move(names_);
   if (metres_ != 1) {
     out.note("trajectory-unit",
              name_ + ": positions were multiplied by " + brief(metres_) + " to give metres",

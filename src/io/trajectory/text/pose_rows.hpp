@@ -38,6 +38,7 @@ class PoseRows {
   Objection add_angles(const std::array<double, 3>& position);
   Objection numbers_in(std::span<const std::size_t> columns, std::span<double> out) const;
   void add_time(double time) { times_.push_back(time); }
+  void add_labels();
   void push(const Pose& pose);
 
   TrajectoryFormat format_;
@@ -51,6 +52,7 @@ class PoseRows {
   std::vector<Pose> poses_;
   std::vector<AttitudeRow> angles_;
   std::vector<double> times_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace clearway

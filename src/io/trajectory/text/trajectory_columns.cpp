@@ -84,6 +84,11 @@ constexpr std::string_view kYaw[] = {"yaw"};
 constexpr std::string_view kTime[] = {"time",     "timestamp", "t",       "gpstime",
                                       "gps_time", "sec",       "seconds", "stamp"};
 
+constexpr std::string_view kName[] = {"name",     "pose_name", "label", "station", "image",
+                                      "filename", "file_name", "file",  "scan"};
+constexpr std::string_view kIndex[] = {"index",   "id",    "pose",   "pose_id", "pose_index",
+                                       "pose_nr", "frame", "number", "nr",      "seq"};
+
 bool has(const ColumnNames& header, std::span<const std::string_view> names) {
   return std::any_of(header.names.begin(), header.names.end(), [names](const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -145,6 +150,8 @@ std::optional<PoseColumns> pose_columns(const ColumnNames& given) {
     if (columns.rotation.size() == 3) columns.angle_units[k] = header.units[columns.rotation[k]];
   }
   columns.time = find_one(header, kTime);
+  columns.name = find_one(header, kName);
+  if (!columns.name) columns.name = find_one(header, kIndex);
   return columns;
 }
 

@@ -22,6 +22,7 @@ struct PoseColumns {
   std::string position_units[3]{};    ///< as the header has them, lower case, or empty
   std::string angle_units[3]{};       ///< the same of three angles
   std::optional<std::size_t> time{};  ///< where a column is called so
+  std::optional<std::size_t> name{};  ///< or an index
 };
 
 /// The columns that a header names; none where one is missing or named twice.

@@ -21,7 +21,7 @@ test::WrittenBytes written(const LasHeader& header, const Quanta& points,
                            const std::vector<std::uint32_t>& poses = {}) {
   const File file = test::nameless_file();
   LasWriter writer(file, header);
-  writer.write(points, poses);
+  writer.write(points, {poses});
   writer.finish();
   return test::WrittenBytes(file);
 }
@@ -197,7 +197,7 @@ TEST_CASE("another number of LAS points than promised is a programmer's mistake"
   LasWriter writer(file, header_of(2));
   writer.write(Quanta{kPoints[0]});
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
-  CHECK_THROWS_AS(writer.write(kPoints, std::vector<std::uint32_t>{1, 2, 3}), std::logic_error);
+  CHECK_THROWS_AS(writer.write(kPoints, {std::vector<std::uint32_t>{1, 2, 3}}), std::logic_error);
 }
 
 TEST_CASE("a full disk is a resource error") {

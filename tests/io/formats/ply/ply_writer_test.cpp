@@ -30,7 +30,7 @@ TEST_CASE("a float PLY with first poses") {
   const File file = test::nameless_file();
   PlyWriter writer(file,
                    {.points = 1, .coordinates = PlyCoordinates::kFloat32, .first_pose = true});
-  writer.write(std::vector<Vec3>{{0.1, -2, 3}}, std::vector<std::uint32_t>{4000000000u});
+  writer.write(std::vector<Vec3>{{0.1, -2, 3}}, {std::vector<std::uint32_t>{4000000000u}});
   writer.finish();
   const std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
@@ -49,6 +49,6 @@ TEST_CASE("a PLY with another number of points than promised is refused") {
   PlyWriter writer(file, {.points = 2});
   writer.write(std::vector<Vec3>{{1, 2, 3}});
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
-  CHECK_THROWS_AS(writer.write(std::vector<Vec3>{{1, 2, 3}}, std::vector<std::uint32_t>{0}),
+  CHECK_THROWS_AS(writer.write(std::vector<Vec3>{{1, 2, 3}}, {std::vector<std::uint32_t>{0}}),
                   std::logic_error);
 }

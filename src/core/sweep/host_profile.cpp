@@ -1,0 +1,108 @@
+#include "core/sweep/host_profile.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace clearway {
+ProfileBestValues::ProfileBestValues(const SweepRef& sweep)
+    : limit_(rounded_product(sweep.profile, sweep.profile)),
+      of_pose_(sweep.motion.pose_count, limit_),
+      of_node_(sweep.motion.pose_count == 0 ? 0 : 2 * std::size_t{sweep.motion.pose_count} - 1,
+               std::sqrt(limit_) * kRoundedUp + sweep.rounding) {}
+
+void SmallestSource::add(std::uint32_t first, std::uint32_t bits) {
+  for (; bits != 0; bits &= bits - 1) {
+    const std::uint32_t point = first + lowest_bit(bits);
+    const std::uint64_t source = cloud_.source_of(cell_, point - first_slot_);
+    if (source >= source_) continue;
+    source_ = source;
+    point_ = point;
+  }
+}
+
+void HostProfile::search(const PageRef& page, const ProfileBests& bests,
+                         std::vector<ProfileFact>& found) {
+  Search::Shared shared;
+  const Quantisation& quantisation = cloud_.quantisation();
+  Search search(sweep_, page, quantisation, bests, SmallestSource(cloud_, found), shared,
+                statistics_);
+  const std::uint32_t parts = Search::parts_of_cell(page.shape.blocks_per_cell);
+  for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
+    const PageCell& cell = page.cell(i);
+    for (std::uint32_t part = 0; part < parts && search.enter(i, part); ++part) {
+      for (std::uint32_t node = 0; node < cell.node_count; ++node) {
+        search.search(page.nodes(cell)[node]);
+      }
+    }
+    if (page.shape.cells > 1) keep_least(page, true, found);
+  }
+}
+
+void HostProfile::keep_least(const PageRef& page, bool one_each,
+                             std::vector<ProfileFact>& facts) const {
+  std::sort(facts.begin(), facts.end(), [](const ProfileFact& a, const ProfileFact& b) {
+    return std::tie(a.pose, a.squared, a.point) < std::tie(b.pose, b.squared, b.point);
+  });
+  const auto source_of = [&](const ProfileFact& fact) {
+    const std::uint32_t entries = cloud_.cell_entries();
+    return cloud_.source_of(page.cell(fact.point / entries).cell, fact.point % entries);
+  };
+  std::size_t kept = 0;
+  for (const ProfileFact& fact : facts) {
+    ProfileFact* const best = kept > 0 ? &facts[kept - 1] : nullptr;
+    if (best == nullptr || best->pose != fact.pose) {
+      facts[kept++] = fact;
+    } else if (best->squared == fact.squared && !one_each) {
+      facts[kept++] = fact;
+    } else if (best->squared == fact.squared && source_of(fact) < source_of(*best)) {
+      *best = fact;
+    }
+  }
+  facts.resize(kept);
+}
+
+void HostProfile::resolve(const PageRef& page, double limit, ProfileFact& fact) {
+  const ProfileBests bests{limit, nullptr, nullptr};
+  Search::Shared shared;
+  std::vector<ProfileFact> found;
+  const Quantisation& quantisation = cloud_.quantisation();
+  Search search(sweep_, page, quantisation, bests, SmallestSource(cloud_, found), shared,
+                statistics_);
+  const std::uint32_t cell = fact.point / cloud_.cell_entries();
+  const std::uint32_t index = fact.point % cloud_.cell_entries();
+  if (!search.enter(cell, index / kBlockPoints / Search::Blocks::kPartBlocks)) return;
+  search.search_pose(fact.pose, fact.squared);
+  if (!found.empty()) fact = found.front();
+}
+
+void HostProfile::complete(const PageRef& page, std::uint32_t found,
+                           std::vector<ProfileFact>& facts) {
+  if (found > facts.size()) {
+    facts.clear();
+    ProfileBestValues bests(sweep_);
+    search(page, bests.ref(), facts);
+    return;
+  }
+  facts.resize(found);
+  keep_least(page, false, facts);
+  const double limit = rounded_product(sweep_.profile, sweep_.profile);
+  for (ProfileFact& fact : facts) {
+    if (fact.tied != 0) resolve(page, limit, fact);
+  }
+}
+
+SweepStatistics HostProfile::take_statistics() {
+  SweepStatistics sum;
+  for (SweepStatistics& of_lane : statistics_.values) sum.add(std::exchange(of_lane, {}));
+  return sum;
+}
+
+std::uint64_t HostProfile::most_facts(const PackedCloud& cloud, std::uint64_t poses,
+                                      std::uint64_t cells, std::uint64_t poses_of_cell) {
+  const std::uint64_t of_cell =
+      Search::parts_of_cell(cloud.blocks_per_cell()) * poses_of_cell;  // one a pose and part
+  return std::min(cells * of_cell, poses + of_cell);
+}
+
+}  // namespace clearway

@@ -1,0 +1,196 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/sweep/sweep_page.hpp"
+#include "core/sweep/warp.hpp"
+#include "core/util/device_bits.hpp"
+
+namespace clearway {
+
+/// Which blocks of a cell may hold the nearest point of poses: a bit a block, 32 blocks a word, a
+/// word a lane of one warp, on as many levels as a descent of the motion tree has.
+template <typename Warp>
+class ProfileBlocks {
+ public:
+  template <typename Value>
+  using PerLane = typename Warp::template PerLane<Value>;
+
+  /// Blocks of a cell that are searched together; larger cells are searched in parts.
+  static constexpr std::uint32_t kPartBlocks = kWarpLanes * kWarpLanes;
+  static constexpr std::uint32_t kLevels = 14;
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  struct Sphere {
+    Vec3 centre;
+    double rho;
+  };
+
+  /// What the lanes share.
+  struct Shared {
+    Sphere words[kWarpLanes];
+    std::uint32_t open[kLevels][kWarpLanes];
+  };
+
+  CLEARWAY_HD ProfileBlocks(const SweepRef& sweep, const PageRef& page,
+                            const Quantisation& quantisation, Shared& shared,
+                            PerLane<SweepStatistics>& statistics)
+      : sweep_(sweep),
+        page_(page),
+        quantisation_(quantisation),
+        shared_(shared),
+        statistics_(statistics) {}
+
+  /// From here on those of a part of a cell, all open at level 0. Whether there are any.
+  CLEARWAY_HD bool enter(std::uint32_t cell, std::uint32_t part) {
+    cell_ = &page_.cell(cell);
+    first_ = page_.blocks(cell) + std::uint64_t{part} * kPartBlocks;
+    const auto blocks = static_cast<std::uint32_t>(divide_up(cell_->count, kBlockPoints));
+    if (part * kPartBlocks >= blocks) return false;
+    const std::uint32_t left = blocks - part * kPartBlocks;
+    count_ = left < kPartBlocks ? left : kPartBlocks;
+    Warp::each([&](std::uint32_t lane) {
+      const std::uint32_t first = lane * kWarpLanes;
+      const std::uint32_t of_word = first < count_ ? count_ - first : 0;
+      shared_.open[0][lane] = of_word >= kWarpLanes ? ~0U : (1U << of_word) - 1;
+      if (of_word > 0) {
+        shared_.words[lane] = sphere_of(first, of_word < kWarpLanes ? of_word : kWarpLanes);
+      }
+    });
+    return true;
+  }
+
+  /// Looks at the blocks open at a level, all at once at `pose`: those that may matter to poses
+  /// from which no model point is farther than delta are open at the next level. reach: a distance
+  /// beyond which nothing matters to these poses. Whether any block is left.
+  CLEARWAY_HD bool look(double delta, std::uint32_t pose, std::uint32_t level, double reach) {
+    delta_ = delta;
+    pose_ = pose;
+    reach_ = reach;
+    nearest_ = kNone;
+    nearest_squared_ = kInfinity;
+    PerLane<double> upper;
+    PerLane<double> squared_lower;
+    Warp::each([&](std::uint32_t lane) {
+      shared_.open[level + 1][lane] = 0;
+      upper[lane] = kInfinity;
+      if (shared_.open[level][lane] == 0) return;
+      squared_lower[lane] = look_at(shared_.words[lane], lane, upper[lane]);
+    });
+    lower_reach(Warp::least(upper));
+    std::uint32_t words = Warp::ballot([&](std::uint32_t lane) {
+      return shared_.open[level][lane] != 0 &&
+             matters(shared_.words[lane].rho, squared_lower[lane]);
+    });
+    bool any = false;
+    for (; words != 0; words &= words - 1) any |= look_at_word(lowest_bit(words), level);
+    return any;
+  }
+
+  // After a look:
+
+  /// As it was given, or what the blocks themselves keep the poses below, if that is less.
+  CLEARWAY_HD double reach() const { return reach_; }
+  CLEARWAY_HD void lower_reach(double reach) {
+    if (reach < reach_) reach_ = reach;
+  }
+
+  /// Whether anything within rho of where the field has this bound may matter.
+  CLEARWAY_HD bool matters(double rho, double squared_lower) const {
+    return !farther(sweep_.motion.inverse_poses[pose_].least, squared_lower, reach_ + delta_ + rho);
+  }
+
+  /// The block that seems to be the nearest, or kNone.
+  CLEARWAY_HD std::uint32_t nearest() const { return nearest_; }
+
+  CLEARWAY_HD std::uint32_t word_count() const {
+    return static_cast<std::uint32_t>(divide_up(count_, kWarpLanes));
+  }
+
+  /// Of the blocks of a word that are open at a level, those that still matter with the reach as it
+  /// is now.
+  CLEARWAY_HD std::uint32_t still_open(std::uint32_t word, std::uint32_t level,
+                                       std::uint32_t except) {
+    std::uint32_t open = shared_.open[level][word];
+    if (except / kWarpLanes == word) open &= ~(1U << (except % kWarpLanes));
+    if (open == 0) return 0;
+    return Warp::ballot([&](std::uint32_t lane) {
+      if ((open >> lane & 1) == 0) return false;
+      double upper = 0;
+      const Sphere sphere = sphere_of(word * kWarpLanes + lane, 1);
+      return matters(sphere.rho, look_at(sphere, lane, upper));
+    });
+  }
+
+ private:
+  CLEARWAY_HD Sphere sphere_of(std::uint32_t first, std::uint32_t count) const {
+    QuantumBox box = decode_block_box(cell_->box, first_[first]);
+    for (std::uint32_t i = first + 1; i < first + count; ++i) {
+      box = united(box, decode_block_box(cell_->box, first_[i]));
+    }
+    const Box positions = position_box(quantisation_, box);
+    return {centre_of(positions), half_diagonal(positions)};
+  }
+
+  CLEARWAY_HD bool look_at_word(std::uint32_t word, std::uint32_t level) {
+    const std::uint32_t open = shared_.open[level][word];
+    PerLane<double> upper;
+    PerLane<double> squared_lower;
+    PerLane<double> rho;
+    Warp::each([&](std::uint32_t lane) {
+      upper[lane] = squared_lower[lane] = kInfinity;
+      if ((open >> lane & 1) == 0) return;
+      const Sphere sphere = sphere_of(word * kWarpLanes + lane, 1);
+      rho[lane] = sphere.rho;
+      squared_lower[lane] = look_at(sphere, lane, upper[lane]);
+    });
+    lower_reach(Warp::least(upper));
+    const double least = Warp::least(squared_lower);
+    const std::uint32_t keep = Warp::ballot([&](std::uint32_t lane) {
+      return (open >> lane & 1) != 0 && matters(rho[lane], squared_lower[lane]);
+    });
+    Warp::each([&](std::uint32_t lane) {
+      if (lane == 0) shared_.open[level + 1][word] = keep;
+    });
+    const std::uint32_t nearest = Warp::ballot([&](std::uint32_t lane) {
+      return (keep >> lane & 1) != 0 && squared_lower[lane] == least;
+    });
+    if (least < nearest_squared_ && nearest != 0) {
+      nearest_squared_ = least;
+      nearest_ = word * kWarpLanes + lowest_bit(nearest);
+    }
+    return keep != 0;
+  }
+
+  /// The field's bound at the centre. upper: a distance that no point of the sphere exceeds at any
+  /// of the poses, give or take the rounding of a test.
+  CLEARWAY_HD double look_at(const Sphere& sphere, std::uint32_t lane, double& upper) {
+    ++statistics_[lane].node_tests;
+    const ModelFieldRef::Bounds bounds =
+        sweep_.field.bounds(sweep_.motion.inverse_poses[pose_].apply(sphere.centre));
+    if (bounds.near != ModelFieldRef::kNone) {
+      const Vec3 m = transform(sweep_.motion.poses[pose_], sweep_.model.points[bounds.near]);
+      upper = std::sqrt(squared_distance(sphere.centre, m)) * kRoundedUp + sphere.rho + delta_ +
+              2 * sweep_.rounding;
+    }
+    return bounds.squared_lower;
+  }
+
+  const SweepRef& sweep_;
+  const PageRef& page_;
+  const Quantisation& quantisation_;
+  Shared& shared_;
+  PerLane<SweepStatistics>& statistics_;
+
+  const PageCell* cell_ = nullptr;
+  const BlockBox* first_ = nullptr;
+  std::uint32_t count_ = 0;
+  double delta_ = 0;
+  std::uint32_t pose_ = 0;
+  double reach_ = 0;
+  std::uint32_t nearest_ = kNone;
+  double nearest_squared_ = kInfinity;
+};
+
+}  // namespace clearway

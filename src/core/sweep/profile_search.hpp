@@ -1,0 +1,290 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/sweep/profile_blocks.hpp"
+#include "core/sweep/sweep_profile.hpp"
+
+namespace clearway {
+
+/// The points of a cell that are nearest to the model at the poses of motion nodes, by one warp: a
+/// descent of the motion tree that carries along which blocks are still open. Blocks and points
+/// are given up only where a bound proves every computed d2 to be above the best of each pose, so
+/// that ties stay (docs/design/numerics.md, "Profile").
+/// Ties: what becomes of points with the same d2 (UnresolvedTies, or SmallestSource).
+template <typename Warp, typename Ties>
+class ProfileSearch {
+ public:
+  using Blocks = ProfileBlocks<Warp>;
+  template <typename Value>
+  using PerLane = typename Warp::template PerLane<Value>;
+
+  /// What the lanes share.
+  struct Shared {
+    typename Blocks::Shared blocks;
+    Vec3 point, model_point;  ///< the last ones found
+  };
+
+  CLEARWAY_HD ProfileSearch(const SweepRef& sweep, const PageRef& page,
+                            const Quantisation& quantisation, const ProfileBests& bests,
+                            const Ties& ties, Shared& shared, PerLane<SweepStatistics>& statistics)
+      : sweep_(sweep),
+        page_(page),
+        quantisation_(quantisation),
+        bests_(bests),
+        ties_(ties),
+        shared_(shared),
+        statistics_(statistics),
+        blocks_(sweep, page, quantisation, shared.blocks, statistics) {}
+
+  CLEARWAY_HD static std::uint32_t parts_of_cell(std::uint32_t blocks_per_cell) {
+    return static_cast<std::uint32_t>(divide_up(blocks_per_cell, Blocks::kPartBlocks));
+  }
+
+  /// From here on a part of a cell of the page is searched. Whether it has points.
+  CLEARWAY_HD bool enter(std::uint32_t cell, std::uint32_t part) {
+    cell_ = &page_.cell(cell);
+    first_point_ = part * Blocks::kPartBlocks * kBlockPoints;
+    first_slot_ = cell * page_.shape.blocks_per_cell * kBlockPoints + first_point_;
+    has_guess_ = was_found_ = false;
+    last_pose_ = SweepPage::kNever;
+    ties_.enter_cell(cell, *cell_);
+    return blocks_.enter(cell, part);
+  }
+
+  /// All poses of a motion node.
+  CLEARWAY_HD void search(std::uint32_t top) {
+    const MotionNode* nodes = sweep_.motion.nodes;
+    std::uint32_t path[kPathLevels];
+    std::uint32_t level = 0, is_later = 0;  // is_later: a bit a level
+    path[0] = top;
+    for (;;) {
+      if (descends(path[level], level)) {
+        path[level + 1] = path[level] + 1;
+        ++level;
+        is_later &= ~(1U << level);
+        continue;
+      }
+      for (;; --level) {
+        if (level == 0) return;
+        if ((is_later >> level & 1) == 0) break;
+        note_halves(path[level - 1]);
+      }
+      path[level] = nodes[path[level - 1]].later;
+      is_later |= 1U << level;
+    }
+  }
+
+  /// One pose, where d2 above `bound` do not matter, and those equal to it do.
+  CLEARWAY_HD void search_pose(std::uint32_t pose, double bound) {
+    bound_ = bound;
+    if (!blocks_.look(0, pose, 0, reach_of(bound))) return;
+    search_blocks(pose, 1);
+    Warp::each([&](std::uint32_t lane) {
+      if (lane == 0 && found_ < kInfinity) ties_.keep(pose, found_);
+    });
+  }
+
+ private:
+  /// Below, poses are looked at one by one.
+  static constexpr std::uint32_t kPathLevels = Blocks::kLevels - 2;
+
+  /// A pose at which no model point is nearer than this has only d2 above `squared`.
+  CLEARWAY_HD double reach_of(double squared) const {
+    return std::sqrt(squared) * kRoundedUp + sweep_.rounding;
+  }
+
+  CLEARWAY_HD double reach_of_node(std::uint32_t index) const {
+    const MotionNode& node = sweep_.motion.nodes[index];
+    return node.count == 1 ? reach_of(load_shared(bests_.of_pose + node.mid))
+                           : load_shared(bests_.of_node + index);
+  }
+
+  CLEARWAY_HD void note_reach(std::uint32_t index, double reach) {
+    if (reach < load_shared(bests_.of_node + index)) store_shared(bests_.of_node + index, reach);
+  }
+
+  /// The larger reach of the halves is one of the node.
+  CLEARWAY_HD void note_halves(std::uint32_t index) {
+    Warp::each([&](std::uint32_t lane) {
+      if (lane != 0) return;
+      note_reach(index, greater_of(reach_of_node(index + 1),
+                                   reach_of_node(sweep_.motion.nodes[index].later)));
+    });
+  }
+
+  /// Looks at a node, searches what can be searched, and says whether its halves are to be.
+  CLEARWAY_HD bool descends(std::uint32_t index, std::uint32_t level) {
+    const MotionNode& node = sweep_.motion.nodes[index];
+    if (node.count == 1) {
+      search_single(node.mid, level);
+      return false;
+    }
+    const double known = Warp::once([&] { return load_shared(bests_.of_node + index); });
+    if (!blocks_.look(node.delta, node.mid, level, known)) return false;
+    const double reach = blocks_.reach();
+    if (reach < known) {
+      Warp::each([&](std::uint32_t lane) {
+        if (lane == 0) note_reach(index, reach);
+      });
+    }
+    if (level + 1 < kPathLevels) return true;
+    for (std::uint32_t i = 0; i < node.count; ++i) search_single(node.first + i, level + 1);
+    return false;
+  }
+
+  /// A single pose, whose open blocks are those of the level.
+  CLEARWAY_HD void search_single(std::uint32_t pose, std::uint32_t level) {
+    bound_ = Warp::once([&] { return load_shared(bests_.of_pose + pose); });
+    if (last_pose_ != SweepPage::kNever && last_pose_ + 1 == pose &&
+        sweep_.motion.poses[pose] == sweep_.motion.poses[last_pose_]) {
+      last_pose_ = pose;  // a stop: what was found is the same
+      if (was_found_ && found_ <= bound_) keep(pose);
+      return;
+    }
+    last_pose_ = SweepPage::kNever;
+    if (has_guess_) lower_bound(squared_at(pose, shared_.point, shared_.model_point));
+    if (!blocks_.look(0, pose, level, reach_of(bound_))) return;
+    search_blocks(pose, level + 1);
+    last_pose_ = pose;
+    was_found_ = found_ < kInfinity;
+    if (was_found_) keep(pose);
+  }
+
+  CLEARWAY_HD void keep(std::uint32_t pose) {
+    Warp::each([&](std::uint32_t lane) {
+      if (lane != 0) return;
+      lower_shared(bests_.of_pose + pose, found_);
+      ties_.keep(pose, found_);
+    });
+  }
+
+  /// The blocks that are open at a level, the nearest first.
+  CLEARWAY_HD void search_blocks(std::uint32_t pose, std::uint32_t level) {
+    found_ = kInfinity;
+    const std::uint32_t first = blocks_.nearest();
+    if (first != Blocks::kNone) search_block(pose, first);
+    for (std::uint32_t word = 0; word < blocks_.word_count(); ++word) {
+      std::uint32_t open = blocks_.still_open(word, level, first);
+      for (; open != 0; open &= open - 1) {
+        search_block(pose, word * kWarpLanes + lowest_bit(open));
+      }
+    }
+  }
+
+  CLEARWAY_HD void search_block(std::uint32_t pose, std::uint32_t block) {
+    for (std::uint32_t begin = block * kBlockPoints; begin < (block + 1) * kBlockPoints;
+         begin += kWarpLanes) {
+      if (first_point_ + begin < cell_->count) search_points(pose, begin);
+    }
+  }
+
+  /// 32 points of a block, a lane a point: first what the field names as near, then what is open.
+  CLEARWAY_HD void search_points(std::uint32_t pose, std::uint32_t begin) {
+    PerLane<Vec3> e, m;
+    PerLane<ModelFieldRef::Bounds> bounds;
+    PerLane<double> least;
+    std::uint32_t open = Warp::ballot([&](std::uint32_t lane) {
+      least[lane] = kInfinity;
+      const std::uint32_t index = first_point_ + begin + lane;
+      if (index >= cell_->count) return false;
+      ++statistics_[lane].point_tests;
+      e[lane] =
+          position(quantisation_, page_.value(cell_->chunks[0], index),
+                   page_.value(cell_->chunks[1], index), page_.value(cell_->chunks[2], index));
+      bounds[lane] = sweep_.field.bounds(sweep_.motion.inverse_poses[pose].apply(e[lane]));
+      if (!blocks_.matters(0, bounds[lane].squared_lower)) return false;
+      if (bounds[lane].near != ModelFieldRef::kNone) {
+        offer(pose, e[lane], sweep_.model.points[bounds[lane].near], least[lane], m[lane]);
+      }
+      return true;
+    });
+    if (open == 0) return;
+    lower_bound(Warp::least(least));
+    open = Warp::ballot([&](std::uint32_t lane) {
+      return (open >> lane & 1) != 0 && blocks_.matters(0, bounds[lane].squared_lower);
+    });
+    Warp::each([&](std::uint32_t lane) {
+      if ((open >> lane & 1) == 0) return;
+      ++statistics_[lane].exact_tests;
+      search_point(pose, e[lane], bounds[lane].near, least[lane], m[lane]);
+    });
+    take(begin, least, e, m);
+  }
+
+  CLEARWAY_HD void lower_bound(double squared) {
+    if (!(squared < bound_)) return;
+    bound_ = squared;
+    blocks_.lower_reach(reach_of(bound_));
+  }
+
+  CLEARWAY_HD double squared_at(std::uint32_t pose, const Vec3& e, const Vec3& m) const {
+    return squared_distance(e, transform(sweep_.motion.poses[pose], m));
+  }
+
+  CLEARWAY_HD void offer(std::uint32_t pose, const Vec3& e, const Vec3& m, double& least,
+                         Vec3& near) const {
+    const double squared = squared_at(pose, e, m);
+    if (!(squared < least)) return;
+    least = squared;
+    near = m;
+  }
+
+  /// Offers every model point that may have a d2 of at most the best.
+  CLEARWAY_HD void search_point(std::uint32_t pose, const Vec3& e, std::uint32_t near,
+                                double& least, Vec3& near_point) const {
+    const InversePose& back = sweep_.motion.inverse_poses[pose];
+    const Vec3 x = back.apply(e);
+    const ModelTreeRef::Nearest nearest =
+        sweep_.model.nearest(x, near == ModelFieldRef::kNone ? 0 : near);
+    if (farther(back.least, nearest.squared_distance, blocks_.reach())) return;
+    offer(pose, e, sweep_.model.points[nearest.point], least, near_point);
+    const double ball = reach_of(least < bound_ ? least : bound_) / back.least * kRoundedUp;
+    sweep_.model.any_within(x, ball * ball * kRoundedUp, [&](const Vec3& m) {
+      offer(pose, e, m, least, near_point);
+      return false;
+    });
+  }
+
+  /// The least of the lanes' d2, where nothing known is better.
+  CLEARWAY_HD void take(std::uint32_t begin, PerLane<double>& least, PerLane<Vec3>& e,
+                        PerLane<Vec3>& m) {
+    const double squared = Warp::least(least);
+    if (!(squared <= bound_ && squared < bests_.limit)) return;
+    lower_bound(squared);
+    if (squared < found_) {
+      found_ = squared;
+      ties_.restart();
+    }
+    const std::uint32_t lanes =
+        Warp::ballot([&](std::uint32_t lane) { return least[lane] == squared; });
+    ties_.add(first_slot_ + begin, lanes);
+    Warp::each([&](std::uint32_t lane) {
+      if (lane != lowest_bit(lanes)) return;
+      shared_.point = e[lane];
+      shared_.model_point = m[lane];
+    });
+    has_guess_ = true;
+  }
+
+  const SweepRef& sweep_;
+  const PageRef& page_;
+  const Quantisation& quantisation_;
+  const ProfileBests& bests_;
+  Ties ties_;
+  Shared& shared_;
+  PerLane<SweepStatistics>& statistics_;
+  Blocks blocks_;
+
+  const PageCell* cell_ = nullptr;
+  std::uint32_t first_point_ = 0;                ///< of the part, in its cell
+  std::uint32_t first_slot_ = 0;                 ///< likewise, in the page
+  double bound_ = 0;                             ///< d2 above it do not matter at this pose
+  double found_ = kInfinity;                     ///< the least d2 found at the last pose
+  std::uint32_t last_pose_ = SweepPage::kNever;  ///< that was searched, with what was found
+  bool was_found_ = false;
+  bool has_guess_ = false;
+};
+
+}  // namespace clearway

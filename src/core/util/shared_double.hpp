@@ -1,0 +1,42 @@
+#pragma once
+
+#ifndef __CUDA_ARCH__
+#include <atomic>
+#endif
+
+#include "core/util/macros.hpp"
+
+/// Doubles that threads of a device, or of the host, read and write at the same time, in no order.
+namespace clearway {
+
+CLEARWAY_HD inline double load_shared(const double* value) {
+#ifdef __CUDA_ARCH__
+  return *static_cast<const volatile double*>(value);
+#else
+  return std::atomic_ref(*const_cast<double*>(value)).load(std::memory_order_relaxed);
+#endif
+}
+
+CLEARWAY_HD inline void store_shared(double* value, double to) {
+#ifdef __CUDA_ARCH__
+  *static_cast<volatile double*>(value) = to;
+#else
+  std::atomic_ref(*value).store(to, std::memory_order_relaxed);
+#endif
+}
+
+/// Lowers a value; neither is negative.
+CLEARWAY_HD inline void lower_shared(double* value, double to) {
+#ifdef __CUDA_ARCH__
+  // Such doubles are in the order of their bits.
+  atomicMin(reinterpret_cast<unsigned long long*>(value),
+            static_cast<unsigned long long>(__double_as_longlong(to)));
+#else
+  std::atomic_ref target(*value);
+  double seen = target.load(std::memory_order_relaxed);
+  while (to < seen && !target.compare_exchange_weak(seen, to, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
+}  // namespace clearway

@@ -1,0 +1,94 @@
+#include "io/export/export_profile.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "clearway/error.hpp"
+#include "clearway/result.hpp"
+#include "io/export/position_text.hpp"
+#include "io/export/row_sink.hpp"
+#include "io/result/result_rows.hpp"
+#include "io/system/pending_file.hpp"
+
+namespace clearway {
+namespace {
+
+/// A field of CSV: in quotes where it needs them (RFC 4180).
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string out = "\"";
+  for (const char c : field) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+class ProfileTable {
+ public:
+  ProfileTable(const File& file, const ResultReader& result, const PoseLabels& labels)
+      : out_(file), position_(result.header().quantisation), labels_(labels) {
+    out_ << "pose";
+    if (!labels.time.empty()) out_ << ",time";
+    if (!labels.name.empty()) out_ << ",name";
+    out_ << ",chainage,distance,source,x,y,z\n";
+  }
+
+  void write(const ProfileRows& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i, ++pose_) {
+      out_ << pose_;
+      if (!labels_.time.empty()) out_ << "," << labels_.time[pose_];
+      if (!labels_.name.empty()) out_ << "," << quoted(labels_.name[pose_]);
+      out_ << "," << rows.chainage[i] << ",";
+      if (rows.source[i] == Profile::kNoPoint) {
+        out_ << ",,,,\n";
+        continue;
+      }
+      out_ << rows.distance[i] << "," << rows.source[i] << ",";
+      position_.write(out_, rows.xyz[i], ",");
+      out_ << "\n";
+    }
+  }
+  void finish() { out_.flush(); }
+
+ private:
+  TextWriter out_;
+  PositionText position_;
+  const PoseLabels& labels_;
+  std::uint64_t pose_ = 0;
+};
+
+}  // namespace
+
+void export_profile(const ResultReader& result, const PoseLabels& labels,
+                    const std::filesystem::path& output, bool overwrite, Progress& progress) {
+  if (!(result.header().profile > 0)) {
+    throw UsageError(result.name() + ": has no profile", Remedy::kAskForProfile);
+  }
+  if (export_format_of(output) != ExportFormat::kCsv) {
+    throw UsageError(output.string() + ": a profile is exported as .csv only");
+  }
+  for (const std::size_t count : {labels.time.size(), labels.name.size()}) {
+    if (count != 0 && count != result.profile_rows()) {
+      throw std::logic_error("export_profile: labels of another number of poses");
+    }
+  }
+  refuse_overwriting(output, {result.name()});
+  PendingFile pending(output, overwrite);
+  {
+    const File file = File::create(pending.partial());
+    ProfileTable table(file, result, labels);
+    progress.begin("export", result.profile_rows(), "poses");
+    ProfileRowStream stream(result);
+    for (ProfileRows rows; stream.read(rows);) {
+      throw_if_stopped(progress);
+      table.write(rows);
+      progress.advance(rows.size());
+    }
+    table.finish();
+    progress.end();
+  }
+  pending.publish();
+}
+
+}  // namespace clearway

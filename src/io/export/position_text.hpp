@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "io/export/decimal_axis.hpp"
+#include "io/formats/text/text_writer.hpp"
+
+namespace clearway {
+
+/// Positions as texts, three numbers and what stands between them.
+class PositionText {
+ public:
+  explicit PositionText(const Quantisation& quantisation)
+      : axes_{DecimalAxis(quantisation, 0), DecimalAxis(quantisation, 1),
+              DecimalAxis(quantisation, 2)} {}
+
+  void write(TextWriter& out, const Vec3& p, std::string_view between) {
+    out << axes_[0].text(p.x) << between << axes_[1].text(p.y) << between << axes_[2].text(p.z);
+  }
+
+ private:
+  std::array<DecimalAxis, 3> axes_;
+};
+
+}  // namespace clearway

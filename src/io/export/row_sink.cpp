@@ -1,0 +1,157 @@
+#include "io/export/row_sink.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "io/export/position_text.hpp"
+#include "io/formats/las/las_writer.hpp"
+#include "io/formats/ply/ply_writer.hpp"
+#include "io/formats/requantize.hpp"
+
+namespace clearway {
+namespace {
+
+using Quanta = std::vector<std::array<std::int32_t, 3>>;
+
+Quanta quanta_of(const ExportTable& table, const ExportRows& rows) {
+  Quanta out(rows.xyz.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const auto q = quantum_at(table.result.header().quantisation, k, rows.xyz[i][k]);
+      if (!q) {
+        throw InputError(table.result.name() + ": /" + table.group + "/xyz, source " +
+                         std::to_string(rows.source[i]) +
+                         ": expected a whole multiple of the scale above the offset");
+      }
+      out[i][static_cast<std::size_t>(k)] = *q;
+    }
+  }
+  return out;
+}
+
+class LasSink final : public RowSink {
+ public:
+  LasSink(const ExportTable& table, const File& file)
+      : table_(table), writer_(file, header_of(table)) {}
+
+  void write(const ExportRows& rows) override {
+    writer_.write(quanta_of(table_, rows), {rows.first_pose, rows.distance, rows.pose});
+  }
+  void finish() override { writer_.finish(); }
+
+ private:
+  static LasHeader header_of(const ExportTable& table) {
+    const ResultHeader& header = table.result.header();
+    return {header.quantisation, table.rows,       table.bounds,
+            header.crs_wkt,      table.first_pose, table.distance};
+  }
+
+  const ExportTable table_;
+  LasWriter writer_;
+};
+
+class PlySink final : public RowSink {
+ public:
+  PlySink(const ExportTable& table, const File& file)
+      : writer_(file, PlyOutput{.points = table.rows,
+                                .coordinates = PlyCoordinates::kFloat64,
+                                .first_pose = table.first_pose,
+                                .distance = table.distance}) {}
+
+  void write(const ExportRows& rows) override {
+    writer_.write(rows.xyz, {rows.first_pose, rows.distance, rows.pose});
+  }
+  void finish() override { writer_.finish(); }
+
+ private:
+  PlyWriter writer_;
+};
+
+class XyzSink final : public RowSink {
+ public:
+  XyzSink(const ExportTable& table, const File& file)
+      : out_(file), position_(table.result.header().quantisation) {}
+
+  void write(const ExportRows& rows) override {
+    for (std::size_t i = 0; i < rows.xyz.size(); ++i) {
+      position_.write(out_, rows.xyz[i], " ");
+      if (!rows.distance.empty()) out_ << " " << rows.distance[i] << " " << rows.pose[i];
+      out_ << "\n";
+    }
+  }
+  void finish() override { out_.flush(); }
+
+ private:
+  TextWriter out_;
+  PositionText position_;
+};
+
+/// Of a result of version 2, clearances have no coordinates.
+class CsvSink final : public RowSink {
+ public:
+  CsvSink(const ExportTable& table, const File& file)
+      : out_(file), position_(table.result.header().quantisation) {
+    out_ << "source";
+    if (!table.distance || table.result.header().has_clearance_xyz()) out_ << ",x,y,z";
+    if (table.first_pose) out_ << ",first_pose";
+    if (table.distance) out_ << ",distance,pose";
+    out_ << "\n";
+  }
+
+  void write(const ExportRows& rows) override {
+    for (std::size_t i = 0; i < rows.source.size(); ++i) {
+      out_ << rows.source[i];
+      if (!rows.xyz.empty()) position_.write(out_ << ",", rows.xyz[i], ",");
+      if (!rows.first_pose.empty()) out_ << "," << rows.first_pose[i];
+      if (!rows.distance.empty()) out_ << "," << rows.distance[i] << "," << rows.pose[i];
+      out_ << "\n";
+    }
+  }
+  void finish() override { out_.flush(); }
+
+ private:
+  TextWriter out_;
+  PositionText position_;
+};
+
+}  // namespace
+
+ExportFormat export_format_of(const std::filesystem::path& output) {
+  std::string ending = output.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".las") return ExportFormat::kLas;
+  if (ending == ".ply") return ExportFormat::kPly;
+  if (ending == ".xyz") return ExportFormat::kXyz;
+  if (ending == ".csv") return ExportFormat::kCsv;
+  throw UsageError(output.string() +
+                   ": unknown output format; the name must end in .las, .ply, .xyz or .csv");
+}
+
+std::unique_ptr<RowSink> make_row_sink(ExportFormat format, const ExportTable& table,
+                                       const File& file) {
+  switch (format) {
+    case ExportFormat::kLas:
+      return std::make_unique<LasSink>(table, file);
+    case ExportFormat::kPly:
+      return std::make_unique<PlySink>(table, file);
+    case ExportFormat::kXyz:
+      return std::make_unique<XyzSink>(table, file);
+    case ExportFormat::kCsv:
+      break;
+  }
+  return std::make_unique<CsvSink>(table, file);
+}
+
+void unite_rows(const ExportTable& table, const ExportRows& rows, bool& any, QuantumBox& box) {
+  for (const auto& [x, y, z] : quanta_of(table, rows)) {
+    const QuantumBox point{{x, y, z}, {x, y, z}};
+    box = any ? united(box, point) : point;
+    any = true;
+  }
+}
+
+}  // namespace clearway

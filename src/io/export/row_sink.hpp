@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/geometry/quantum_box.hpp"
+#include "io/result/result.hpp"
+#include "io/system/file.hpp"
+
+namespace clearway {
+
+/// Rows of a table of a result, for any format. Columns that the table lacks are empty.
+struct ExportRows {
+  std::span<const std::uint64_t> source;
+  std::span<const Vec3> xyz;
+  std::span<const std::uint32_t> first_pose{};
+  std::span<const double> distance{};
+  std::span<const std::uint32_t> pose{};
+};
+
+/// What a file has to say before its first row.
+struct ExportTable {
+  const ResultReader& result;
+  std::string group;  ///< of the result, for messages
+  std::uint64_t rows = 0;
+  bool first_pose = false;
+  bool distance = false;  ///< and pose
+  QuantumBox bounds{};    ///< of the points; only .las asks for them
+};
+
+/// Receives the rows front to back.
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  virtual void write(const ExportRows& rows) = 0;
+  virtual void finish() = 0;
+};
+
+enum class ExportFormat { kLas, kPly, kXyz, kCsv };
+
+/// By the ending of a name. Throws UsageError for any other.
+ExportFormat export_format_of(const std::filesystem::path& output);
+
+std::unique_ptr<RowSink> make_row_sink(ExportFormat format, const ExportTable& table,
+                                       const File& file);
+
+/// The box of the rows' integers, united with `box` where that has any. Throws InputError for a
+/// coordinate that is not on the result's scale.
+void unite_rows(const ExportTable& table, const ExportRows& rows, bool& any, QuantumBox& box);
+
+}  // namespace clearway

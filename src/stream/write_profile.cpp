@@ -1,0 +1,45 @@
+#include "stream/write_profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace clearway {
+namespace {
+
+/// Written in pieces of this many poses.
+constexpr std::uint64_t kPoses = 1 << 14;
+
+Vec3 position_of(const StoreReader& store, std::uint64_t entry) {
+  const auto q = store.coordinates(static_cast<std::uint32_t>(entry / store.cell_entries()));
+  const auto i = static_cast<std::uint32_t>(entry % store.cell_entries());
+  return position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
+}
+
+}  // namespace
+
+void write_profile(const StoreReader& store, const ProfileSet& profile,
+                   std::span<const double> chainage, ResultWriter& writer, Progress& progress) {
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> distance;
+  std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;
+  for (std::uint64_t first = 0; first < profile.poses(); first += kPoses) {
+    throw_if_stopped(progress);
+    const std::uint64_t end = std::min(profile.poses(), first + kPoses);
+    distance.clear();
+    source.clear();
+    xyz.clear();
+    for (std::uint64_t pose = first; pose < end; ++pose) {
+      const ProfilePoint& point = profile.at(pose);
+      distance.push_back(std::sqrt(point.squared));
+      source.push_back(point.source);
+      xyz.push_back(point.found() ? position_of(store, point.entry)
+                                  : Vec3{kNowhere, kNowhere, kNowhere});
+    }
+    writer.append_profile(distance, source, xyz, chainage.subspan(first, end - first));
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/query/profile_set.hpp"
+#include "core/util/progress.hpp"
+#include "io/result/result.hpp"
+#include "io/store/store_reader.hpp"
+
+namespace clearway {
+
+/// Appends the nearest points of all poses. chainage: of every pose, metres. Throws InputError for
+/// a damaged cell, ResourceError for a full disk, Interrupted when the progress asks to stop.
+void write_profile(const StoreReader& store, const ProfileSet& profile,
+                   std::span<const double> chainage, ResultWriter& writer, Progress& progress);
+
+}  // namespace clearway

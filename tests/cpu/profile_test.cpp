@@ -1,0 +1,220 @@
+// Profiles against brute force, where they are hard: ties, distances of any size, roundings.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/geometry/predicate.hpp"
+#include "cpu/brute_force.hpp"
+#include "random_scene.hpp"
+
+using namespace clearway;
+using clearway::test::kPart;
+using clearway::test::kRoom;
+
+namespace {
+
+struct ProfileScene : clearway::test::Scene {
+  ProfileScene() {
+    points.resize(1500);
+    radius = 0.1;
+  }
+
+  std::uint64_t check_profile(double distance) const {
+    std::uint64_t found = 0;
+    for (const double clearance : {0.0, 0.05, 0.7}) {
+      Query query{model, poses, {radius, clearance == 0.05}};
+      query.clearance = clearance;
+      query.profile = distance;
+      found = clearway::check_profile(points, quantisation, query);
+    }
+    return found;
+  }
+
+  void move_far_away(const Vec3& offset) {
+    for (int k = 0; k < 3; ++k) quantisation.offset[k] += offset[k];
+    for (Pose& pose : poses) {
+      for (int k = 0; k < 3; ++k) pose.translation[k] += offset[k];
+    }
+  }
+
+  /// The least d2 of a pose.
+  double least(std::size_t pose) const {
+    Query query{model, {poses[pose]}, {radius}};
+    query.profile = 1e100;
+    return brute_force_profile(positions_of(points, quantisation), query)[0].squared;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("profiles of every distance") {
+  ProfileScene scene;
+  const std::size_t all = scene.poses.size();
+  SECTION("smaller than every distance") { CHECK(scene.check_profile(1e-7) == 0); }
+  SECTION("smaller than the radius") { CHECK(scene.check_profile(0.05) > 0); }
+  SECTION("the radius") { CHECK(scene.check_profile(0.1) > 0); }
+  SECTION("larger") { CHECK(scene.check_profile(0.5) > 0); }
+  SECTION("larger than the scene") { CHECK(scene.check_profile(1000) == all); }
+  SECTION("beyond any scene") { CHECK(scene.check_profile(1e150) == all); }
+  SECTION("whose square is infinite") { CHECK(scene.check_profile(1e200) == all); }
+  SECTION("whose square is zero") { CHECK(scene.check_profile(1e-200) == 0); }
+  SECTION("with a radius far below the model's spacing") {
+    scene.radius = 1e-4;
+    CHECK(scene.check_profile(1.5) > 0);
+  }
+  SECTION("with a radius larger than the scene") {
+    scene.radius = 30;
+    CHECK(scene.check_profile(0.5) > 0);
+  }
+}
+
+TEST_CASE("a profile at the exact distance of a pose") {
+  ProfileScene scene;
+  for (std::size_t pose : {0, 13, 39}) {
+    double distance = std::sqrt(scene.least(pose));
+    while (rounded_product(distance, distance) > scene.least(pose)) {
+      distance = std::nextafter(distance, 0);
+    }
+    const auto found = [&](double limit) {
+      ProfileScene one = scene;
+      one.poses = {scene.poses[pose]};
+      return one.check_profile(limit);
+    };
+    CHECK(found(distance) == 0);  // not below it
+    while (rounded_product(distance, distance) <= scene.least(pose)) {
+      distance = std::nextafter(distance, 1e9);
+    }
+    CHECK(found(distance) == 1);
+  }
+}
+
+TEST_CASE("profiles of few model points, poses and points") {
+  ProfileScene scene;
+  SECTION("one model point") { scene.model.resize(1); }
+  SECTION("one pose") { scene.poses.resize(1); }
+  SECTION("one point") { scene.points.resize(1); }
+  SECTION("one of each") {
+    scene.model.resize(1);
+    scene.poses.resize(1);
+    scene.points.resize(1);
+  }
+  CHECK(scene.check_profile(20) == scene.poses.size());
+}
+
+TEST_CASE("profiles where no point is in reach") {
+  ProfileScene scene;
+  scene.move_far_away({0, 0, 0});
+  for (Pose& pose : scene.poses) pose.translation[0] += 100;
+  CHECK(scene.check_profile(2) == 0);
+}
+
+TEST_CASE("profiles of stops, jumps and ways back") {
+  ProfileScene scene;
+  SECTION("repeated poses") {
+    const auto once = scene.poses;
+    scene.poses.clear();
+    for (const Pose& pose : once) scene.poses.insert(scene.poses.end(), 5, pose);
+  }
+  SECTION("one pose all the time") { scene.poses.assign(300, scene.poses[7]); }
+  SECTION("a long stop on the way") {
+    scene.poses.insert(scene.poses.begin() + 20, 200, scene.poses[20]);
+  }
+  SECTION("there and back") {
+    const auto there = scene.poses;
+    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
+  }
+  SECTION("steps that double: a tree deeper than its levels") {
+    scene.poses.clear();
+    for (int i = -40; i < 3; ++i) scene.poses.push_back(translation({std::ldexp(1, i), 0, 0}));
+  }
+  SECTION("jumps") {
+    for (std::size_t i = 0; i < scene.poses.size(); i += 3) {
+      scene.poses[i] = random_rotation(scene.random, random_point(scene.random, kRoom));
+    }
+  }
+  CHECK(scene.check_profile(3) == scene.poses.size());
+}
+
+TEST_CASE("profiles for which many points tie") {
+  // All in exact numbers: whole planes of points are equally far.
+  ProfileScene scene;
+  scene.quantisation = {{0x1p-10, 0x1p-10, 0x1p-10}, {0, 0, 0}};
+  scene.points.clear();
+  for (std::int32_t i = 0; i < 2500; ++i) scene.points.push_back({i % 50 * 64, i / 50 * 64, 0});
+  std::shuffle(scene.points.begin(), scene.points.end(), scene.random);
+  scene.model.clear();
+  for (int i = 0; i < 64; ++i) scene.model.push_back({i % 8 * 0x1p-4, i / 8 * 0x1p-4, 0.25});
+  scene.poses.clear();
+  for (int i = 0; i < 40; ++i) scene.poses.push_back(translation({i * 0x1p-6, 0.5, 0}));
+  CHECK(scene.check_profile(4) == scene.poses.size());
+  CHECK(scene.check_profile(0.25) == 0);
+  CHECK(scene.check_profile(std::nextafter(0.25, 1)) > 0);
+}
+
+TEST_CASE("profiles of duplicates") {
+  ProfileScene scene;
+  scene.points.resize(700);
+  for (int i = 0; i < 700; ++i) scene.points.push_back(scene.points[i]);
+  for (int i = 0; i < 700; ++i) scene.points.insert(scene.points.begin(), scene.points[i]);
+  for (int i = 0; i < 60; ++i) scene.model.push_back(scene.model[i]);
+  CHECK(scene.check_profile(1) > 0);
+  scene.points.assign(500, scene.points[3]);
+  CHECK(scene.check_profile(30) == scene.poses.size());
+}
+
+TEST_CASE("profiles far from the origin and of matrices that are not rigid") {
+  ProfileScene scene;
+  SECTION("UTM") { scene.move_far_away({5e6, 2e6, 1e3}); }
+  SECTION("six digits") {
+    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
+  }
+  SECTION("slightly stretched") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {1.00009, 0.99992, 1.00005});
+  }
+  SECTION("strongly stretched") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {2.5, 0.3, 1.7});
+  }
+  SECTION("strongly stretched, far away") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {0.2, 1.4, 0.7});
+    scene.move_far_away({5e6, 2e6, 1e3});
+  }
+  SECTION("singular") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {3, 0, 1});
+  }
+  CHECK(scene.check_profile(1.5) > 0);
+}
+
+TEST_CASE("profiles where roundings decide the point and the model point") {
+  // Points that are all as far from a model of points around one place, give or take a few
+  // roundings: the least computed d2 is not that of the nearest point.
+  Random random(29);
+  for (int trial = 0; trial < 40; ++trial) {
+    const double far = trial % 3 == 0 ? 0 : trial % 3 == 1 ? 1e3 : 5e6;
+    const Vec3 place{far, -far / 3, 0.1};
+    ProfileScene scene;
+    scene.quantisation = Quantisation{{1e-9, 1e-9, 1e-9}, {place.x, place.y, place.z}};
+    scene.points.clear();
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 x = transform(random_rotation(random, {0, 0, 0}), Vec3{0.5, 0, 0});
+      scene.points.push_back(quantise(
+          std::vector<Vec3>{{place.x + x.x, place.y + x.y, place.z + x.z}}, scene.quantisation)[0]);
+    }
+    scene.model.clear();
+    for (int i = 0; i < 20; ++i) {
+      scene.model.push_back(random_point(random, {{-1e-9, -1e-9, -1e-9}, {1e-9, 1e-9, 1e-9}}));
+    }
+    scene.poses.clear();
+    for (int i = 0; i < 30; ++i) scene.poses.push_back(random_rotation(random, place));
+    CAPTURE(trial);
+    CHECK(scene.check_profile(1) == scene.poses.size());
+  }
+}
+
+TEST_CASE("a profile of a cell with more blocks than a warp searches at once") {
+  ProfileScene scene;
+  scene.points = quantise(random_points(scene.random, kRoom, 200'000), scene.quantisation);
+  scene.model.resize(5);
+  scene.poses.resize(4);
+  Query query{scene.model, scene.poses, {scene.radius}};
+  query.profile = 0.5;
+  CHECK(check_profile(scene.points, scene.quantisation, query) == scene.poses.size());
+}

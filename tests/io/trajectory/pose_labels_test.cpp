@@ -1,0 +1,69 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "clearway/trajectory.hpp"
+#include "support/reader_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+using Names = std::vector<std::string>;
+using Times = std::vector<double>;
+
+PoseLabels labels_of(const std::string& text, const std::string& name,
+                     const TrajectoryOptions& options = {}) {
+  const ReaderScratch scratch;
+  PoseLabels labels{{7}, {"stale"}};
+  read_trajectory(scratch.write(name, text), options, nullptr, &labels);
+  return labels;
+}
+
+}  // namespace
+
+TEST_CASE("times of TUM and EuRoC are kept, in seconds") {
+  const PoseLabels tum = labels_of("1.5 0 0 0 0 0 0 1\n2.25 1 0 0 0 0 0 1\n", "path.txt");
+  CHECK(tum.time == Times{1.5, 2.25});
+  CHECK(tum.name.empty());
+  const PoseLabels euroc = labels_of("1403636579763555584,0,0,0,1,0,0,0\n", "path.csv",
+                                     {.format = TrajectoryFormat::kEuroc});
+  REQUIRE(euroc.time.size() == 1);
+  CHECK(euroc.time[0] == Approx(1403636579.763555584).epsilon(1e-15));
+}
+
+TEST_CASE("a column of names is kept, quotes and blanks around them are not") {
+  const PoseLabels labels = labels_of(
+      "name,time,x,y,z,qx,qy,qz,qw\n\"P 1\",3,0,0,0,0,0,0,1\n b ,4,1,0,0,0,0,0,1\n", "path.csv");
+  CHECK(labels.name == Names{"P 1", "b"});
+  CHECK(labels.time == Times{3, 4});
+}
+
+TEST_CASE("an index counts where there is no name") {
+  const std::string pose = ",0,0,0,0,0,0,1\n";
+  CHECK(labels_of("index,x,y,z,qx,qy,qz,qw\n007" + pose, "path.csv").name == Names{"007"});
+  CHECK(labels_of("index,name,x,y,z,qx,qy,qz,qw\n7,a" + pose, "path.csv").name == Names{"a"});
+  CHECK(labels_of("index,id,x,y,z,qx,qy,qz,qw\n7,8" + pose, "path.csv").name.empty());
+  CHECK(labels_of("id,x,y,z,roll_deg,pitch_deg,heading_deg\n9,0,0,0,1,2,3\n", "path.csv").name ==
+        Names{"9"});
+}
+
+TEST_CASE("a time that is missing in one line is kept in none") {
+  const PoseLabels labels =
+      labels_of("time,x,y,z,qx,qy,qz,qw\n1,0,0,0,0,0,0,1\n,1,0,0,0,0,0,1\n", "path.csv");
+  CHECK(labels.time.empty());
+}
+
+TEST_CASE("matrices have no labels") {
+  const PoseLabels labels = labels_of("1 0 0 0 0 1 0 0 0 0 1 0\n", "path.txt");
+  CHECK((labels.time.empty() && labels.name.empty()));
+}
+
+TEST_CASE("poses of a folder of 3DTK are called as their files") {
+  const ReaderScratch scratch;
+  scratch.write("scan001.pose", "0 0 0\n0 0 0\n");
+  const auto folder = scratch.write("scan000.pose", "0 0 0\n0 0 0\n").parent_path();
+  PoseLabels labels;
+  read_trajectory(folder, {}, nullptr, &labels);
+  CHECK(labels.name == Names{"scan000.pose", "scan001.pose"});
+}

@@ -1,0 +1,141 @@
+#include "cli/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include "clearway/result.hpp"
+#include "core/trajectory/chainage.hpp"
+#include "core/util/format.hpp"
+#include "io/result/result_rows.hpp"
+
+namespace clearway::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::optional<AnswerPlace> first_place(const ResultReader& result) {
+  std::optional<AnswerPlace> first;
+  ResultRowStream stream(result);
+  for (ResultRows rows; stream.read(rows);) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (first && rows.first_pose[i] >= first->pose) continue;
+      first = {.source = rows.source[i], .pose = rows.first_pose[i], .xyz = rows.xyz[i]};
+    }
+  }
+  return first;
+}
+
+std::optional<AnswerPlace> least_clearance(const ResultReader& result) {
+  std::optional<AnswerPlace> least;
+  ClearanceRowStream stream(result);
+  for (ClearanceRows rows; stream.read(rows);) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (least && rows.distance[i] >= *least->distance) continue;
+      least = {.source = rows.source[i], .pose = rows.pose[i], .distance = rows.distance[i]};
+      if (!rows.xyz.empty()) least->xyz = rows.xyz[i];
+    }
+  }
+  return least;
+}
+
+std::optional<AnswerPlace> least_of_profile(const ResultReader& result) {
+  std::optional<AnswerPlace> least;
+  std::uint32_t pose = 0;
+  ProfileRowStream stream(result);
+  for (ProfileRows rows; stream.read(rows);) {
+    for (std::size_t i = 0; i < rows.size(); ++i, ++pose) {
+      if (rows.source[i] == Profile::kNoPoint) continue;
+      if (least && rows.distance[i] >= *least->distance) continue;
+      least = {
+          .source = rows.source[i], .pose = pose, .xyz = rows.xyz[i], .distance = rows.distance[i]};
+    }
+  }
+  return least;
+}
+
+std::string place_text(const AnswerPlace& place, const PoseLabels& labels,
+                       const std::string& unit) {
+  std::string text = fmt::format("pose {} (", place.pose);
+  if (!labels.name.empty()) text += labels.name[place.pose] + ", ";
+  if (!labels.time.empty()) text += fmt::format("time {}, ", labels.time[place.pose]);
+  text += fmt::format("{:.2f} {} along the path)", place.chainage, unit);
+  if (place.xyz) {
+    text += fmt::format(", point {:.3f} {:.3f} {:.3f}", place.xyz->x, place.xyz->y, place.xyz->z);
+  }
+  return text;
+}
+
+std::string nearest_text(const Verdict& verdict, const PoseLabels& labels,
+                         const std::string& unit) {
+  const auto& nearest = verdict.nearest();
+  if (nearest) {
+    return fmt::format("; the least distance is {:.4g} {} at {}", *nearest->distance, unit,
+                       place_text(*nearest, labels, unit));
+  }
+  const double asked = std::max(verdict.query.profile, verdict.query.clearance);
+  return asked > 0 ? fmt::format("; none is within {} {}", asked, unit) : "";
+}
+
+ordered_json place_json(const std::optional<AnswerPlace>& place, const PoseLabels& labels) {
+  if (!place) return nullptr;
+  ordered_json out;
+  if (place->distance) out["distance"] = *place->distance;
+  out["pose"] = place->pose;
+  out["source"] = place->source;
+  out["chainage"] = place->chainage;
+  const char* const axes[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    out[axes[k]] = place->xyz ? ordered_json((*place->xyz)[k]) : ordered_json(nullptr);
+  }
+  if (!labels.time.empty()) out["time"] = labels.time[place->pose];
+  if (!labels.name.empty()) out["name"] = labels.name[place->pose];
+  return out;
+}
+
+}  // namespace
+
+Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
+  Verdict out{.colliding_points = result.collisions(),
+              .query = result.header(),
+              .float_precision = result.header().float_precision};
+  if (result.header().first_pose) out.first = first_place(result);
+  out.least_clearance = least_clearance(result);
+  out.least_profile = least_of_profile(result);
+  const std::vector<double> chainage = chainage_of(poses);
+  for (auto* place : {&out.first, &out.least_clearance, &out.least_profile}) {
+    if (*place) (*place)->chainage = chainage.at((*place)->pose);
+  }
+  return out;
+}
+
+std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
+                         const std::string& caveat) {
+  const std::string limit = fmt::format("{} {}", verdict.query.radius, unit);
+  std::string text;
+  if (verdict.is_clear()) {
+    text = "clear: no environment point is closer than " + limit + " to the model on its way";
+  } else {
+    text = "conflict: " + format_count(verdict.colliding_points) +
+           (verdict.colliding_points == 1 ? " point is" : " points are") + " closer than " + limit +
+           " to the model on its way";
+    if (verdict.first) {
+      text += std::string("; first ") + (verdict.query.between_poses ? "on the way from " : "at ") +
+              place_text(*verdict.first, labels, unit);
+    }
+  }
+  text += nearest_text(verdict, labels, unit);
+  if (verdict.query.tolerance > 0) {
+    text += fmt::format("; points within {} {} of that distance may be judged wrongly",
+                        verdict.query.tolerance, unit);
+  }
+  if (verdict.float_precision) text += "; not exact, as single precision alone decided";
+  return text + caveat + ".";
+}
+
+void add_verdict(const Verdict& verdict, const PoseLabels& labels, ordered_json& out) {
+  out["verdict"] = verdict.is_clear() ? "clear" : "conflict";
+  out["least_clearance"] = place_json(verdict.least_clearance, labels);
+  out["least_profile"] = place_json(verdict.least_profile, labels);
+  out["first_place"] = place_json(verdict.first, labels);
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clearway/pose.hpp"
+#include "clearway/trajectory.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway::tool {
+
+/// A place of the answer: an environment point, and the pose at which it counts.
+struct AnswerPlace {
+  std::uint64_t source = 0;
+  std::uint32_t pose = 0;
+  double chainage = 0;  ///< of the pose, in the unit of the path
+  std::optional<Vec3> xyz{};
+  std::optional<double> distance{};
+};
+
+/// The answer of a run in short, read from its result, whoever wrote that.
+struct Verdict {
+  std::uint64_t colliding_points = 0;
+  QueryParameters query{};
+  bool float_precision = false;
+  std::optional<AnswerPlace> first;            ///< with first poses: at the smallest, least source
+  std::optional<AnswerPlace> least_clearance;  ///< of equals the least source
+  std::optional<AnswerPlace> least_profile;    ///< of equals the first pose
+
+  bool is_clear() const { return colliding_points == 0; }
+  /// The least distance that is known.
+  const std::optional<AnswerPlace>& nearest() const {
+    return least_profile ? least_profile : least_clearance;
+  }
+};
+
+/// Reads the tables that the result has. poses: those of the search. Throws as ResultReader does.
+Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses);
+
+/// One sentence, without what `caveat` adds before its end. unit: of lengths, "m".
+std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
+                         const std::string& caveat);
+
+/// Adds the keys verdict, least_clearance, least_profile and first_place.
+void add_verdict(const Verdict& verdict, const PoseLabels& labels, nlohmann::ordered_json& out);
+
+}  // namespace clearway::tool
