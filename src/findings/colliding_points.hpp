@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/util/progress.hpp"
-#include "findings/cell_grid.hpp"
+#include "findings/group/cell_grid.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {

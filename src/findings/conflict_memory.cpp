@@ -5,9 +5,9 @@
 #include "clearway/conflicts.hpp"
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
-#include "findings/cell_grid.hpp"
 #include "findings/colliding_points.hpp"
-#include "findings/join_cells.hpp"
+#include "findings/group/cell_grid.hpp"
+#include "findings/group/join_cells.hpp"
 #include "findings/tally.hpp"
 
 namespace clearway {

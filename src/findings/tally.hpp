@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/geometry/quantum_box.hpp"
-#include "findings/cell_grid.hpp"
+#include "findings/group/cell_grid.hpp"
 
 namespace clearway {
 

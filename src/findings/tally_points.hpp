@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/util/progress.hpp"
-#include "findings/cell_grid.hpp"
+#include "findings/group/cell_grid.hpp"
+#include "findings/group/point_groups.hpp"
 #include "findings/path_stretches.hpp"
-#include "findings/point_groups.hpp"
 #include "findings/tally.hpp"
 
 namespace clearway {

@@ -15,7 +15,7 @@ namespace {
 constexpr int kWidth = 800, kHeight = 600;
 constexpr Colour kColliding{200, 30, 30}, kModel{90, 110, 140}, kPath{40, 90, 200},
     kBoxEdge{120, 120, 120};
-constexpr double kLeastDistance = 4;      // metres from camera to conflict
+constexpr double kLeastDistance = 6;      // metres from camera to conflict
 constexpr double kSizesAway = 1.6;        // and at least so many times the conflict's diagonal
 constexpr std::size_t kPathPoses = 2000;  // beside the nearest one, drawn as a line
 
@@ -96,7 +96,7 @@ std::string snapshot_of(const ConflictFile& file, const Conflict& conflict, cons
   for (const Vec3& m : model) picture.draw_point(transform(pose, m), kModel, 1);
   draw_path(picture, file, conflict);
   draw_box(picture, conflict.box);
-  for (const Vec3& p : points) picture.draw_point(p, kColliding, 3);
+  for (const Vec3& p : points) picture.draw_mark(p, kColliding, 3);
   return picture.png();
 }
 

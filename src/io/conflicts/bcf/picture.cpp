@@ -61,11 +61,19 @@ void Picture::set(int x, int y, double depth, const Colour& colour) {
 
 void Picture::draw_point(const Vec3& at, const Colour& colour, int size) {
   Seen seen{};
-  if (!see(at, seen)) return;
+  if (see(at, seen)) draw_square(seen, seen.depth, colour, size);
+}
+
+void Picture::draw_mark(const Vec3& at, const Colour& colour, int size) {
+  Seen seen{};
+  if (see(at, seen)) draw_square(seen, 0, colour, size);
+}
+
+void Picture::draw_square(const Seen& seen, double depth, const Colour& colour, int size) {
   const int left = static_cast<int>(std::floor(seen.x)) - size / 2;
   const int top = static_cast<int>(std::floor(seen.y)) - size / 2;
   for (int y = top; y < top + size; ++y) {
-    for (int x = left; x < left + size; ++x) set(x, y, seen.depth, colour);
+    for (int x = left; x < left + size; ++x) set(x, y, depth, colour);
   }
 }
 

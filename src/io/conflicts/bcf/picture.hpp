@@ -24,6 +24,8 @@ class Picture {
 
   /// A square of `size` pixels.
   void draw_point(const Vec3& at, const Colour& colour, int size);
+  /// The same in front of everything but other marks.
+  void draw_mark(const Vec3& at, const Colour& colour, int size);
   void draw_line(const Vec3& from, const Vec3& to, const Colour& colour);
 
   /// The bytes of a PNG file. Source: W3C, PNG (second edition).
@@ -34,6 +36,7 @@ class Picture {
     double x, y, depth;  ///< pixels from the upper left corner; metres
   };
   bool see(const Vec3& at, Seen& seen) const;
+  void draw_square(const Seen& seen, double depth, const Colour& colour, int size);
   void set(int x, int y, double depth, const Colour& colour);
 
   int width_, height_;

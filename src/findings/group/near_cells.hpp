@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "findings/cell_grid.hpp"
-#include "findings/neighbourhood.hpp"
+#include "findings/group/cell_grid.hpp"
+#include "findings/group/neighbourhood.hpp"
 
 namespace clearway {
 

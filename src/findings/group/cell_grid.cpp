@@ -1,4 +1,4 @@
-#include "findings/cell_grid.hpp"
+#include "findings/group/cell_grid.hpp"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>

@@ -3,9 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
-#include "findings/neighbourhood.hpp"
+#include "findings/group/neighbourhood.hpp"
 
 namespace clearway {
 
@@ -23,7 +24,10 @@ struct GridPoint {
 /// Where a cell of the grid lies; in the order of the cells.
 struct GridPlace {
   std::uint32_t z, y, x;
-  friend auto operator<=>(const GridPlace&, const GridPlace&) = default;
+  friend bool operator==(const GridPlace&, const GridPlace&) = default;
+  friend bool operator<(const GridPlace& a, const GridPlace& b) {
+    return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
+  }
 };
 
 /// Points sorted by the cells of a regular grid, so small that all points of a cell are neighbours.

@@ -1,4 +1,4 @@
-#include "findings/neighbourhood.hpp"
+#include "findings/group/neighbourhood.hpp"
 
 #include <algorithm>
 #include <cmath>

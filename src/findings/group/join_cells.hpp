@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "core/util/progress.hpp"
-#include "findings/cell_grid.hpp"
-#include "findings/neighbourhood.hpp"
-#include "findings/union_find.hpp"
+#include "findings/group/cell_grid.hpp"
+#include "findings/group/neighbourhood.hpp"
+#include "findings/group/union_find.hpp"
 
 namespace clearway {
 

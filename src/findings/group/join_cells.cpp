@@ -1,4 +1,4 @@
-#include "findings/join_cells.hpp"
+#include "findings/group/join_cells.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/util/tsan_annotations.hpp"
-#include "findings/near_cells.hpp"
-#include "findings/point_tree.hpp"
+#include "findings/group/near_cells.hpp"
+#include "findings/group/point_tree.hpp"
 
 namespace clearway {
 namespace {

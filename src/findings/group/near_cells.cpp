@@ -1,4 +1,4 @@
-#include "findings/near_cells.hpp"
+#include "findings/group/near_cells.hpp"
 
 #include <cstddef>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "findings/point_groups.hpp"
+#include "findings/group/point_groups.hpp"
 
 namespace clearway {
 

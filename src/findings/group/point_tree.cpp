@@ -1,8 +1,8 @@
-#include "findings/point_tree.hpp"
+#include "findings/group/point_tree.hpp"
 
 #include <algorithm>
 
-#include "findings/near_cells.hpp"
+#include "findings/group/near_cells.hpp"
 
 namespace clearway {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/geometry/quantum_box.hpp"
-#include "findings/cell_grid.hpp"
-#include "findings/neighbourhood.hpp"
+#include "findings/group/cell_grid.hpp"
+#include "findings/group/neighbourhood.hpp"
 
 namespace clearway {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/util/progress.hpp"
-#include "findings/cell_grid.hpp"
-#include "findings/union_find.hpp"
+#include "findings/group/cell_grid.hpp"
+#include "findings/group/union_find.hpp"
 
 namespace clearway {
 

@@ -116,7 +116,7 @@ TEST_CASE("threads and the store's cells change no byte of any format") {
     for (const char* ending : {"csv", "json", "geojson", "gpkg", "bcf"}) {
       outputs += " -o " + work.path(name + "." + ending);
     }
-    REQUIRE(work.conflicts("--min-points 2 " + more + outputs, result).exit_code == 0);
+    REQUIRE(work.conflicts("--min-points 6 " + more + outputs, result).exit_code == 0);
     std::string all;
     for (const char* ending : {"csv", "json", "geojson", "gpkg", "bcf"}) {
       all += work.bytes(name + "." + ending);

@@ -1,0 +1,151 @@
+// Files of conflicts: coordinate reference systems, strings, and what cannot be written.
+#include <sqlite3.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "clearway/error.hpp"
+#include "findings/conflict_fixture.hpp"
+#include "io/conflicts/json_text.hpp"
+#include "io/conflicts/scan_crs.hpp"
+#include "io/conflicts/write_conflicts.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using nlohmann::json;
+
+namespace {
+
+constexpr const char* kUtm =
+    R"(PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_1989",SPHEROID["GRS 1980",6378137,298.257222101]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","25832"]])";
+constexpr const char* kOwn =
+    R"(PROJCS["Site \ grid ""A""",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]])";
+
+/// Two conflicts of three points, written.
+struct Written {
+  explicit Written(const std::string& wkt) {
+    found.poses = {translation({500'000, 4'000'000, 100})};
+    found.quantisation = {{0.001, 0.001, 0.001}, {500'000, 4'000'000, 100}};
+    found.quanta = {{0, 0, 0}, {100, 0, 0}, {200, 50, 0}, {9000, 0, 0}, {9100, 0, 0}, {9200, 0, 0}};
+    header = found.header();
+    header.crs_wkt = wkt;
+    write_result(folder / "out.h5", header, found.rows());
+    options.min_points = 3;
+  }
+
+  std::string write(ConflictFormat format) {
+    const Result result(folder / "out.h5");
+    std::vector<std::uint32_t> conflict_of;
+    const Conflicts conflicts = find_conflicts(result, found.poses, options, &conflict_of);
+    REQUIRE(conflicts.listed.size() == 2);
+    const ConflictFile file{conflicts, options, result.reader().header(), found.poses, {}};
+    const ConflictPictures pictures{conflict_points(result.reader(), conflicts, conflict_of), {}};
+    write_conflicts(file, pictures, format, folder / "out");
+    return bytes_of(folder / "out");
+  }
+
+  Found found;
+  ResultHeader header;
+  ConflictOptions options;
+  ScratchFolder folder;
+};
+
+/// The first value of a query, as text.
+std::string value_of(const std::filesystem::path& path, const std::string& sql) {
+  sqlite3* database = nullptr;
+  REQUIRE(sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK);
+  sqlite3_stmt* statement = nullptr;
+  REQUIRE(sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr) == SQLITE_OK);
+  REQUIRE(sqlite3_step(statement) == SQLITE_ROW);
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement, 0));
+  const std::string out(text == nullptr ? "null" : text);
+  sqlite3_finalize(statement);
+  sqlite3_close(database);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("GeoJSON names the coordinate reference system of the scans") {
+  const auto name = [](const std::string& wkt) {
+    const json all = json::parse(Written(wkt).write(ConflictFormat::kGeoJson));
+    CHECK(all["features"][0]["geometry"]["coordinates"][1].get<double>() > 3'999'999);
+    return all["crs"]["properties"]["name"].get<std::string>();
+  };
+  CHECK(name(kUtm) == "urn:ogc:def:crs:EPSG::25832");
+  CHECK_THAT(name(kOwn), Catch::Contains("PROJCS[\"Site"));
+  CHECK(name("no \"text\" \\ that\nPROJ knows") == "no \"text\" \\ that\nPROJ knows");
+  CHECK_THAT(name(""), Catch::StartsWith("LOCAL_CS"));
+}
+
+TEST_CASE("a GeoPackage has the scans' system, its layers and its marks") {
+  Written written(kUtm);
+  const std::string bytes = written.write(ConflictFormat::kGeoPackage);
+  CHECK(bytes.compare(0, 15, "SQLite format 3") == 0);
+  CHECK(bytes.compare(68, 4, "GPKG") == 0);
+  const auto path = written.folder / "out";
+  const auto value = [&](const std::string& sql) { return value_of(path, sql); };
+  CHECK(value("PRAGMA integrity_check") == "ok");
+  CHECK(value("SELECT count(*) FROM pragma_foreign_key_check") == "0");
+  CHECK(value("SELECT organization || organization_coordsys_id FROM gpkg_spatial_ref_sys "
+              "WHERE srs_id = 25832") == "EPSG25832");
+  CHECK(value("SELECT count(*) FROM gpkg_contents WHERE srs_id = 25832") == "3");
+  CHECK(value("SELECT last_change FROM gpkg_contents") == "2000-01-01T00:00:00.000Z");
+  CHECK(value("SELECT min_x FROM gpkg_contents WHERE table_name = 'footprints'") == "500000.0");
+  CHECK(value("SELECT points FROM conflicts WHERE id = 2") == "3");
+  CHECK(value("SELECT least_distance FROM conflicts WHERE id = 2") == "null");
+  CHECK(value("SELECT typeof(source) FROM stretches") == "integer");
+  // A point: 8 bytes of header, 5 of well-known binary, three numbers.
+  CHECK(value("SELECT length(geom) FROM conflicts") == std::to_string(8 + 5 + 24));
+  CHECK(value("SELECT length(geom) FROM footprints") == std::to_string(8 + 32 + 13 + 5 * 24));
+  // The only pose twice.
+  CHECK(value("SELECT length(geom) FROM stretches") == std::to_string(8 + 32 + 9 + 2 * 24));
+}
+
+TEST_CASE("a GeoPackage keeps systems that have no number, and goes without any") {
+  Written own(kOwn);
+  own.write(ConflictFormat::kGeoPackage);
+  CHECK(value_of(own.folder / "out", "SELECT srs_id FROM gpkg_contents") == "100000");
+  CHECK_THAT(value_of(own.folder / "out",
+                      "SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 100000"),
+             Catch::StartsWith("PROJCS[\"Site"));
+  Written odd("it's no WKT");
+  odd.write(ConflictFormat::kGeoPackage);
+  CHECK(value_of(odd.folder / "out",
+                 "SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 100000") ==
+        "it's no WKT");
+  Written none("");
+  none.write(ConflictFormat::kGeoPackage);
+  CHECK(value_of(none.folder / "out", "SELECT srs_id FROM gpkg_contents") == "-1");
+}
+
+TEST_CASE("strings of JSON are escaped, and bytes that are not UTF-8 replaced") {
+  CHECK(json_string("a\"b\\c\n\x01") == "\"a\\\"b\\\\c\\u000a\\u0001\"");
+  CHECK(json_string("\xc3\xa4 \xe2\x82\xac \xf0\x9f\x9a\x82") ==
+        "\"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x9a\x82\"");
+  for (const char* bad : {"\xc3", "\x80", "\xc0\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80",
+                          "\xe2\x82", "\xf0\x80\x80\x80"}) {
+    INFO(json_string(bad));
+    CHECK(json::parse(json_string(bad)).get<std::string>().find("\xef\xbf\xbd") == 0);
+  }
+  CHECK(json_number(0.1) == "0.1");
+  CHECK(json_number(std::nan("")) == "null");
+}
+
+TEST_CASE("every file of conflicts is JSON, CSV or binary as its name says") {
+  CHECK(conflict_format_of("a.CSV") == ConflictFormat::kCsv);
+  CHECK(conflict_format_of("a.bcfzip") == ConflictFormat::kBcf);
+  for (const char* name : {"a", "a.xml", ".csv", "a.csv.gz", "gpkg"}) {
+    CHECK_THROWS_AS(conflict_format_of(name), UsageError);
+  }
+}
+
+TEST_CASE("a full disk is an error of the machine in every format") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  Written written("");
+  std::filesystem::create_symlink("/dev/full", written.folder / "out");
+  for (const auto format : {ConflictFormat::kCsv, ConflictFormat::kJson, ConflictFormat::kGeoJson,
+                            ConflictFormat::kGeoPackage, ConflictFormat::kBcf}) {
+    CHECK_THROWS_AS(written.write(format), ResourceError);
+  }
+}
