@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kHeightPoses = 32;  ///< poses
 // Metres.
-constexpr double kLeast = 0.5;
+constexpr double kLeast = 0.3;
 constexpr double kSteady = 0.5;
 /// Of the poses that are high up, and of the heights: the others may be beside vegetation or noise.
 constexpr double kMostHigh = 0.75;
@@ -53,24 +53,25 @@ std::vector<double> heights_of(const Question& question) {
 
 }  // namespace
 
-void check_height(const Question& question, MessageLog& log) {
+bool check_height(const Question& question, MessageLog& log) {
   std::vector<double> heights;
   try {
     heights = heights_of(question);
   } catch (const InputError&) {
-    return;  // a damaged cell is for the search to meet, where it matters
+    return false;  // a damaged cell is for the search to meet, where it matters
   }
-  if (heights.size() < 2) return;
+  if (heights.size() < 2) return false;
   const auto at = [&](double share) {
     return heights[static_cast<std::size_t>(share * static_cast<double>(heights.size() - 1))];
   };
   const double usual = at(0.5), spread = at(0.9) - at(0.1);
-  if (spread > std::max(kSteady * question.metre, usual / 4)) return;
+  if (spread > std::max(kSteady * question.metre, usual / 4)) return false;
   log.warn("floats",
            "along the path the model stays " + length_text(usual, question.unit) +
                " above the highest point below it, and touches no ground. Does it fly or hang? If "
                "not, its heights have another zero: an antenna's, an ellipsoid's, or the model's",
            {{"height", usual}, {"spread", spread}});
+  return true;
 }
 
 }  // namespace clearway

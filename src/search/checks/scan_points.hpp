@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "clearway/pose.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/box.hpp"
+
+namespace clearway {
+
+/// The points of a scan in a box that moves with the model. Reads the few blocks that lie there.
+class ScanPoints {
+ public:
+  explicit ScanPoints(const PackedCloud& cloud) : cloud_(cloud) {}
+
+  /// Hands every point in a box of the model's frame, in that frame, to `look` until that returns
+  /// false; the box includes its faces. False: there are more blocks than are read for one box.
+  /// Throws InputError where a cell is damaged.
+  bool visit(const Box& region, const Pose& pose,
+             const std::function<bool(const Vec3&)>& look) const;
+
+  /// Whether `least` points or more are in the box; true too where too many blocks lie there.
+  bool has(const Box& region, const Pose& pose, std::uint64_t least) const;
+
+  /// Down to the lowest point of the scan, in the model's frame, for a model that is not tilted by
+  /// more than 45 degrees.
+  double bottom_of_scan(const Box& body, const Pose& pose) const;
+
+ private:
+  const PackedCloud& cloud_;
+};
+
+}  // namespace clearway
