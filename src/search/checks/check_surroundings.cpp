@@ -15,8 +15,8 @@ constexpr std::size_t kSurroundedPoses = 60;
 constexpr std::uint64_t kSurelyBelow = 10;
 constexpr std::uint64_t kSurelyBeside = 3;
 // Metres.
-constexpr double kBesideTracks = 1;  ///< ground that was cleared away is looked for beside it
-constexpr double kIntoModel = 0.3;   ///< ground may reach so far above the model's lowest point
+constexpr double kMargin = 1;       ///< beside wheels, where ground that was cleared away remains
+constexpr double kIntoModel = 0.3;  ///< ground may reach so far above the model's lowest point
 constexpr double kBeside = 20;
 constexpr double kAbove = 3;
 // Shares of the poses.
@@ -31,21 +31,22 @@ struct Surroundings {
 
 class Look {
  public:
-  explicit Look(const Question& question) : question_(question), points_(question.cloud) {}
+  Look(const Question& question, const PathCover& cover)
+      : question_(question), cover_(cover), points_(question.cloud) {}
 
   /// Of the poses that the scan covers; none where it covers too few.
-  std::optional<Surroundings> around_path(const PathCover& cover) const {
+  std::optional<Surroundings> around_path() const {
     const Box slice = body_slice(question_.model);
     const auto poses = spread_poses(question_.query.poses.size(), kSurroundedPoses);
     std::array<std::size_t, 3> found{};
     std::size_t looked = 0;
     for (const std::uint32_t i : poses) {
       const Pose& pose = question_.query.poses[i];
-      if (!cover.covers(moved(slice, pose))) continue;
+      if (!cover_.covers(moved(slice, pose))) continue;
       ++looked;
-      found[0] += points_.has(below(pose, cover), pose, kSurelyBelow) ? 1 : 0;
-      found[1] += points_.has(beside(1), pose, kSurelyBeside) ? 1 : 0;
-      found[2] += points_.has(beside(-1), pose, kSurelyBeside) ? 1 : 0;
+      found[0] += points_.has(below(pose), pose, kSurelyBelow) ? 1 : 0;
+      found[1] += points_.has(beside(1, pose), pose, kSurelyBeside) ? 1 : 0;
+      found[2] += points_.has(beside(-1, pose), pose, kSurelyBeside) ? 1 : 0;
     }
     if (2 * looked < poses.size()) return std::nullopt;
     const auto share = [&](std::size_t k) {
@@ -55,34 +56,42 @@ class Look {
   }
 
  private:
-  /// Wide enough that the scan's usual spacing leaves points in it.
-  Box below(const Pose& pose, const PathCover& cover) const {
+  /// In the model's frame.
+  double metre(const Pose& pose) const { return question_.metre / scale_of(pose); }
+
+  /// So much is added to the model's length and width that scanned points may be expected there.
+  double margin(const Pose& pose) const {
+    return std::max(kMargin * metre(pose), cover_.scan().typical_block() / 4 / scale_of(pose));
+  }
+
+  Box below(const Pose& pose) const {
     Box box = question_.model;
-    const double least =
-        std::max(kBesideTracks * question_.metre, cover.scan().typical_block() / 4);
     for (int k = 0; k < 2; ++k) {
-      box.lo[k] -= least;
-      box.hi[k] += least;
+      box.lo[k] -= margin(pose);
+      box.hi[k] += margin(pose);
     }
     box.lo.z = points_.bottom_of_scan(box, pose);
-    box.hi.z = question_.model.lo.z + kIntoModel * question_.metre;
+    box.hi.z = question_.model.lo.z + kIntoModel * metre(pose);
     return box;
   }
 
-  /// side: 1 is left of a model whose x axis points forward.
-  Box beside(int side) const {
+  /// side: 1 is left of a model whose longer side is forward, -1 right.
+  Box beside(int side, const Pose& pose) const {
     Box box = question_.model;
     const int across = box.hi.x - box.lo.x >= box.hi.y - box.lo.y ? 1 : 0;
-    const bool to_high = (side > 0) == (across == 1);
-    const double edge = to_high ? box.hi[across] : box.lo[across];
-    box.lo[across] = to_high ? edge : edge - kBeside * question_.metre;
-    box.hi[across] = to_high ? edge + kBeside * question_.metre : edge;
-    box.lo.z += kIntoModel * question_.metre;
-    box.hi.z += kAbove * question_.metre;
+    const bool upwards = (side > 0) == (across == 1);
+    const double edge = upwards ? box.hi[across] : box.lo[across];
+    box.lo[across] = upwards ? edge : edge - kBeside * metre(pose);
+    box.hi[across] = upwards ? edge + kBeside * metre(pose) : edge;
+    box.lo[1 - across] -= margin(pose);
+    box.hi[1 - across] += margin(pose);
+    box.lo.z += kIntoModel * metre(pose);
+    box.hi.z += kAbove * metre(pose);
     return box;
   }
 
   const Question& question_;
+  const PathCover& cover_;
   ScanPoints points_;
 };
 
@@ -124,15 +133,16 @@ void check_surroundings(const Question& question, const PathCover& cover, bool f
                         MessageLog& log) {
   std::optional<Surroundings> around;
   try {
-    around = Look(question).around_path(cover);
+    around = Look(question, cover).around_path();
   } catch (const InputError&) {
     return;  // a damaged cell is for the search to meet, where it matters
   }
   if (!around) return;
-  if (around->below < kMissing) warn_nothing_below(*around, log);
   const double less = std::min(around->left, around->right);
   const double more = std::max(around->left, around->right);
-  if (more < kNowhere && !floats) {
+  if (around->below < kMissing) {
+    warn_nothing_below(*around, log);
+  } else if (more < kNowhere && !floats) {
     warn_nothing_beside(question, *around, log);
   } else if (less < kOneSideOnly && more > kOtherSide) {
     warn_one_side(question, *around, log);
