@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -43,8 +42,8 @@ void keep_enclosed(const Question& question, double distance, std::vector<Vec3>&
   }
 }
 
-/// The share of some of the points that no model point comes near.
-double untouched_share(const Question& question, const std::vector<Vec3>& points) {
+/// How many of the points no model point comes near; estimated from some of them.
+std::uint64_t untouched(const Question& question, const std::vector<Vec3>& points) {
   std::vector<Vec3> some;
   for (const std::uint32_t i : spread_poses(points.size(), kMeasuredInside)) {
     some.push_back(points[i]);
@@ -54,7 +53,7 @@ double untouched_share(const Question& question, const std::vector<Vec3>& points
     std::erase_if(some, [&](const Vec3& p) { return collides(m, p, question.query.radius); });
     if (some.empty()) break;
   }
-  return static_cast<double>(some.size()) / static_cast<double>(measured);
+  return points.size() * some.size() / measured;
 }
 
 /// The axis of the model that it moves along; its longest one where that cannot be told.
@@ -68,12 +67,13 @@ int axis_of_motion(const Question& question) {
 }  // namespace
 
 void check_inside(const Question& question, MessageLog& log) {
-  std::vector<Vec3> points = points_in_box(question);
-  keep_enclosed(question, question.query.radius, points);
-  if (points.size() < kFewInside) return;
-  const auto count = static_cast<std::uint64_t>(
-      std::llround(untouched_share(question, points) * static_cast<double>(points.size())));
-  if (count < kFewInside) return;
+  const std::vector<Vec3> in_box = points_in_box(question);
+  std::vector<Vec3> enclosed = in_box;
+  keep_enclosed(question, question.query.radius, enclosed);
+  if (enclosed.size() < kFewInside) return;
+  const std::uint64_t count = untouched(question, enclosed);
+  // A rough ground that reaches into the model touches it too, and so is in the result.
+  if (count < kFewInside || count < in_box.size() - untouched(question, in_box)) return;
   log.warn("inside-model",
            "at pose 0 about " + format_count(count) +
                " scanned points lie inside the model and do not touch it: only its surface is "

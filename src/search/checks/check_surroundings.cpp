@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kSurroundedPoses = 60;
+constexpr std::size_t kSurroundedPoses = 32;
 // Points: fewer may be noise. A reflecting ground has some far below it.
 constexpr std::uint64_t kSurelyBelow = 10;
 constexpr std::uint64_t kSurelyBeside = 3;

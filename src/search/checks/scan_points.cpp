@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "search/checks/question.hpp"
+#include "search/checks/step_range.hpp"
 
 namespace clearway {
 namespace {
@@ -60,8 +60,14 @@ bool holds(const Box& box, const Vec3& p) {
 class Visit {
  public:
   Visit(const PackedCloud& cloud, const Box& region, const Pose& pose,
-        const std::function<bool(const Vec3&)>& look)
-      : cloud_(cloud), region_(region), place_(moved(region, pose)), inverse_(pose), look_(look) {}
+        const std::function<bool(const Vec3&)>& look,
+        std::unordered_map<std::uint32_t, ScanPoints::Chunks>& chunks)
+      : cloud_(cloud),
+        chunks_(chunks),
+        region_(region),
+        place_(moved(region, pose)),
+        inverse_(pose),
+        look_(look) {}
 
   bool run() {
     const std::span<const TreeNode> tree = cloud_.tree();
@@ -81,30 +87,37 @@ class Visit {
   }
 
  private:
-  using Chunks = std::array<PackedChunk<std::int32_t>, 3>;
-
   bool may_matter(const Box& box) const {
     return gap(box, place_) == 0 && gap(inverse_(box), region_) == 0;
   }
 
+  /// A look at a cell checks all of its bytes: once.
+  const ScanPoints::Chunks& chunks_of(std::uint32_t cell) {
+    const auto known = chunks_.find(cell);
+    return known != chunks_.end() ? known->second
+                                  : chunks_.emplace(cell, cloud_.peek(cell)).first->second;
+  }
+
   void look_into(std::uint32_t cell) {
     const Cell& here = cloud_.cells()[cell];
-    std::optional<Chunks> chunks;
+    const StepRange range(position_box(cloud_.quantisation(), here.box), place_, 0);
+    const ScanPoints::Chunks* chunks = nullptr;
     for (std::uint32_t first = 0; first < here.count && !stopped_; first += kBlockPoints) {
       const std::uint64_t at =
           std::uint64_t{cell} * cloud_.blocks_per_cell() + first / kBlockPoints;
+      if (!range.meets(cloud_.blocks()[at])) continue;
       const QuantumBox block = decode_block_box(here.box, cloud_.blocks()[at]);
       if (!may_matter(position_box(cloud_.quantisation(), block))) continue;
       if (++blocks_ > kMostBlocks) {
         stopped_ = true;
         return;
       }
-      if (!chunks) chunks = cloud_.peek(cell);
+      if (chunks == nullptr) chunks = &chunks_of(cell);
       look_at(*chunks, first, std::min<std::uint32_t>(kBlockPoints, here.count - first));
     }
   }
 
-  void look_at(const Chunks& chunks, std::uint32_t first, std::uint32_t count) {
+  void look_at(const ScanPoints::Chunks& chunks, std::uint32_t first, std::uint32_t count) {
     std::array<std::array<std::int32_t, kBlockPoints>, 3> quanta{};
     for (std::size_t k = 0; k < 3; ++k) {
       chunks[k].decode(first, std::span(quanta[k]).first(count));
@@ -117,6 +130,7 @@ class Visit {
   }
 
   const PackedCloud& cloud_;
+  std::unordered_map<std::uint32_t, ScanPoints::Chunks>& chunks_;
   const Box& region_;
   Box place_;
   Inverse inverse_;
@@ -129,7 +143,7 @@ class Visit {
 
 bool ScanPoints::visit(const Box& region, const Pose& pose,
                        const std::function<bool(const Vec3&)>& look) const {
-  return Visit(cloud_, region, pose, look).run();
+  return Visit(cloud_, region, pose, look, chunks_).run();
 }
 
 bool ScanPoints::has(const Box& region, const Pose& pose, std::uint64_t least) const {

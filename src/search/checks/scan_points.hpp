@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <unordered_map>
 
 #include "clearway/pose.hpp"
 #include "core/cloud/packed_cloud.hpp"
@@ -10,8 +12,11 @@
 namespace clearway {
 
 /// The points of a scan in a box that moves with the model. Reads the few blocks that lie there.
+/// Of one thread.
 class ScanPoints {
  public:
+  using Chunks = std::array<PackedChunk<std::int32_t>, 3>;
+
   explicit ScanPoints(const PackedCloud& cloud) : cloud_(cloud) {}
 
   /// Hands every point in a box of the model's frame, in that frame, to `look` until that returns
@@ -29,6 +34,7 @@ class ScanPoints {
 
  private:
   const PackedCloud& cloud_;
+  mutable std::unordered_map<std::uint32_t, Chunks> chunks_;  ///< of the cells read so far
 };
 
 }  // namespace clearway
