@@ -59,17 +59,18 @@ class Look {
   /// In the model's frame.
   double metre(const Pose& pose) const { return question_.metre / scale_of(pose); }
 
-  /// So much is added to the model's length and width that scanned points may be expected there.
-  double margin(const Pose& pose) const {
-    return std::max(kMargin * metre(pose), cover_.scan().typical_block() / 4 / scale_of(pose));
+  /// Longer and wider than the model, so that scanned points may be expected there.
+  void widen(Box& box, int axis, const Pose& pose) const {
+    const double half = (box.hi[axis] - box.lo[axis]) / 2;
+    const double expected = cover_.scan().typical_block() / 4 / scale_of(pose);
+    const double margin = std::max(kMargin * metre(pose), expected - half);
+    box.lo[axis] -= margin;
+    box.hi[axis] += margin;
   }
 
   Box below(const Pose& pose) const {
     Box box = question_.model;
-    for (int k = 0; k < 2; ++k) {
-      box.lo[k] -= margin(pose);
-      box.hi[k] += margin(pose);
-    }
+    for (int k = 0; k < 2; ++k) widen(box, k, pose);
     box.lo.z = points_.bottom_of_scan(box, pose);
     box.hi.z = question_.model.lo.z + kIntoModel * metre(pose);
     return box;
@@ -83,8 +84,7 @@ class Look {
     const double edge = upwards ? box.hi[across] : box.lo[across];
     box.lo[across] = upwards ? edge : edge - kBeside * metre(pose);
     box.hi[across] = upwards ? edge + kBeside * metre(pose) : edge;
-    box.lo[1 - across] -= margin(pose);
-    box.hi[1 - across] += margin(pose);
+    widen(box, 1 - across, pose);
     box.lo.z += kIntoModel * metre(pose);
     box.hi.z += kAbove * metre(pose);
     return box;

@@ -127,16 +127,19 @@ class Trial {
   }
 
   bool helps(Change change) const {
-    if (shrinks(change)) return false;
+    if (fits_anywhere(change)) return false;
     return most_of([&](const Pose& pose) { return cover_.covers(moved(slice_, change(pose))); });
   }
 
   /// A path much shorter than the model fits at any place: that is no hint.
-  bool shrinks(Change change) const {
+  bool fits_anywhere(Change change) const {
     const Vec3 lo = translation_of(change(at_corner(path_.lo)));
     const Vec3 hi = translation_of(change(at_corner(path_.hi)));
     const double shorter = half_diagonal({lo, hi});
-    return shorter < half_diagonal(path_) && shorter < Sides(question_.model).longest / 2;
+    const double longest = Sides(question_.model).longest;
+    constexpr std::size_t kMany = 10;
+    if (shorter < longest / 4 && question_.query.poses.size() >= kMany) return true;
+    return shorter < half_diagonal(path_) && shorter < longest / 2;
   }
 
   /// A factor often brings a path near some scanned place, wherever it belongs.
