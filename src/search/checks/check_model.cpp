@@ -108,8 +108,9 @@ void warn_of_same(const Question& question, MessageLog& log) {
 void warn_of_scale(const Question& question, MessageLog& log) {
   double least = kInfinity, most = 0;
   for (const Pose& pose : question.query.poses) {
-    least = std::min(least, scale_of(pose));
-    most = std::max(most, scale_of(pose));
+    const double scale = scale_of(pose);
+    least = std::min(least, scale);
+    most = std::max(most, scale);
   }
   if (least > 1 - kStretch && most < 1 + kStretch) return;
   Box box = question.model;

@@ -37,10 +37,9 @@ class Inverse {
     const Vec3 centre = (*this)(centre_of(box));
     Box out{centre, centre};
     for (int k = 0; k < 3; ++k) {
+      const double* row = rows_.data() + std::ptrdiff_t{3} * k;
       double half = 0;
-      for (int j = 0; j < 3; ++j) {
-        half += std::abs(rows_[static_cast<std::size_t>(3 * k + j)]) * (box.hi[j] - box.lo[j]) / 2;
-      }
+      for (int j = 0; j < 3; ++j) half += std::abs(row[j]) * (box.hi[j] - box.lo[j]) / 2;
       out.lo[k] -= half;
       out.hi[k] += half;
     }
