@@ -73,6 +73,15 @@ bool warn_of_tilt(const Drive& drive, MessageLog& log) {
   return true;
 }
 
+void warn_of_flat_model(const Question& question, int axis, MessageLog& log) {
+  log.warn("flat-model",
+           "the model is flat: " + size_text(question.model, question.unit) +
+               ". It moves along its " + "xyz"[axis] +
+               " axis, along which it has no length. A vehicle needs more room in curves than its "
+               "profile. Give the whole vehicle",
+           {{"thickness", question.model.hi[axis] - question.model.lo[axis]}});
+}
+
 void warn_sideways(const Question& question, const Drive& drive, MessageLog& log) {
   const Vec3 shares = drive.along_axes();
   if (greatest_share(shares) < kAlongAxis) return;
@@ -81,6 +90,11 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
   constexpr double kLonger = 1.3;
   const double side = question.model.hi[axis] - question.model.lo[axis];
   const double other = question.model.hi[longest] - question.model.lo[longest];
+  constexpr double kFlatSide = 0.01;
+  if (side < kFlatSide * other) {
+    warn_of_flat_model(question, axis, log);
+    return;
+  }
   const bool across = longest != 2 && other > kLonger * side;
   if (axis != 2 && !across) return;
   log.warn("sideways",
@@ -94,11 +108,11 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
 /// Whether the poses hardly turn the model: then it is no crane that slews on the spot.
 bool hardly_turns(const Question& question) {
   constexpr double kThirtyDegrees = 0.866;
-  const double* first = question.query.poses.front().rotation;
+  const Pose& first = question.query.poses.front();
   return std::ranges::all_of(question.query.poses, [&](const Pose& pose) {
     double trace = 0;
-    for (int k = 0; k < 9; ++k) trace += pose.rotation[k] * first[k];
-    return (trace - 1) / 2 > kThirtyDegrees;
+    for (int k = 0; k < 9; ++k) trace += pose.rotation[k] * first.rotation[k];
+    return (trace / (scale_of(pose) * scale_of(first)) - 1) / 2 > kThirtyDegrees;
   });
 }
 

@@ -11,6 +11,11 @@ namespace {
 // Metres. The longest trains and cranes, and what nobody asks a question about.
 constexpr double kLargest = 200;
 constexpr double kSmallest = 0.01;
+/// On a path longer than this no vehicle is so small.
+constexpr double kSmallVehicle = 0.3;
+constexpr double kLongWay = 10;
+/// What a pose may stretch: noise of its numbers.
+constexpr double kStretch = 0.01;
 /// No vehicle is so wide and so high.
 constexpr double kThickest = 30;
 
@@ -42,13 +47,18 @@ void warn_of_size(const Question& question, MessageLog& log) {
   const double metre = question.metre;
   const bool larger = model.longest > environment.longest;
   const bool huge = model.longest > kLargest * metre || model.shortest > kThickest * metre;
-  if (!larger && !huge && !(model.longest > 0 && model.longest < kSmallest * metre)) return;
+  const double way = path_length(question.query.poses);
+  const bool small = model.longest < kSmallest * metre ||
+                     (model.longest < kSmallVehicle * metre && way > kLongWay * metre);
+  if (!larger && !huge && !small) return;
   std::string text = "the model is " + size_text(question.model, question.unit) +
                      ", the environment " + size_text(question.environment, question.unit) + ". ";
   if (huge) text += unit_guess(question) + (larger ? ". " : "");
   if (larger) text += "Are model and environment swapped?";
   if (!larger && !huge) {
-    text += "So small a model touches hardly anything: check its unit, and that of the scan";
+    text += "The path is " + length_text(way, question.unit) +
+            " long. So small a model touches hardly anything: check its unit, that of the scan, "
+            "and that the model is whole";
   }
   log.warn("model-size", text,
            {{"model_longest", model.longest}, {"environment_longest", environment.longest}});
@@ -94,12 +104,37 @@ void warn_of_same(const Question& question, MessageLog& log) {
            {{"points", static_cast<double>(question.query.model.size())}});
 }
 
+/// Poses that are not rigid were allowed, perhaps for another reason.
+void warn_of_scale(const Question& question, MessageLog& log) {
+  double least = kInfinity, most = 0;
+  for (const Pose& pose : question.query.poses) {
+    const double scale = scale_of(pose);
+    least = std::min(least, scale);
+    most = std::max(most, scale);
+  }
+  if (least > 1 - kStretch && most < 1 + kStretch) return;
+  Box box = question.model;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] *= most;
+    box.hi[k] *= most;
+  }
+  const bool one = most - least < kStretch * most;
+  log.warn("scaled-poses",
+           "the poses scale the model by " + figure(least) +
+               (one ? std::string() : " to " + figure(most)) + ": in the scan it is " +
+               size_text(box, question.unit) + ", not " + size_text(question.model, question.unit) +
+               ". The motion of a vehicle has no scale. Divide the rotations by it, or check the "
+               "unit of the poses",
+           {{"least", least}, {"most", most}});
+}
+
 }  // namespace
 
 void check_model(const Question& question, MessageLog& log) {
   warn_of_size(question, log);
   warn_of_origin(question, log);
   warn_of_same(question, log);
+  warn_of_scale(question, log);
 }
 
 }  // namespace clearway

@@ -55,8 +55,7 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
 
 }  // namespace
 
-void check_reach(const Question& question, MessageLog& log) {
-  const PathCover cover(question);
+void check_reach(const Question& question, const PathCover& cover, MessageLog& log) {
   if (cover.outside() == 0) return;
   const Box swept = swept_box(question);
   if (cover.outside() == cover.looked_at()) {

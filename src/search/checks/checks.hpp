@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/util/message_log.hpp"
+#include "search/checks/path_cover.hpp"
 #include "search/checks/question.hpp"
 
 /// Each looks for one kind of misunderstanding and warns of it, at most once a code. None changes
@@ -8,13 +9,25 @@
 namespace clearway {
 
 /// The path passes where nothing was scanned: "out-of-reach", "leaves-scan".
-void check_reach(const Question& question, MessageLog& log);
+void check_reach(const Question& question, const PathCover& cover, MessageLog& log);
 
-/// The model never comes down to the ground: "floats". Reads a few points.
-void check_height(const Question& question, MessageLog& log);
+/// The model never comes down to the ground: "floats". Reads a few points. Returns whether it
+/// warned.
+bool check_height(const Question& question, MessageLog& log);
+
+/// What was scanned below and beside the model: "nothing-below", "nothing-beside", "one-side".
+/// Reads a few points. `floats`: the model is known to be above the ground.
+void check_surroundings(const Question& question, const PathCover& cover, bool floats,
+                        MessageLog& log);
 
 /// Unit and frame of the model: "model-size", "model-origin", "model-is-environment".
 void check_model(const Question& question, MessageLog& log);
+
+/// The model stands over something at the first pose: "inside-model". Reads the points there.
+void check_inside(const Question& question, MessageLog& log);
+
+/// Things can pass through the model: "open-model".
+void check_open_model(const Question& question, MessageLog& log);
 
 /// Holes between the model's points: "model-spacing".
 void check_model_spacing(const Question& question, MessageLog& log);
@@ -26,7 +39,7 @@ void check_radius(const Question& question, MessageLog& log);
 void check_steps(const Question& question, MessageLog& log);
 
 /// The way that the model goes, against its own axes: "tilted", "rotations", "sideways",
-/// "tiny-path".
+/// "flat-model", "scaled-poses", "tiny-path".
 void check_heading(const Question& question, MessageLog& log);
 
 }  // namespace clearway

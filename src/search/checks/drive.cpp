@@ -7,7 +7,7 @@ namespace clearway {
 namespace {
 
 /// x, y, z, w of a rotation, of unit length. Source: Shepperd 1978, by the largest of the four.
-std::array<double, 4> quaternion_of(const double* r) {
+std::array<double, 4> quaternion_of(const std::array<double, 9>& r) {
   const double squares[4] = {1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8],
                              1 + r[0] + r[4] + r[8]};
   const double cross[4][4] = {{0, r[1] + r[3], r[2] + r[6], r[7] - r[5]},
@@ -30,11 +30,18 @@ std::array<double, 9> rotation_of(const std::array<double, 4>& q) {
           2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
 }
 
+std::array<double, 9> unscaled(const Pose& pose) {
+  std::array<double, 9> out{};
+  const double scale = scale_of(pose);
+  for (std::size_t k = 0; k < 9; ++k) out[k] = pose.rotation[k] / scale;
+  return out;
+}
+
 constexpr double kShortest = 0.5;  ///< metres: farther than positions wander at rest
 
 }  // namespace
 
-std::array<double, 9> reread(const double* r, Reading reading) {
+std::array<double, 9> reread(const std::array<double, 9>& r, Reading reading) {
   switch (reading) {
     case Reading::kTransposed:
       return {r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]};
@@ -49,7 +56,7 @@ std::array<double, 9> reread(const double* r, Reading reading) {
     case Reading::kAsGiven:
       break;
   }
-  return {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]};
+  return r;
 }
 
 Drive::Drive(const Question& question)
@@ -64,7 +71,7 @@ Drive::Drive(const Query& query, double length) {
     const double far = std::sqrt(squared_length(way.x, way.y, way.z));
     if (!(far >= length)) continue;
     const Pose& middle = poses[from + (to - from) / 2];
-    pieces_.push_back({{way.x / far, way.y / far, way.z / far}, middle.rotation});
+    pieces_.push_back({{way.x / far, way.y / far, way.z / far}, unscaled(middle)});
     from = to;
   }
 }
@@ -112,7 +119,7 @@ double Drive::straightness() const {
 bool Drive::never_turns() const {
   constexpr double kNoise = 0.02;
   return std::ranges::all_of(pieces_, [&](const Piece& piece) {
-    for (int k = 0; k < 9; ++k) {
+    for (std::size_t k = 0; k < 9; ++k) {
       if (std::abs(piece.rotation[k] - pieces_[0].rotation[k]) > kNoise) return false;
     }
     return true;

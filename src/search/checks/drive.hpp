@@ -12,7 +12,7 @@ namespace clearway {
 enum class Reading { kAsGiven, kTransposed, kScalarFirst, kScalarLast };
 
 /// The rotation that the numbers of another one stand for in a reading.
-std::array<double, 9> reread(const double* rotation, Reading reading);
+std::array<double, 9> reread(const std::array<double, 9>& rotation, Reading reading);
 
 /// A path as a vehicle drives it: pieces about half as long as the model, each with its direction
 /// and with the rotation at its middle. So noise of the positions while it stands does not count.
@@ -37,8 +37,8 @@ class Drive {
 
  private:
   struct Piece {
-    Vec3 direction;  ///< unit length
-    const double* rotation;
+    Vec3 direction;                  ///< unit length
+    std::array<double, 9> rotation;  ///< without a scale
   };
   std::vector<Piece> pieces_;
 };

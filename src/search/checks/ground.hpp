@@ -2,16 +2,14 @@
 
 #include <optional>
 
-#include "clearway/pose.hpp"
-#include "core/cloud/packed_cloud.hpp"
-#include "core/geometry/box.hpp"
+#include "search/checks/scan_points.hpp"
 
 namespace clearway {
 
-/// What was scanned below a body. Reads the points of the few blocks that lie there.
+/// What was scanned below a body.
 class Ground {
  public:
-  explicit Ground(const PackedCloud& cloud) : cloud_(cloud) {}
+  explicit Ground(const PackedCloud& cloud) : points_(cloud) {}
 
   /// How high a box of the model's frame stands at a pose above the highest point below it, along
   /// the model's z axis; 0 where a point is in it, none where no point is below it. Throws
@@ -19,7 +17,7 @@ class Ground {
   std::optional<double> height_of(const Box& body, const Pose& pose) const;
 
  private:
-  const PackedCloud& cloud_;
+  ScanPoints points_;
 };
 
 }  // namespace clearway

@@ -5,8 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
+#include "search/checks/ground.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {
@@ -47,14 +49,15 @@ Pose inverted(const Pose& pose) {
 struct Hypothesis {
   Change change;
   const char* sentence;
+  bool scales = false;
 };
 
 // The first of several that fit is named.
 constexpr Hypothesis kHypotheses[] = {
-    {scaled<1>,
-     "The path fits when its positions are divided by 1000: they seem to be millimetres"},
-    {scaled<10>,
-     "The path fits when its positions are divided by 100: they seem to be centimetres"},
+    {scaled<1>, "The path fits when its positions are divided by 1000: they seem to be millimetres",
+     true},
+    {scaled<10>, "The path fits when its positions are divided by 100: they seem to be centimetres",
+     true},
     {[](const Pose& p) { return at(p, p.translation[1], p.translation[0], p.translation[2]); },
      "The path fits with x and y swapped: it may have northing before easting"},
     {inverted,
@@ -69,12 +72,13 @@ constexpr Hypothesis kHypotheses[] = {
     {[](const Pose& p) { return at(p, p.translation[1], p.translation[0], -p.translation[2]); },
      "The path fits with x and y swapped and z negated: it seems to be north, east, down"},
     {scaled<3048, 10000>,
-     "The path fits when its positions are multiplied by 0.3048: they seem to be feet"},
+     "The path fits when its positions are multiplied by 0.3048: they seem to be feet", true},
     {scaled<10000, 3048>,
-     "The path fits when its positions are divided by 0.3048: the scan seems to be in feet"},
+     "The path fits when its positions are divided by 0.3048: the scan seems to be in feet", true},
     {scaled<1000000>,
      "The path fits when its positions are multiplied by 1000: they seem to be kilometres, or the "
-     "scan millimetres"}};
+     "scan millimetres",
+     true}};
 
 class Trial {
  public:
@@ -96,7 +100,8 @@ class Trial {
              "level";
     }
     for (const Hypothesis& hypothesis : kHypotheses) {
-      if (helps(hypothesis.change)) return hypothesis.sentence;
+      if (!helps(hypothesis.change)) continue;
+      return hypothesis.sentence + (hypothesis.scales ? doubts(hypothesis.change) : "");
     }
     return shift();
   }
@@ -122,16 +127,43 @@ class Trial {
   }
 
   bool helps(Change change) const {
-    if (shrinks(change)) return false;
+    if (fits_anywhere(change)) return false;
     return most_of([&](const Pose& pose) { return cover_.covers(moved(slice_, change(pose))); });
   }
 
   /// A path much shorter than the model fits at any place: that is no hint.
-  bool shrinks(Change change) const {
+  bool fits_anywhere(Change change) const {
     const Vec3 lo = translation_of(change(at_corner(path_.lo)));
     const Vec3 hi = translation_of(change(at_corner(path_.hi)));
+    const double shorter = half_diagonal({lo, hi});
     const double longest = Sides(question_.model).longest;
-    return half_diagonal(path_) > longest && half_diagonal({lo, hi}) < longest / 2;
+    constexpr std::size_t kMany = 10;
+    if (shorter < longest / 4 && question_.query.poses.size() >= kMany) return true;
+    return shorter < half_diagonal(path_) && shorter < longest / 2;
+  }
+
+  /// A factor often brings a path near some scanned place, wherever it belongs.
+  std::string doubts(Change change) const {
+    std::string text;
+    if (!meets_ground(change)) text += ". But then the model would not stand on the ground";
+    if (fits_by_shift())
+      text += ". Or the path is of another place: a shift by about " + shift_text() +
+              " would bring it to the scan's middle";
+    return text;
+  }
+
+  bool meets_ground(Change change) const {
+    const Ground ground(question_.cloud);
+    const Box body = body_slice(question_.model);
+    constexpr double kHigh = 1;  // metres
+    try {
+      return most_of([&](const Pose& pose) {
+        const auto height = ground.height_of(body, change(pose));
+        return height && *height < kHigh * question_.metre;
+      });
+    } catch (const InputError&) {
+      return true;  // a damaged cell is for the search to meet
+    }
   }
 
   static Pose at_corner(const Vec3& corner) {
@@ -165,17 +197,27 @@ class Trial {
     return *middle;
   }
 
-  std::string shift() const {
+  bool fits_by_shift() const {
     bool fits = true;
-    std::string by;
     for (int k = 0; k < 3; ++k) {
       const double room = question_.environment.hi[k] - question_.environment.lo[k];
       fits = fits && path_.hi[k] - path_.lo[k] <= room + cover_.far();
+    }
+    return fits;
+  }
+
+  std::string shift_text() const {
+    std::string by;
+    for (int k = 0; k < 3; ++k) {
       by +=
           (k == 0 ? "" : ", ") + figure(centre_of(question_.environment)[k] - centre_of(path_)[k]);
     }
-    if (fits) {
-      return "A shift of the path by about " + by +
+    return by;
+  }
+
+  std::string shift() const {
+    if (fits_by_shift()) {
+      return "A shift of the path by about " + shift_text() +
              " would bring it there. Is one of the two in local coordinates, or in another grid?";
     }
     return "Compare the frame and the unit of path and scan";

@@ -1,7 +1,5 @@
 #include "search/checks/query_warnings.hpp"
 
-#include <cmath>
-
 #include "search/checks/checks.hpp"
 #include "search/checks/words.hpp"
 
@@ -21,13 +19,20 @@ void warn_of_unit(LengthUnit unit, MessageLog& log) {
   }
 }
 
+/// All points in one plane along two axes: a column of the scan was lost, or is all zeros.
+void warn_of_flat_scan(const Question& question, MessageLog& log) {
+  constexpr double kFlat = 0.01;  // metres
+  const Sides sides(question.environment);
+  if (sides.shortest >= kFlat * question.metre || sides.longest < question.metre) return;
+  log.warn("flat-scan",
+           "the environment is flat: " + size_text(question.environment, question.unit) +
+               ". Did its heights get lost, or is one of its columns something else?",
+           {{"thickness", sides.shortest}});
+}
+
 /// What was understood, for people to compare with what they meant.
 void note_sizes(const Question& question, MessageLog& log) {
-  const auto& poses = question.query.poses;
-  double length = 0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    length += std::sqrt(squared_distance(translation_of(poses[i - 1]), translation_of(poses[i])));
-  }
+  const double length = path_length(question.query.poses);
   log.note("model " + size_text(question.model, question.unit) + ", path " +
            length_text(length, question.unit) + " long, environment " +
            size_text(question.environment, question.unit) + ", radius " +
@@ -52,9 +57,14 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
   }
   const Question question(store, unit, query);
   note_sizes(question, log);
-  check_reach(question, log);
-  check_height(question, log);
+  warn_of_flat_scan(question, log);
+  const PathCover cover(question);
+  check_reach(question, cover, log);
+  const bool floats = check_height(question, log);
+  check_surroundings(question, cover, floats, log);
+  check_inside(question, log);
   check_model(question, log);
+  check_open_model(question, log);
   check_model_spacing(question, log);
   check_radius(question, log);
   check_steps(question, log);

@@ -53,6 +53,20 @@ Box united(const Box& a, const Box& b) {
   return out;
 }
 
+double scale_of(const Pose& pose) {
+  double sum = 0;
+  for (const double r : pose.rotation) sum += r * r;
+  return std::sqrt(sum / 3);
+}
+
+double path_length(const std::vector<Pose>& poses) {
+  double length = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    length += std::sqrt(squared_distance(translation_of(poses[i - 1]), translation_of(poses[i])));
+  }
+  return length;
+}
+
 double gap(const Box& a, const Box& b) {
   double squared = 0;
   for (int k = 0; k < 3; ++k) {

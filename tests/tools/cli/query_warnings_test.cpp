@@ -5,9 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "clearway/model.hpp"
-#include "clearway/trajectory.hpp"
-#include "io/trajectory/trajectory_writer.hpp"
 #include "support/store_fixture.hpp"
+#include "tools/cli/support/asked.hpp"
 #include "tools/cli/support/program.hpp"
 
 using namespace clearway;
@@ -15,72 +14,6 @@ using namespace clearway::test;
 using Catch::Contains;
 
 namespace {
-
-/// A scene dense enough that nothing is to be warned of, made once.
-class Scene {
- public:
-  Scene(const std::string& kind, const std::string& sizes) {
-    const Outcome made =
-        run_program(folder, "scene " + kind + " " + sizes + " -o " + quoted(folder / ""));
-    const Outcome converted = run_program(folder, "convert " + quoted(folder / "environment.las") +
-                                                      " -o " + quoted(folder / "site.h5"));
-    if (made.exit_code != 0 || converted.exit_code != 0) throw std::runtime_error("no scene");
-    model = read_model(folder / "model.ply");
-    poses = read_trajectory(folder / "trajectory.txt");
-  }
-  static const Scene& hall() {
-    static const Scene scene("hall", "--points 100000 --model-points 20000 --poses 2000");
-    return scene;
-  }
-
-  ScratchFolder folder;
-  std::vector<Vec3> model;
-  std::vector<Pose> poses;
-};
-
-/// The hall's question, to be spoilt.
-struct Asked {
-  std::vector<Vec3> model = Scene::hall().model;
-  std::vector<Pose> poses = Scene::hall().poses;
-  std::string radius = "0.1";
-  std::string options = "";
-
-  void move_model(const std::function<Vec3(const Vec3&)>& change) {
-    for (Vec3& p : model) p = change(p);
-  }
-  void move_path(const std::function<Vec3(const Vec3&)>& change) {
-    for (Pose& pose : poses) {
-      const Vec3 p = change({pose.translation[0], pose.translation[1], pose.translation[2]});
-      for (int k = 0; k < 3; ++k) pose.translation[k] = p[k];
-    }
-  }
-  void turn(const std::function<void(double*)>& change) {
-    for (Pose& pose : poses) change(pose.rotation);
-  }
-
-  Outcome ask(const std::string& environment) const {
-    const ScratchFolder folder;
-    write_ply(folder / "model.ply", model);
-    NoProgress progress;
-    write_trajectory(poses, File::create(folder / "path.txt"), progress);
-    const Outcome outcome = run_program(
-        folder, "run --strict --env " + environment + " --model " + quoted(folder / "model.ply") +
-                    " --trajectory " + quoted(folder / "path.txt") + " --radius " + radius +
-                    " -o " + quoted(folder / "out.h5") + " " + options);
-    CHECK(std::filesystem::exists(folder / "out.h5") == (outcome.exit_code == 0));
-    return outcome;
-  }
-  Outcome ask() const { return ask(quoted(Scene::hall().folder / "site.h5")); }
-};
-
-/// The codes of the refusal of a strict call: "strict: 2 warnings (a, b), expected none".
-std::string codes_of(const Outcome& outcome) {
-  if (outcome.exit_code == 0) return "";
-  REQUIRE(outcome.exit_code == 3);
-  const std::size_t from = outcome.err.find("warning", outcome.err.find("strict: "));
-  const std::size_t open = outcome.err.find('(', from);
-  return outcome.err.substr(open + 1, outcome.err.find(')', open) - open - 1);
-}
 
 /// Leaves every n-th.
 template <typename Value>

@@ -1,0 +1,83 @@
+#include "search/checks/scan_points.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "search/checks/ground.hpp"
+#include "support/memory_cloud.hpp"
+
+using namespace clearway;
+
+namespace {
+
+constexpr Quantisation kMillimetres{{0.001, 0.001, 0.001}, {0, 0, 0}};
+
+/// A ground of 40 m by 40 m at height 0, points 0.2 m apart, in cells of 1024.
+MemoryCloud ground_cloud() {
+  std::vector<Quantum> points;
+  for (std::int32_t i = 0; i < 200; ++i) {
+    for (std::int32_t j = 0; j < 200; ++j) points.push_back({200 * i + 100, 200 * j + 100, 0});
+  }
+  return {points, kMillimetres, {.cell_points = 1024, .bucket_points = 0}};
+}
+
+Pose turned(double angle, double scale, const Vec3& to) {
+  const double c = scale * std::cos(angle), s = scale * std::sin(angle);
+  return {{c, -s, 0, s, c, 0, 0, 0, scale}, {to.x, to.y, to.z}};
+}
+
+}  // namespace
+
+TEST_CASE("the points in a turned box are all found, in its frame") {
+  const MemoryCloud cloud = ground_cloud();
+  const ScanPoints points(cloud);
+  const Box box{{-4.03, -1.03, -3}, {4.03, 1.03, 0}};
+  for (const double scale : {1.0, 0.5}) {
+    for (const double angle : {0.0, 0.3, 0.8, 2.5}) {
+      CAPTURE(scale, angle);
+      const Pose pose = turned(angle, scale, {20, 20, scale * 1.5});
+      std::uint64_t expected = 0, found = 0;
+      for (int i = 0; i < 200; ++i) {
+        for (int j = 0; j < 200; ++j) {
+          const double x = 0.2 * i + 0.1 - 20, y = 0.2 * j + 0.1 - 20;
+          const double along = (std::cos(angle) * x + std::sin(angle) * y) / scale;
+          const double across = (-std::sin(angle) * x + std::cos(angle) * y) / scale;
+          if (std::abs(along) <= 4.03 && std::abs(across) <= 1.03) ++expected;
+        }
+      }
+      CHECK(points.visit(box, pose, [&](const Vec3& p) {
+        CHECK(p.z == Approx(-1.5));
+        ++found;
+        return true;
+      }));
+      CHECK(found == expected);
+      CHECK(points.has(box, pose, expected));
+      CHECK_FALSE(points.has(box, pose, expected + 1));
+    }
+  }
+}
+
+TEST_CASE("a visit stops when it is told to") {
+  const MemoryCloud cloud = ground_cloud();
+  int seen = 0;
+  CHECK(ScanPoints(cloud).visit({{0, 0, -1}, {40, 40, 1}}, turned(0, 1, {0, 0, 0}),
+                                [&](const Vec3&) { return ++seen < 7; }));
+  CHECK(seen == 7);
+}
+
+TEST_CASE("ground is as far below a body as it is, and damaged cells are not passed over") {
+  MemoryCloud cloud = ground_cloud();
+  const Box body{{-1, -1, 0.5}, {1, 1, 2}};
+  CHECK(Ground(cloud).height_of(body, turned(0.4, 1, {20, 20, 7})).value() == Approx(7.5));
+  CHECK(Ground(cloud).height_of(body, turned(0.4, 1, {20, 20, -1})).value() == 0);
+  CHECK_FALSE(Ground(cloud).height_of(body, turned(0.4, 1, {20, 20, -4})).has_value());
+  CHECK_FALSE(Ground(cloud).height_of(body, turned(0.4, 1, {50, 20, 7})).has_value());
+  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
+    MemoryCloud damaged = ground_cloud();
+    damaged.damage(cell);
+    CHECK_THROWS_AS(ScanPoints(damaged).visit({{0, 0, -1}, {40, 40, 1}}, turned(0, 1, {0, 0, 0}),
+                                              [](const Vec3&) { return true; }),
+                    InputError);
+  }
+}

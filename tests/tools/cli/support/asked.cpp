@@ -1,0 +1,83 @@
+#include "tools/cli/support/asked.hpp"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "clearway/model.hpp"
+#include "clearway/trajectory.hpp"
+#include "io/formats/point_reader.hpp"
+#include "io/trajectory/trajectory_writer.hpp"
+#include "support/store_fixture.hpp"
+
+namespace clearway::test {
+
+Scene::Scene(const std::string& kind, const std::string& sizes) {
+  const Outcome made =
+      run_program(folder, "scene " + kind + " " + sizes + " -o " + quoted(folder / ""));
+  const Outcome converted =
+      run_program(folder, "convert " + quoted(folder / "environment.las") + " -o " + store());
+  if (made.exit_code != 0 || converted.exit_code != 0) throw std::runtime_error("no scene");
+  model = read_model(folder / "model.ply");
+  poses = read_trajectory(folder / "trajectory.txt");
+}
+
+const Scene& Scene::hall() {
+  static const Scene scene("hall", "--points 100000 --model-points 20000 --poses 2000");
+  return scene;
+}
+
+std::string Scene::changed_store(const ScratchFolder& to,
+                                 const std::function<bool(const Vec3&)>& keep) const {
+  const auto reader = open_point_file(folder / "environment.las");
+  const Quantisation quantisation = *reader->info().quantisation;
+  std::vector<Quantum> kept;
+  for (PointBatch batch; reader->read(batch);) {
+    for (const Quantum& q : batch.quanta) {
+      if (keep(position(quantisation, q[0], q[1], q[2]))) kept.push_back(q);
+    }
+  }
+  write_las(to / "changed.las", kept, quantisation);
+  const std::string store = quoted(to / "changed.h5");
+  REQUIRE(
+      run_program(to, "convert " + quoted(to / "changed.las") + " --force -o " + store).exit_code ==
+      0);
+  return store;
+}
+
+void Asked::move_model(const std::function<Vec3(const Vec3&)>& change) {
+  for (Vec3& p : model) p = change(p);
+}
+
+void Asked::move_path(const std::function<Vec3(const Vec3&)>& change) {
+  for (Pose& pose : poses) {
+    const Vec3 p = change({pose.translation[0], pose.translation[1], pose.translation[2]});
+    for (int k = 0; k < 3; ++k) pose.translation[k] = p[k];
+  }
+}
+
+void Asked::turn(const std::function<void(double*)>& change) {
+  for (Pose& pose : poses) change(pose.rotation);
+}
+
+Outcome Asked::ask(const std::string& environment) const {
+  const ScratchFolder folder;
+  write_ply(folder / "model.ply", model);
+  NoProgress progress;
+  write_trajectory(poses, File::create(folder / "path.txt"), progress);
+  const Outcome outcome = run_program(
+      folder, "run --strict --env " + environment + " --model " + quoted(folder / "model.ply") +
+                  " --trajectory " + quoted(folder / "path.txt") + " --radius " + radius + " -o " +
+                  quoted(folder / "out.h5") + " " + options);
+  CHECK(std::filesystem::exists(folder / "out.h5") == (outcome.exit_code == 0));
+  return outcome;
+}
+
+std::string codes_of(const Outcome& outcome) {
+  if (outcome.exit_code == 0) return "";
+  REQUIRE(outcome.exit_code == 3);
+  const std::size_t from = outcome.err.find("warning", outcome.err.find("strict: "));
+  const std::size_t open = outcome.err.find('(', from);
+  return outcome.err.substr(open + 1, outcome.err.find(')', open) - open - 1);
+}
+
+}  // namespace clearway::test
