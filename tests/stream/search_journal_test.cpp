@@ -1,11 +1,8 @@
 #include "stream/search_journal.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <csignal>
 #include <limits>
 #include <optional>
 
@@ -15,6 +12,7 @@
 #include "planned_scene.hpp"
 #include "stream/journalled_work.hpp"
 #include "stream/run_pages.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
@@ -110,26 +108,6 @@ class JournalledScene {
   ScratchFolder folder;
   std::filesystem::path path = folder / "a.journal";
   std::uint64_t begun = 0;  ///< calls of advance() over all runs
-};
-
-/// No file of this process grows beyond this while it lives.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
 };
 
 /// Writes a journal with one record of these bytes, and opens it for the scene.

@@ -7,7 +7,7 @@ SOURCES = ("src", "tools/cli")
 ENDINGS = (".cpp", ".hpp", ".cu", ".cuh")
 
 # Literals of this form that are no codes: names of formats, units and encodings.
-OTHERS = {"pose-wxyz", "pose-xyzw", "us-ft", "us-survey-foot", "utf-8"}
+OTHERS = {"pose-wxyz", "pose-xyzw", "unix-none", "us-ft", "us-survey-foot", "utf-8"}
 KEBAB = re.compile(r'"([a-z]+[0-9]*(?:-[a-z0-9]+)+)"')
 GIVEN = re.compile(r'\b(?:warn|warning|note)\w*\(\s*(?:\w+,\s*)?"([a-z0-9-]+)"')
 LISTED = re.compile(r"^\| ((?:`[a-z0-9-]+`(?:, )?)+) \|", re.MULTILINE)

@@ -4,7 +4,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
-#include "search/checks/drive.hpp"
+#include "search/checks/facts/drive.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {

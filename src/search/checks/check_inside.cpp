@@ -5,10 +5,10 @@
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
-#include "search/checks/drive.hpp"
-#include "search/checks/model_views.hpp"
-#include "search/checks/path_cover.hpp"
-#include "search/checks/scan_points.hpp"
+#include "search/checks/facts/drive.hpp"
+#include "search/checks/facts/model_views.hpp"
+#include "search/checks/facts/path_cover.hpp"
+#include "search/checks/facts/scan_points.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {

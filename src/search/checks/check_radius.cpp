@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "search/checks/checks.hpp"
-#include "search/checks/scan_proximity.hpp"
+#include "search/checks/facts/scan_proximity.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {

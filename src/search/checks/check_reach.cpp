@@ -1,6 +1,6 @@
 #include "search/checks/checks.hpp"
+#include "search/checks/facts/path_cover.hpp"
 #include "search/checks/likely_remedy.hpp"
-#include "search/checks/path_cover.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {

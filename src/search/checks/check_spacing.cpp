@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "search/checks/checks.hpp"
-#include "search/checks/path_cover.hpp"
+#include "search/checks/facts/path_cover.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {

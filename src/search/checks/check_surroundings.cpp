@@ -3,8 +3,8 @@
 
 #include "clearway/error.hpp"
 #include "search/checks/checks.hpp"
-#include "search/checks/path_cover.hpp"
-#include "search/checks/scan_points.hpp"
+#include "search/checks/facts/path_cover.hpp"
+#include "search/checks/facts/scan_points.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/util/message_log.hpp"
-#include "search/checks/path_cover.hpp"
+#include "search/checks/facts/path_cover.hpp"
 #include "search/checks/question.hpp"
 
 /// Each looks for one kind of misunderstanding and warns of it, at most once a code. None changes

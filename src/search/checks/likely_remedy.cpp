@@ -8,7 +8,7 @@
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
-#include "search/checks/ground.hpp"
+#include "search/checks/facts/ground.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {

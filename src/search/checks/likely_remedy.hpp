@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "search/checks/path_cover.hpp"
+#include "search/checks/facts/path_cover.hpp"
 #include "search/checks/question.hpp"
 
 namespace clearway {

@@ -1,7 +1,5 @@
 #include "io/export/export_result.hpp"
 
-#include <sys/resource.h>
-
 #include <array>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -12,6 +10,7 @@
 
 #include "clearway/error.hpp"
 #include "io/formats/requantize.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/leaks_of_hdf5.hpp"
 #include "support/result_fixture.hpp"
 
@@ -74,23 +73,6 @@ bool same_quantum(const Sample& sample, int axis, const std::string& text, doubl
 constexpr std::size_t kMany = 65'600;  // more than a batch
 
 /// Cuts this process's files at a size for its lifetime: writing past it fails as on a full disk.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
-
 }  // namespace
 
 TEST_CASE("CSV holds every column in full") {

@@ -1,10 +1,10 @@
-#include "search/checks/scan_points.hpp"
+#include "search/checks/facts/scan_points.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "clearway/error.hpp"
-#include "search/checks/ground.hpp"
+#include "search/checks/facts/ground.hpp"
 #include "support/memory_cloud.hpp"
 
 using namespace clearway;

@@ -1,4 +1,4 @@
-#include "search/checks/model_views.hpp"
+#include "search/checks/facts/model_views.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "search/checks/ground.hpp"
+#include "search/checks/facts/ground.hpp"
 
 #include <algorithm>
 

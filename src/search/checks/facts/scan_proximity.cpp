@@ -1,4 +1,4 @@
-#include "search/checks/scan_proximity.hpp"
+#include "search/checks/facts/scan_proximity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/geometry/sweep_bounds.hpp"
+#include "search/checks/facts/step_range.hpp"
 #include "search/checks/question.hpp"
-#include "search/checks/step_range.hpp"
 
 namespace clearway {
 namespace {

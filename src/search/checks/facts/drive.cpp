@@ -1,4 +1,4 @@
-#include "search/checks/drive.hpp"
+#include "search/checks/facts/drive.hpp"
 
 #include <algorithm>
 #include <cmath>

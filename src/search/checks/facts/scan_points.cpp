@@ -1,12 +1,12 @@
-#include "search/checks/scan_points.hpp"
+#include "search/checks/facts/scan_points.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "search/checks/facts/step_range.hpp"
 #include "search/checks/question.hpp"
-#include "search/checks/step_range.hpp"
 
 namespace clearway {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "search/checks/scan_points.hpp"
+#include "search/checks/facts/scan_points.hpp"
 
 namespace clearway {
 

@@ -1,4 +1,4 @@
-#include "search/checks/path_cover.hpp"
+#include "search/checks/facts/path_cover.hpp"
 
 #include <algorithm>
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "search/checks/facts/scan_proximity.hpp"
 #include "search/checks/question.hpp"
-#include "search/checks/scan_proximity.hpp"
 
 namespace clearway {
 
