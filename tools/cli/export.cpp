@@ -107,9 +107,9 @@ constexpr const char* kFooter =
     "  .csv  text with a header: source,x,y,z,first_pose\n"
     "first_pose counts from 0 and is there where the result has it. source is the point's index\n"
     "in the order of the scans. Text has enough digits to give back each coordinate exactly.\n"
-    "--what clearance has distance and pose in the place of first_pose, .xyz too.\n"
-    "--what profile is CSV only: pose,time,name,chainage,distance,source,x,y,z.\n"
-    "--scans copies records of LAS, all of one point format, with all their fields.\n"
+    "With --what clearance, distance and pose take the place of first_pose, in .xyz too.\n"
+    "With --what profile it is CSV only: pose,time,name,chainage,distance,source,x,y,z.\n"
+    "With --scans it copies records of LAS, all of one point format, with all their fields.\n"
     "Example: clearway export out.h5 -o colliding.las";
 
 }  // namespace
