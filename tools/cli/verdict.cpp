@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "clearway/result.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
@@ -94,9 +96,10 @@ ordered_json place_json(const std::optional<AnswerPlace>& place, const PoseLabel
 }  // namespace
 
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
-  Verdict out{.colliding_points = result.collisions(),
-              .query = result.header(),
-              .float_precision = result.header().float_precision};
+  Verdict out;
+  out.colliding_points = result.collisions();
+  out.query = result.header();
+  out.float_precision = result.header().float_precision;
   if (result.header().first_pose) out.first = first_place(result);
   out.least_clearance = least_clearance(result);
   out.least_profile = least_of_profile(result);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "io/formats/las/las_extra_bytes.hpp"
 #include "io/formats/point_reader.hpp"
@@ -101,6 +102,11 @@ std::vector<ScanFile> number_scans(const std::vector<std::filesystem::path>& inp
       file.is_laz = header.compressed;
     } else {
       file.points = count_points(path, progress);
+    }
+    // A LAZ header's count is not checked before its points are read.
+    if (file.points > std::numeric_limits<std::uint64_t>::max() - next) {
+      refuse(path.string(), "declares " + std::to_string(file.points) +
+                                " points; expected fewer than 2^64 in all scans");
     }
     next += file.points;
     files.push_back(std::move(file));

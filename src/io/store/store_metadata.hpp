@@ -33,7 +33,7 @@ struct StoreMetadata {
   std::vector<SourceFile> sources;
   /// Source points of each of them, 0 for files of poses. Empty where the scan is one, and in
   /// stores of 0.1.0.
-  std::vector<std::uint64_t> source_points;
+  std::vector<std::uint64_t> source_points = {};
 
   /// Of one of the sources, where that is known.
   std::optional<std::uint64_t> points_of_source(std::size_t source) const {

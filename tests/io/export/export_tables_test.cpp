@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cstring>
 
 #include "clearway/error.hpp"
 #include "io/export/export_profile.hpp"
