@@ -24,9 +24,9 @@ struct CloudInfo {
   std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
   std::string crs_wkt;                           ///< as found; empty where there is none
   LengthUnit unit = LengthUnit::kUnknown;        ///< of the horizontal coordinates
-  std::string unit_trouble;  ///< why they cannot be taken as they are; empty where they can
-  std::uint64_t faces = 0;                       ///< of a mesh, which are not read
-  bool text_table = false;                       ///< whose columns can be chosen
+  std::string unit_trouble;      ///< why they cannot be taken as they are; empty where they can
+  std::uint64_t faces = 0;       ///< of a mesh, which are not read
+  bool text_table = false;       ///< whose columns can be chosen
   std::vector<Message> remarks;  ///< on the whole file; complete once read() has returned false
 };
 

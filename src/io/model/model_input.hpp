@@ -8,7 +8,8 @@
 
 namespace clearway {
 
-/// What a model's file holds, in the environment's unit: vertices and triangles of a mesh, or points alone.
+/// What a model's file holds, in the environment's unit: vertices and triangles of a mesh, or
+/// points alone.
 struct ModelInput {
   std::filesystem::path path;
   TriangleMesh mesh;  ///< no triangles: the vertices are points

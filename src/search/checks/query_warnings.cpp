@@ -8,9 +8,10 @@ namespace {
 
 void warn_of_unit(LengthUnit unit, MessageLog& log) {
   if (unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) {
-    log.warn("feet",
-             "the environment is in feet: lengths, model and trajectory without a unit of their own are "
-             "taken in feet too");
+    log.warn(
+        "feet",
+        "the environment is in feet: lengths, model and trajectory without a unit of their own are "
+        "taken in feet too");
   }
   if (unit == LengthUnit::kDegree) {
     log.warn("degrees",

@@ -33,10 +33,8 @@ TEST_CASE("the unit of a projected system is its own, not that of its parts") {
   const std::string vertical = "VERT_CS[\"v\",VERT_DATUM[\"d\",2005]," + foot + "]";
   CHECK(unit_of("COMPD_CS[\"c\"," + projected(survey_foot) + "," + vertical + "]") ==
         LengthUnit::kUsSurveyFoot);
-  CHECK(unit_of("COMPD_CS[\"c\"," + vertical + "," + projected(metre) + "]") ==
-        LengthUnit::kMetre);
-  CHECK(unit_of("COMPD_CS[\"c\"," + geographic + "," + vertical + "]") ==
-        LengthUnit::kDegree);
+  CHECK(unit_of("COMPD_CS[\"c\"," + vertical + "," + projected(metre) + "]") == LengthUnit::kMetre);
+  CHECK(unit_of("COMPD_CS[\"c\"," + geographic + "," + vertical + "]") == LengthUnit::kDegree);
 }
 
 TEST_CASE("well-known text 2 is understood") {
@@ -46,14 +44,13 @@ TEST_CASE("well-known text 2 is understood") {
       R"(CONVERSION["c",PARAMETER["e",500000,LENGTHUNIT["metre",1]]],CS[Cartesian,2])";
   const std::string axis_unit = R"(AXIS["E",east,ORDER[1],LENGTHUNIT["foot",0.3048]])";
   CHECK(unit_of("PROJCRS[\"p\"," + base + "," + conversion +
-                        R"(,AXIS["E",east],LENGTHUNIT["US survey foot",0.304800609601219]])") ==
+                R"(,AXIS["E",east],LENGTHUNIT["US survey foot",0.304800609601219]])") ==
         LengthUnit::kUsSurveyFoot);
-  CHECK(unit_of("PROJCRS[\"p\"," + base + ",\n  " + conversion + ",\n  " + axis_unit +
-                        "]") == LengthUnit::kFoot);
+  CHECK(unit_of("PROJCRS[\"p\"," + base + ",\n  " + conversion + ",\n  " + axis_unit + "]") ==
+        LengthUnit::kFoot);
   CHECK(unit_of(R"(GEOGCRS["g",CS[ellipsoidal,2],ANGLEUNIT["degree",0.0174532925]])") ==
         LengthUnit::kDegree);
-  CHECK(unit_of(R"(GEODCRS["g",CS[Cartesian,3],LENGTHUNIT["metre",1]])") ==
-        LengthUnit::kMetre);
+  CHECK(unit_of(R"(GEODCRS["g",CS[Cartesian,3],LENGTHUNIT["metre",1]])") == LengthUnit::kMetre);
   CHECK(unit_of(R"(GEODCRS["g",CS[ellipsoidal,3]])") == LengthUnit::kDegree);
 }
 
@@ -79,7 +76,8 @@ TEST_CASE("units that cannot be taken as they are make trouble") {
   CHECK(trouble(projected(R"(UNIT["metre",1])")).empty());
   CHECK(trouble(projected(R"(UNIT["kilometre",1000])")) == "its unit is 1000 m");
   CHECK(trouble(projected(R"(UNIT["yard",0.9144])")) == "its unit is 0.9144 m");
-  CHECK(trouble(projected(R"(UNIT["Clarke's foot",0.3047972654])")) == "its unit is 0.3047972654 m");
+  CHECK(trouble(projected(R"(UNIT["Clarke's foot",0.3047972654])")) ==
+        "its unit is 0.3047972654 m");
   const auto with_heights = [](const std::string& plane, const std::string& heights) {
     return "COMPD_CS[\"c\"," + projected(plane) + ",VERT_CS[\"v\",VERT_DATUM[\"d\",2005]," +
            heights + ",AXIS[\"up\",UP]]]";

@@ -48,8 +48,9 @@ class TextTrajectory {
     if (rows_) rows_->finish(out);
     if (ends_in_number_) {
       out.warn("cut-text",
-               input_.name() + ": the file ends without a line break within a number, so it may be "
-                               "cut",
+               input_.name() +
+                   ": the file ends without a line break within a number, so it may be "
+                   "cut",
                {{"line", static_cast<double>(input_.line())}});
     }
   }
