@@ -27,7 +27,6 @@ namespace {
 
 constexpr std::size_t kMostModelPoints = 200'000;
 constexpr double kStep = 1e-3, kEnvironmentStep = 2e-3;  // metres, of the points on the page
-constexpr std::uint64_t kRowBytes = 64;  // memory of a point of the page, while it is sorted
 
 void check_hash(const Result& result, const char* what, std::uint64_t is, std::uint64_t searched,
                 Remedy remedy) {

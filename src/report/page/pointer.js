@@ -68,7 +68,7 @@ function environmentNote() {
       ? `those within ${near} (${count(shown.environment_near)}), thinned to about one in ` +
         `${shortLength(+shown.environment_spacing.toPrecision(2))} squared, fewer far from the path.`
       : `all within ${near}.`;
-  const all = classes.reduce((sum, c) => sum + c.points, 0);
+  const all = classes.reduce((sum, c) => sum + c.points, 0) - page.facts.points_without_place;
   const drawn = classes.reduce((sum, c) => sum + c.shown, 0);
   text += drawn === all ? " All points of the classes are drawn."
       : ` Of ${count(all)} points of the classes ${count(drawn)} are drawn, thinned evenly.`;

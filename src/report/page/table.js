@@ -114,8 +114,22 @@ function drawTable() {
     tablePager(all.length));
 }
 
+/** The part of the table with the chosen conflict, if it passes the filters. */
+function turnToChosen() {
+  const at = sortedConflicts(tableColumns()).indexOf(page.conflict);
+  if (at < 0 || (at >= table.first && at < table.first + table.rows)) return;
+  table.first = at - at % table.rows;
+  drawTable();
+}
+
 /** Marks the chosen row without making the table again, which would lose the focus. */
 function markRow() {
+  turnToChosen();
+  const holder = document.querySelector("#conflicts-table .scroll");
+  const chosenRow = page.conflict && holder.querySelector(`tr[data-id="${page.conflict.id}"]`);
+  if (chosenRow && !holder.contains(document.activeElement)) {
+    holder.scrollTop = chosenRow.offsetTop - holder.clientHeight / 2;
+  }
   for (const row of document.querySelectorAll("#conflicts-table tbody tr")) {
     const chosen = page.conflict !== null && row.dataset.id === String(page.conflict.id);
     row.classList.toggle("chosen", chosen);

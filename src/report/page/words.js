@@ -11,7 +11,7 @@ const count = (n) => Math.round(n).toLocaleString("en-US");
 const plural = (n, one, many = one + "s") => `${count(n)} ${n === 1 ? one : many}`;
 const metres = (v, digits = 3) => v === null || v === undefined ? "unknown"
     : `${v.toFixed(digits)} ${unitSymbol}`;
-const station = (v) => metres(v, 2);
+const station = (v) => metres(v, 3);  // as fine as the column of chainages
 const shortLength = (v) => `${+v.toPrecision(4)} ${unitSymbol}`;
 const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
 
