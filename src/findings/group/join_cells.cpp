@@ -15,9 +15,9 @@
 namespace clearway {
 namespace {
 
-using Range = tbb::blocked_range<std::uint32_t>;
+using CellRange = tbb::blocked_range<std::uint32_t>;
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
-constexpr std::uint32_t kGrain = 16;
+constexpr std::uint32_t kCellGrain = 16;
 
 /// A row of cells along x, seen from another one: of two rows that see each other only one.
 struct RowStep {
@@ -138,7 +138,7 @@ std::vector<Pair> look_along(const CellGrid& grid, const Neighbourhood& neighbou
                              UnionFind& sets, const RowStep& step, Progress& progress) {
   tbb::enumerable_thread_specific<std::vector<Pair>> open;
   const ParallelScope scope;
-  const auto look = piece_of(scope, [&](const Range& range) {
+  const auto look = piece_of(scope, [&](const CellRange& range) {
     if (progress.stop_requested()) return;
     RowWalk walk(grid, neighbourhood, step);
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
@@ -157,7 +157,7 @@ std::vector<Pair> look_along(const CellGrid& grid, const Neighbourhood& neighbou
     progress.advance(range.size());
   });
   scope.begin();
-  tbb::parallel_for(Range(0, grid.cells(), kGrain), look);
+  tbb::parallel_for(CellRange(0, grid.cells(), kCellGrain), look);
   throw_if_stopped(progress);
   std::vector<Pair> all;
   for (const std::vector<Pair>& some : open) all.insert(all.end(), some.begin(), some.end());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "core/geometry/point_box.hpp"
 
@@ -16,8 +17,9 @@ class Bytes {
  public:
   template <typename Number>
   void add(Number number) {
-    const auto bytes = std::as_bytes(std::span(&number, 1));
-    out_.insert(out_.end(), bytes.begin(), bytes.end());
+    const std::size_t end = out_.size();
+    out_.resize(end + sizeof number);
+    std::memcpy(out_.data() + end, &number, sizeof number);
   }
   std::vector<std::byte> take() { return std::move(out_); }
 

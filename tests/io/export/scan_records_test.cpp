@@ -4,7 +4,7 @@
 #include "clearway/error.hpp"
 #include "io/export/export_scan_records.hpp"
 #include "io/formats/point_reader.hpp"
-#include "support/las_bytes.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

@@ -17,7 +17,7 @@ using namespace clearway::test;
 TEST_CASE("the surface of a real vehicle is covered") {
   const std::string name = GENERATE("prius.obj", "warthog_ugv.obj");
   const auto path = data_folder() / "street" / name;
-  const TriangleMesh mesh = read_model_input(path, 1, true).mesh;
+  const TriangleMesh mesh = read_model_input(path, {}).mesh;
   const double spacing = 0.025;
   const std::vector<Vec3> points = read_model(path, {.spacing = spacing});
   const ModelTree tree(points);
@@ -31,7 +31,7 @@ TEST_CASE("the surface of a real vehicle is covered") {
 
 TEST_CASE("samples of a real vehicle find what touches its surface") {
   const auto path = data_folder() / "street" / "prius.obj";
-  const TriangleMesh mesh = read_model_input(path, 1, true).mesh;
+  const TriangleMesh mesh = read_model_input(path, {}).mesh;
   const double spacing = 0.025, radius = 0.1;
   const ModelTree tree(read_model(path, {.spacing = spacing}));
   std::mt19937_64 random(5);

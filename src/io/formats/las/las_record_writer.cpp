@@ -37,7 +37,7 @@ std::span<const std::byte> text_bytes(const std::string& text) {
   return std::as_bytes(std::span(text.c_str(), text.size() + 1));
 }
 
-constexpr const char* kWktUser = "LASF_Projection";
+constexpr const char* kCrsUser = "LASF_Projection";
 constexpr std::uint16_t kWktId = 2112;
 constexpr const char* kWktText = "OGC coordinate system WKT";
 
@@ -63,7 +63,7 @@ std::uint32_t LasRecordWriter::tables_bytes() const {
 
 void LasRecordWriter::put_tables(ByteWriter& out) const {
   if (!format_.crs_wkt.empty() && !wkt_behind_) {
-    put_table(out, kWktUser, kWktId, text_bytes(format_.crs_wkt), kWktText);
+    put_table(out, kCrsUser, kWktId, text_bytes(format_.crs_wkt), kWktText);
   }
   for (const LasRecord& record : format_.geotiff) {
     put_table(out, record.user, record.id, record.payload, "GeoTIFF");
@@ -141,7 +141,7 @@ void LasRecordWriter::put_counts(ByteWriter& out) const {
 void LasRecordWriter::finish() {
   if (wkt_behind_) {
     const auto text = text_bytes(format_.crs_wkt);
-    put_table_header(out_, kWktUser, kWktId, std::uint64_t{text.size()}, kWktText);
+    put_table_header(out_, kCrsUser, kWktId, std::uint64_t{text.size()}, kWktText);
     out_.put_bytes(text);
   }
   out_.flush();
