@@ -9,6 +9,7 @@
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
@@ -27,6 +28,7 @@ struct ExportOptions {
   std::filesystem::path result, output, trajectory;
   std::vector<std::filesystem::path> scans;
   TrajectoryOptions trajectory_options;
+  LengthOptions lengths;
   std::string what = "collisions";
   bool force = false;
   bool json = false;
@@ -46,6 +48,8 @@ PoseLabels labels_for(const ResultReader& result, ExportOptions& options) {
   PoseLabels labels;
   if (options.trajectory.empty()) return labels;
   options.trajectory_options.default_crs = result.header().crs_wkt;
+  options.trajectory_options.environment_unit = metres_of_crs(result.header().crs_wkt);
+  options.lengths.convert(options.trajectory_options.environment_unit);
   std::vector<Message> remarks;
   const std::vector<Pose> poses =
       read_trajectory(options.trajectory, options.trajectory_options, &remarks, &labels);
@@ -139,7 +143,7 @@ void add_export(CLI::App& program) {
       ->add_option("--trajectory", options->trajectory,
                    "Of the run: adds its times and names to a profile")
       ->type_name("FILE");
-  add_trajectory_options(*command, options->trajectory_options);
+  add_trajectory_options(*command, options->trajectory_options, options->lengths);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(kFooter);

@@ -63,6 +63,8 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
   options.trajectory_options.default_crs = store.crs_wkt();
   std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options,
                                             &warnings, &options.report.labels);
+  std::erase_if(warnings,
+                [](const Message& told) { return told.severity == Message::Severity::kNote; });
   return {std::move(model), std::move(poses), result.parameters()};
 }
 
@@ -83,7 +85,9 @@ void run_report(ReportCommand& options) {
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
   const Store store(options.environment);
-  convert_lengths(options.lengths, result);
+  const double unit = metres_of_unit(store.length_unit()).value_or(1);
+  take_unit(unit, options);
+  options.model_options.environment_unit = unit;
   options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);
   const MessageCallback quiet = nullptr;

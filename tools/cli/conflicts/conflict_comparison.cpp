@@ -15,6 +15,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
 #include "findings/match_conflicts.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -135,7 +136,7 @@ bool compare_conflicts(ConflictComparison& options, const std::filesystem::path&
   if (options.trajectory.empty()) {
     throw UsageError("--conflicts needs --trajectory, the trajectory of the runs");
   }
-  convert_lengths(options.lengths, Result(a));
+  take_unit(metres_of_crs(Result(a).reader().header().crs_wkt), options);
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();

@@ -2,14 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
-#include "io/formats/wkt.hpp"
 #include "io/result/result.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/xxh64.hpp"
@@ -19,17 +17,6 @@ namespace clearway::tool {
 namespace {
 
 constexpr double kSpacingsInRadius = 4;  // as clearway run samples meshes
-
-std::optional<double> metres_of(LengthUnit unit) {
-  switch (unit) {
-    case LengthUnit::kFoot:
-      return 0.3048;
-    case LengthUnit::kUsSurveyFoot:
-      return 1200.0 / 3937;
-    default:
-      return std::nullopt;
-  }
-}
 
 void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char* description) {
   static const std::map<std::string, Axis> kAxes{
@@ -60,7 +47,7 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options) {
                       LengthRange::kFromZero);
   add_memory_option(command, options.find.memory_bytes);
   add_threads_option(command, options.find.threads);
-  add_trajectory_options(command, options.trajectory_options);
+  add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
 void add_axis_options(CLI::App& command, ConflictOptions& options) {
@@ -70,9 +57,9 @@ void add_axis_options(CLI::App& command, ConflictOptions& options) {
            "Axis of the model that points up, for example -z (default: +z)");
 }
 
-void convert_lengths(const LengthOptions& lengths, const Result& result) {
-  const auto metres = metres_of(horizontal_unit(result.reader().header().crs_wkt));
-  if (metres) lengths.convert(*metres);
+void take_unit(double metres, ConflictCommand& options) {
+  options.lengths.convert(metres);
+  options.trajectory_options.environment_unit = metres;
 }
 
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,

@@ -24,6 +24,7 @@
 #include "findings/conflict_warnings.hpp"
 #include "io/conflicts/conflict_summary.hpp"
 #include "io/conflicts/write_conflicts.hpp"
+#include "io/result/result.hpp"
 #include "io/system/pending_file.hpp"
 
 namespace clearway::tool {
@@ -64,7 +65,9 @@ void run_conflicts(ConflictsCommand& options) {
   const Outputs outputs = open_outputs(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
-  convert_lengths(options.lengths, result);
+  const double unit = metres_of_crs(result.reader().header().crs_wkt);
+  take_unit(unit, options);
+  options.model_options.environment_unit = unit;
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();

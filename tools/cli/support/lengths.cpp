@@ -9,6 +9,7 @@
 
 #include "clearway/model.hpp"
 #include "io/formats/text/column_names.hpp"
+#include "io/formats/wkt.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -112,6 +113,11 @@ std::optional<double> metres_of_unit(const std::string& length_unit) {
   if (length_unit == "foot") return kMetresPerFoot;
   if (length_unit == "us-survey-foot") return 1200.0 / 3937;
   return std::nullopt;
+}
+
+double metres_of_crs(const std::string& wkt) {
+  const double metres = metres_of(units_of_wkt(wkt).horizontal);
+  return metres > 0 ? metres : 1;
 }
 
 CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,
