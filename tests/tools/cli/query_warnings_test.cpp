@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clearway/model.hpp"
+#include "io/formats/point_reader.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/asked.hpp"
 #include "tools/cli/support/program.hpp"

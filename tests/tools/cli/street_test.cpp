@@ -9,6 +9,7 @@
 #include "clearway/trajectory.hpp"
 #include "core/query/hit_set.hpp"
 #include "cpu/brute_force.hpp"
+#include "io/formats/point_reader.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
 #include "tools/cli/support/program.hpp"
