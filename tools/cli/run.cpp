@@ -172,6 +172,25 @@ std::string unit_of(const Store& store) {
   return unit == "foot" ? "ft" : unit == "us-survey-foot" ? "US ft" : "m";
 }
 
+Verdict read_verdict(const std::filesystem::path& output, const std::vector<Pose>& poses) {
+  try {
+    return verdict_of(ResultReader(output), poses);
+  } catch (const Error& error) {
+    throw ResourceError("the result was written, but it cannot be read back: " +
+                        std::string(error.what()));
+  }
+}
+
+/// Without --json the result itself is the answer: that nobody reads the sentence is no failure.
+void print_verdict(const std::string& sentence) {
+  try {
+    print(sentence + "\n");
+  } catch (const ResourceError& error) {
+    spdlog::info("{}", sentence);
+    spdlog::warn("{}", error.what());
+  }
+}
+
 /// Whether no point collides.
 bool run(RunOptions& options) {
   const Stopwatch total;
@@ -195,14 +214,14 @@ bool run(RunOptions& options) {
   program.total_seconds = total.seconds();
   log_report(report, options, program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
-  answer.verdict = verdict_of(ResultReader(options.output), query.poses);
+  answer.verdict = read_verdict(options.output, query.poses);
   const std::string sentence =
       verdict_text(answer.verdict, answer.labels, unit_of(store), caveat(report));
   if (options.json) {
     spdlog::info("{}", sentence);
     print(text_of_json(json_of(report, options, answer, program)));
   } else {
-    print(sentence + "\n");
+    print_verdict(sentence);
   }
   return answer.verdict.is_clear();
 }

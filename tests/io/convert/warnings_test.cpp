@@ -261,7 +261,7 @@ TEST_CASE("coordinates that lost their digits are warned of with their step") {
   std::uniform_real_distribution<double> metres(0, 90);
   const auto text = [&](double east, double north, const std::function<double(double)>& lose) {
     std::string lines;
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 1500; ++i) {
       lines += format_number(lose(east + metres(random))) + " " +
                format_number(lose(north + metres(random))) + " " +
                format_number(metres(random) / 30) + "\n";
@@ -283,7 +283,7 @@ TEST_CASE("coordinates that lost their digits are warned of with their step") {
   // A flat scan has lost nothing along its height.
   put_bytes(folder.folder / "flat.xyz", [&] {
     std::string lines;
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 1500; ++i) {
       lines += format_number(metres(random)) + " " + format_number(metres(random)) + " 0\n";
     }
     return lines;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<double, 14> kSteps{100,  10,    8,   4,      2,       1,        0.5,
                                         0.25, 0.125, 0.1, 0.0625, 0.03125, 0.015625, 0};
 constexpr std::size_t kFewValues = 8;  // a flat scan has lost nothing
-constexpr std::size_t kFewSamples = 64;
+constexpr std::size_t kFewSamples = 1000;
 
 bool all_are_multiples(std::span<const Vec3> samples, int axis, double step) {
   return std::all_of(samples.begin(), samples.end(), [=](const Vec3& p) {

@@ -17,6 +17,7 @@ constexpr std::uint16_t kProjectedSystem = 3072;
 constexpr std::uint16_t kProjectedLinearUnit = 3076;
 constexpr std::uint16_t kVerticalUnit = 4099;
 constexpr std::uint16_t kUserDefined = 32767;
+constexpr std::uint16_t kFirstUnit = 9000, kLastUnit = 9099;  // of EPSG's lengths
 
 /// The value of a key that holds one short; 0 where it is missing.
 std::uint16_t value_of(std::span<const std::byte> directory, std::uint16_t wanted) {
@@ -43,8 +44,11 @@ StatedUnit unit_of(std::uint16_t code) {
     case 9003:
       return {LengthUnit::kUsSurveyFoot, {}};
     default:
-      return {LengthUnit::kUnknown, "the GeoTIFF unit " + std::to_string(code)};
+      break;
   }
+  // Some files have the number of a projection here.
+  const bool is_unit = code >= kFirstUnit && code <= kLastUnit;
+  return {LengthUnit::kUnknown, is_unit ? "the GeoTIFF unit " + std::to_string(code) : ""};
 }
 
 StatedUnit plane_unit(std::span<const std::byte> keys) {
@@ -56,7 +60,8 @@ StatedUnit plane_unit(std::span<const std::byte> keys) {
   if (model == 0 && unit == 0 && projection == 0 && value_of(keys, kGeodeticSystem) != 0) {
     return {LengthUnit::kDegree, {}};
   }
-  if (unit == 0 && projection != 0 && projection != kUserDefined) {
+  const bool has_unit = unit >= kFirstUnit && unit <= kLastUnit;
+  if (!has_unit && projection != 0 && projection != kUserDefined) {
     if (const auto metres = unit_of_epsg(projection)) return unit_of_length(*metres);
   }
   return unit_of(unit);

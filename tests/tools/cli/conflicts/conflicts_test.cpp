@@ -221,7 +221,7 @@ TEST_CASE("what conflicts cannot do is refused, and no output is left") {
   check_refused(work.conflicts("--force -o " + work.path("out.h5")), 2, "out.h5");
 }
 
-TEST_CASE("--model-above leaves out the lowest part of the model, and says how much") {
+TEST_CASE("model-above leaves out the lowest part of the model, and says how much") {
   const Work work;
   const std::string model = " --trajectory " + (work.hall / "trajectory.txt") + " --env " +
                             (work.hall / "site.h5") + " --model " + (work.hall / "model.ply") +
