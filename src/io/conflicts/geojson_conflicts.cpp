@@ -19,7 +19,7 @@ std::string crs_name(const std::string& wkt) {
 /// be turned into.
 std::string crs_json(const std::string& wkt) {
   const std::string name = crs_name(wkt);
-  return "{\"type\": \"name\", \"properties\": {\"name\": " + json_string(name) + "}}";
+  return R"({"type": "name", "properties": {"name": )" + json_string(name) + "}}";
 }
 
 const char* note_on(const std::string& wkt) {
@@ -31,7 +31,7 @@ const char* note_on(const std::string& wkt) {
 }
 
 std::string point_json(const Vec3& v) {
-  return "{\"type\": \"Point\", \"coordinates\": " + json_vector(v) + "}";
+  return R"({"type": "Point", "coordinates": )" + json_vector(v) + "}";
 }
 
 /// Counter-clockwise, at the lowest height.
@@ -43,15 +43,15 @@ std::string footprint_json(const Box& box) {
                           {box.lo.x, box.lo.y, box.lo.z}};
   std::string ring;
   for (const Vec3& corner : corners) ring += (ring.empty() ? "" : ", ") + json_vector(corner);
-  return "{\"type\": \"Polygon\", \"coordinates\": [[" + ring + "]]}";
+  return R"({"type": "Polygon", "coordinates": [[)" + ring + "]]}";
 }
 
 std::string feature_json(const Conflict& conflict, const char* shape, const std::string& geometry) {
-  std::string properties = std::string("\"shape\": \"") + shape + "\"";
+  std::string properties = R"("shape": )" + json_string(shape);
   for (const ConflictField& field : fields_of(conflict)) {
     properties += ", " + json_string(field.name) + ": " + json_value(field.value);
   }
-  return "{\"type\": \"Feature\", \"geometry\": " + geometry + ", \"properties\": {" + properties +
+  return R"({"type": "Feature", "geometry": )" + geometry + R"(, "properties": {)" + properties +
          "}}";
 }
 

@@ -49,7 +49,7 @@ std::vector<std::uint64_t> read_source_points(const hdf5::Id& file, const std::s
   const hdf5::Id group = hdf5::open_group(file, "sources", name);
   const htri_t found = H5Lexists(group.get(), kSourcePoints, H5P_DEFAULT);
   if (found <= 0) return {};
-  const auto points =
+  auto points =
       hdf5::read_dataset<std::uint64_t>(group, kSourcePoints, metadata.sources.size(), 0, name);
   std::uint64_t sum = 0;
   bool fits = true;
