@@ -98,7 +98,7 @@ void run_conflicts(ConflictsCommand& options) {
 
 /// A day, or a time in UTC, as ISO 8601 has them.
 std::string full_date(const std::string& text) {
-  const std::string full = text.size() == 10 ? text + "T00:00:00Z" : text;
+  std::string full = text.size() == 10 ? text + "T00:00:00Z" : text;
   constexpr std::string_view kForm = "0000-00-00T00:00:00Z";
   bool good = full.size() == kForm.size();
   for (std::size_t i = 0; good && i < kForm.size(); ++i) {
