@@ -12,7 +12,7 @@ namespace {
 constexpr double kLargest = 200;
 constexpr double kSmallest = 0.01;
 /// On a path longer than this no vehicle is so small.
-constexpr double kSmallVehicle = 0.3;
+constexpr double kSmallVehicle = 0.5;
 constexpr double kLongWay = 10;
 /// What a pose may stretch: noise of its numbers.
 constexpr double kStretch = 0.01;
