@@ -1,8 +1,9 @@
 #include "support/engines/check_profile.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 
-#include "cpu/brute_force.hpp"
+#include "core/geometry/predicate.hpp"
 #include "support/engines/engines.hpp"
 
 namespace clearway {
@@ -32,12 +33,22 @@ std::uint64_t check_profile(const Engine& engine, const MemoryCloud& cloud,
 
 }  // namespace
 
-std::uint64_t check_profile(const MemoryCloud& cloud, const std::vector<Vec3>& positions,
+std::vector<NearestPoint> nearest_points(const std::vector<Vec3>& positions, Query query) {
+  query.profile = 1e200;  // its square is infinite
+  return brute_force_profile(positions, query);
+}
+
+std::uint64_t check_profile(const MemoryCloud& cloud, std::vector<NearestPoint> nearest,
                             const Query& query) {
-  const std::vector<NearestPoint> expected = brute_force_profile(positions, query);
+  const double limit = rounded_product(query.profile, query.profile);
+  for (NearestPoint& point : nearest) {
+    if (!(point.squared < limit)) {
+      point = {std::numeric_limits<double>::infinity(), ~std::uint64_t{0}};
+    }
+  }
   std::uint64_t found = 0;
   for (const Engine& engine : engines()) {
-    if (engine.clearances) found = check_profile(engine, cloud, expected, query);
+    if (engine.clearances) found = check_profile(engine, cloud, nearest, query);
   }
   return found;
 }
@@ -52,10 +63,10 @@ Query with_profile(Query query, std::size_t variant) {
 
 std::uint64_t check_profile(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query) {
-  const auto environment = positions_of(points, quantisation);
+  const auto nearest = brute_force_profile(positions_of(points, quantisation), query);
   std::uint64_t found = 0;
   for (const std::uint32_t cell_points : {64U, 256U, 65536U}) {
-    found = check_profile(MemoryCloud(points, quantisation, {cell_points, 0}), environment, query);
+    found = check_profile(MemoryCloud(points, quantisation, {cell_points, 0}), nearest, query);
   }
   return found;
 }

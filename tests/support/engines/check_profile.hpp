@@ -3,13 +3,17 @@
 #include <vector>
 
 #include "clearway/query.hpp"
+#include "cpu/brute_force.hpp"
 #include "support/memory_cloud.hpp"
 
 namespace clearway {
 
-/// The profile that the query asks for, of every engine that has profiles, against brute force.
-/// positions: of the cloud's points, by source. Returns how many poses have a point.
-std::uint64_t check_profile(const MemoryCloud& cloud, const std::vector<Vec3>& positions,
+/// By brute force, of every pose, however far.
+std::vector<NearestPoint> nearest_points(const std::vector<Vec3>& positions, Query query);
+
+/// The profile that the query asks for, of every engine that has profiles, against the nearest
+/// points. Returns how many poses have a point.
+std::uint64_t check_profile(const MemoryCloud& cloud, std::vector<NearestPoint> nearest,
                             const Query& query);
 
 /// D of a profile, from far below the radius to far above it, beside other modes.

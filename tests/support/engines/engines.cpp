@@ -244,7 +244,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
   const MemoryCloud cloud(points, quantisation, packing);
   check_clearances(cloud, brute_force_clearances(environment, query), expected.at_poses,
                    with_clearance(query, 2.5 * query.radius, points.size() % 2 == 0));
-  check_profile(cloud, environment, with_profile(query, points.size()));
+  check_profile(cloud, nearest_points(environment, query), with_profile(query, points.size()));
   return check_packed(cloud, expected, query);
 }
 
@@ -253,6 +253,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
   const auto environment = positions_of(points, quantisation);
   const Expected expected(environment, query);
   const Oracle least = brute_force_clearances(environment, query);
+  const std::vector<NearestPoint> nearest = nearest_points(environment, query);
   std::uint64_t colliding = 0;
   double of_radius = 0.4;
   bool first_pose = false;
@@ -264,7 +265,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
     colliding = check_packed(cloud, expected, query);
     check_clearances(cloud, least, expected.at_poses,
                      with_clearance(query, of_radius * query.radius, first_pose));
-    check_profile(cloud, environment, with_profile(query, variant++));
+    check_profile(cloud, nearest, with_profile(query, variant++));
     first_pose = !first_pose;
     of_radius *= 2.5;
   }
