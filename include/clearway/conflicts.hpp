@@ -49,7 +49,8 @@ struct Conflict {
   std::optional<std::uint32_t> nearest_pose = {};    ///< that has it
   std::optional<std::uint64_t> nearest_source = {};  ///< and the point
   std::optional<double> encroachment = {};           ///< radius - least_distance
-  Side side = Side::kUnknown;  ///< of the centroid, at the nearest or else first pose
+  std::optional<Vec3> nearest_point = {};  ///< where it is; not for results before version 3
+  Side side = Side::kUnknown;  ///< of the nearest point, or else of the centroid at the first pose
   std::uint64_t group = 0;     ///< smallest source of the whole group, before it was cut
 };
 

@@ -171,6 +171,7 @@ class ConflictSearch {
       conflict.least_distance = found.distance;
       conflict.nearest_pose = found.pose;
       conflict.nearest_source = found.source;
+      conflict.nearest_point = found.xyz;
       conflict.encroachment = reader_.header().radius - found.distance;
     }
   }
@@ -178,7 +179,8 @@ class ConflictSearch {
   void complete(Conflict& conflict) const {
     if (!model_box_) return;
     const Pose& pose = poses_[conflict.nearest_pose.value_or(conflict.first_pose)];
-    conflict.side = side_of(conflict.centroid, pose, *model_box_, options_.forward, options_.up);
+    const Vec3 place = conflict.nearest_point.value_or(conflict.centroid);
+    conflict.side = side_of(place, pose, *model_box_, options_.forward, options_.up);
   }
 
   const ResultReader& reader_;

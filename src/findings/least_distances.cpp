@@ -20,7 +20,8 @@ std::vector<LeastDistance> least_distances(const ResultReader& result,
       if (conflict_of[row] == 0) continue;
       LeastDistance& least = out[conflict_of[row]];
       if (least.source == LeastDistance::kNone || rows.distance[i] < least.distance) {
-        least = {rows.distance[i], rows.source[i], rows.pose[i]};
+        least = {rows.distance[i], rows.source[i], rows.pose[i],
+                 rows.xyz.empty() ? std::nullopt : std::optional(rows.xyz[i])};
       }
     }
     progress.advance(rows.size());

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "clearway/vec3.hpp"
 #include "core/util/progress.hpp"
 #include "io/result/result.hpp"
 
@@ -15,6 +17,7 @@ struct LeastDistance {
   double distance = 0;
   std::uint64_t source = kNone;  ///< of equally near ones the smallest
   std::uint32_t pose = 0;
+  std::optional<Vec3> xyz;  ///< none in files before version 3
 };
 
 /// Joins the clearances with the colliding points, of which both are ascending by source. For each

@@ -10,6 +10,12 @@ function planBox() {
       hi[k] = Math.max(hi[k], chunk.centre[k] + chunk.half[k]);
     }
   }
+  for (const place of page.path) {
+    for (let k = 0; k < 2; ++k) {
+      lo[k] = Math.min(lo[k], place[k] - 1);
+      hi[k] = Math.max(hi[k], place[k] + 1);
+    }
+  }
   return lo[0] <= hi[0] ? { lo, hi } : { lo: [-1, -1], hi: [1, 1] };
 }
 
@@ -103,11 +109,12 @@ function drawVehicleMark(context, painter, unitSize) {
 /** Which way y points, where the plan is turned and where it is not. */
 function drawAxes(context, unitSize) {
   const x = context.canvas.width - 34 * unitSize, y = 40 * unitSize, long = 24 * unitSize;
-  context.strokeStyle = context.fillStyle = "#111827";
-  context.lineWidth = 1.6 * unitSize;
+  context.fillStyle = "#111827";
   setFont(context, 12 * unitSize, "600");
   const axes = plan.turned ? [["x", 0, 1], ["y", 1, 0]] : [["x", 1, 0], ["y", 0, -1]];
   for (const [name, dx, dy] of axes) {
+    context.strokeStyle = "#111827";  // haloText has its own
+    context.lineWidth = 1.6 * unitSize;
     context.beginPath();
     context.moveTo(x - long / 2, y);
     context.lineTo(x - long / 2 + dx * long, y + dy * long);

@@ -62,6 +62,7 @@ function pickNumber(places, canvas, x, y) {
 function environmentNote() {
   const { page: shown, inputs, classes } = page.facts;
   const near = `${shortLength(+shown.reach.toPrecision(2))} of the middle of the vehicle`;
+  if (shown.environment_points === 0) return `No environment point is within ${near}.`;
   let text = `${count(shown.environment_points)} of ${count(inputs.environment.points)} environment ` +
       `points are drawn: `;
   text += shown.environment_spacing > 0

@@ -108,7 +108,7 @@ function profileConflicts() {
 function profileRequired() {
   const y = profileY(page.facts.query.radius), { left, width, right } = profile;
   return [make("line", { x1: left, x2: width - right, y1: y, y2: y, class: "required" }),
-          make("text", { x: width - right - 4, y: y - 5, class: "end strong" },
+          make("text", { x: width - right - 4, y: y - 5, class: "end strong halo" },
                `required ${shortLength(page.facts.query.radius)}`)];
 }
 
@@ -131,7 +131,8 @@ function drawProfile() {
     make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
   if (!(query.profile > 0)) {
     svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong" },
-                    "The result has no profile: clearway run --profile D adds this curve."));
+                    query.between_poses ? "A run between poses has no profile."
+                        : "The result has no profile: clearway run --profile D adds this curve."));
   }
   const focused = holder.contains(document.activeElement);
   holder.replaceChildren(svg);

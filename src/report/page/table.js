@@ -61,6 +61,8 @@ function sortBy(title) {
   table.title = title;
   table.first = 0;
   drawTable();
+  const at = tableColumns().findIndex((column) => column.title === title);
+  document.querySelectorAll("#conflicts-table th button")[at]?.focus();
 }
 
 function tableHead(columns, sortable) {

@@ -1,3 +1,9 @@
+function doubtSymbol() {
+  return make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
+              make("polygon", { points: "32,4 62,58 2,58", fill: "currentColor" }),
+              make("path", { d: "M32 22 V41 M32 47 V52", stroke: "#fff", "stroke-width": 6 }));
+}
+
 function verdictSymbol(clear) {
   return clear
       ? make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
@@ -29,7 +35,9 @@ function conflictTiles() {
   if (worst) {
     const missing = worst.encroachment;
     tiles.push(tile(missing === null ? plural(worst.points, "point") : metres(missing),
-                    missing === null ? "most in one conflict" : "missing at the worst place"));
+                    missing === null ? "most in one conflict"
+                        : worst.least_distance < kTouching ? "missing at least: it touches"
+                        : "missing at the worst place"));
     tiles.push(tile(`No. ${worst.id}`,
                     `worst: chainage ${station(stationOf(worst))}${after(kSides[worst.side])}. Show it`,
                     () => goTo(worst)));
@@ -56,20 +64,32 @@ function clearTiles() {
   return tiles;
 }
 
+/** " at 3 places", and how many more the table leaves out. */
+function placesText({ count: listed, small_groups: small }) {
+  if (listed === 0) return ` at ${plural(small, "place")}, too small for the list`;
+  const more = small > 0 ? ` and at ${count(small)} more that are too small for the list` : "";
+  return ` at ${plural(listed, "place")}${more}`;
+}
+
+/** The least distance of a conflict. How deep something is inside is not known. */
+function nearnessText(distance, radius) {
+  return distance < kTouching ? "it touches the vehicle" : `${metres(distance)} instead of ${radius}`;
+}
+
 function verdictSentences() {
   const { facts } = page, radius = shortLength(facts.query.radius), worst = worstConflict();
   if (facts.verdict === "clear") {
     return [`Every point of the environment keeps at least ${radius} from the vehicle, ` +
             `at all ${plural(facts.inputs.trajectory.poses, "pose")}.`, leastSentence()];
   }
-  const where = facts.conflicts ? ` at ${plural(facts.conflicts.count, "place")}` : "";
+  const where = facts.conflicts ? placesText(facts.conflicts) : "";
   const first = `The environment is closer than ${radius} to the vehicle${where}.`;
   if (!worst) return [first, leastSentence()];
   const worstText = worst.least_distance === null
-      ? `Conflict ${worst.id} has the most points, at chainage ${station(worst.chainage_from)}` +
-        `${after(sideWords(worst.side))}.`
+      ? `Conflict ${worst.id} has the most points. It begins at chainage ` +
+        `${station(worst.chainage_from)}${after(sideWords(worst.side))}.`
       : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
-        `${after(sideWords(worst.side))}: ${metres(worst.least_distance)} instead of ${radius}.`;
+        `${after(sideWords(worst.side))}: ${nearnessText(worst.least_distance, radius)}.`;
   return [first, worstText];
 }
 
@@ -146,24 +166,27 @@ function legend() {
 function buildVerdict() {
   const { facts } = page, clear = facts.verdict === "clear";
   const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
+  const doubtful = clear && warned.length > 0;
   byId("made").textContent = `Made ${facts.date} by Clearway ${facts.clearway}`;
   byId("loading").remove();
   byId("verdict-body").append(
-    make("div", { class: `banner ${facts.verdict}` }, verdictSymbol(clear),
-         make("div", { class: "words" }, make("h2", { id: "verdict-word" }, clear ? "Clear" : "Conflict"),
+    make("div", { class: `banner ${doubtful ? "doubt" : facts.verdict}` },
+         doubtful ? doubtSymbol() : verdictSymbol(clear),
+         make("div", { class: "words" }, make("h2", { id: "verdict-word" },
+              doubtful ? "Clear, but doubtful" : clear ? "Clear" : "Conflict"),
               make("p", {}, first), make("p", {}, second),
               warned.length > 0 &&
                   make("p", { class: "but" },
                        `${clear ? "But see" : "See also"} ${plural(warned.length, "warning")} below.`)),
          make("div", { class: "tiles" }, clear ? clearTiles() : conflictTiles())),
-    warned.length > 0 && make("ul", { class: "warnings", "aria-label": "Warnings" },
-                              warned.map((text) => make("li", {}, text))),
+    warned.length > 0 ? make("ul", { class: "warnings", "aria-label": "Warnings" },
+                             warned.map((text) => make("li", {}, text))) : "",
     make("div", { class: "columns" }, questionTable(),
          make("div", {}, legend(),
               missing.length > 0 && make("div", { class: "missing" },
                   make("p", {}, "This page could say more:"),
                   make("ul", {}, missing.map((m) => make("li", {}, `${m.what}: ${m.why}. `,
-                                                         make("code", {}, m.how), " adds them.")))))));
+                                                         make("code", {}, m.how), " adds it.")))))));
   byId("footer").textContent = "All data of this page is in this one file. Lengths are in the unit " +
       `of the scans (${unitSymbol}). Chainage counts from the first pose along the path.`;
 }

@@ -11,6 +11,8 @@ const count = (n) => Math.round(n).toLocaleString("en-US");
 const plural = (n, one, many = one + "s") => `${count(n)} ${n === 1 ? one : many}`;
 const metres = (v, digits = 3) => v === null || v === undefined ? "unknown"
     : `${v.toFixed(digits)} ${unitSymbol}`;
+/** Below it the surfaces meet, as far as scans can tell. */
+const kTouching = 0.001;
 const station = (v) => metres(v, 3);  // as fine as the column of chainages
 const shortLength = (v) => `${+v.toPrecision(4)} ${unitSymbol}`;
 const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
@@ -46,6 +48,11 @@ function missingParts() {
     out.push({ what: "Places of conflicts", why: "the result has no first poses",
                how: "clearway run --first-pose" });
   }
+  if (query.between_poses) {
+    out.push({ what: "Distances", why: "a run between poses has none",
+               how: "clearway trajectory resample, and a run of its poses" });
+    return out;
+  }
   if (!(query.clearance > 0)) {
     out.push({ what: "How much is missing at each place",
                why: "the result has no clearances", how: `clearway run --clearance ${distance}` });
@@ -65,7 +72,9 @@ function leastSentence() {
   }
   const looked = Math.max(query.clearance, query.profile);
   if (looked > 0) return `Nothing is closer than ${shortLength(looked)}.`;
-  return "How close it comes is not known: run again with --profile or --clearance.";
+  return query.between_poses
+      ? "How close it comes is not known: a run between poses has no distances."
+      : "How close it comes is not known: run again with --profile or --clearance.";
 }
 
 function worstConflict() {

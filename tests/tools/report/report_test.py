@@ -111,8 +111,12 @@ class ReportTest(unittest.TestCase):
 
     def check_words(self, page, facts):
         self.assertEqual(page.run("document.body.dataset.ready"), "true")
-        self.assertEqual(page.run("byId('verdict-word').textContent").lower(), facts["verdict"])
+        word = page.run("byId('verdict-word').textContent").lower()
+        doubtful = facts["verdict"] == "clear" and facts["warnings"]
+        self.assertEqual(word, "clear, but doubtful" if doubtful else facts["verdict"])
         text = page.run("document.body.innerText")
+        for slip in ("false", "undefined", "null", "NaN"):
+            self.assertNotIn(slip, text.split())
         self.assertIn(f"{facts['colliding_points']:,}", text)
         for kind in ("environment", "model", "trajectory"):
             self.assertIn(facts["inputs"][kind]["hash"], text)
