@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "clearway/conflicts.hpp"
@@ -8,6 +9,7 @@
 namespace clearway {
 
 /// What makes conflicts of little use: "one-long-conflict", a group that spans most of the path.
-std::vector<Message> conflict_warnings(const Conflicts& conflicts);
+/// unit: the symbol of lengths.
+std::vector<Message> conflict_warnings(const Conflicts& conflicts, const std::string& unit);
 
 }  // namespace clearway

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
-#include <cstdio>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "clearway/vec3.hpp"
 #include "core/util/format.hpp"
+#include "io/conflicts/json_text.hpp"
 
 namespace clearway {
 
@@ -36,9 +36,13 @@ class JsonText {
   }
   JsonText& value(std::string_view text) {
     separate();
-    text_ += '"';
-    for (const char c : text) append_escaped(c);
-    text_ += '"';
+    for (const char c : json_string(text)) {
+      if (c == '<') {
+        text_ += "\\u003c";
+      } else {
+        text_ += c;
+      }
+    }
     return *this;
   }
   JsonText& value(const char* text) { return value(std::string_view(text)); }
@@ -69,20 +73,6 @@ class JsonText {
     if (!first_) text_ += ',';
     first_ = false;
   }
-  void append_escaped(char c) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      text_ += '\\';
-      text_ += c;
-    } else if (code < 0x20 || code == '<' || code == 0x7f) {
-      char escaped[8];
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", code);
-      text_ += escaped;
-    } else {
-      text_ += c;
-    }
-  }
-
   std::string text_;
   bool first_ = true;
 };

@@ -41,6 +41,11 @@ void check_inputs(const Result& result, const Store& store, const std::vector<Ve
   const ResultHeader& header = result.reader().header();
   check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,
              Remedy::kSameEnvironment);
+  if (store.crs_wkt() != header.crs_wkt) {
+    throw InputError(
+        result.reader().name() + ": names another coordinate reference system than the store",
+        Remedy::kSameEnvironment);
+  }
   check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kSameModel);
   check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
              Remedy::kSameTrajectory);

@@ -91,6 +91,10 @@ Exported export_table(const ResultReader& result, ExportOptions& options) {
 
 void run_export(ExportOptions& options) {
   check_combination(options);
+  std::vector<std::filesystem::path> inputs = options.scans;
+  inputs.push_back(options.result);
+  if (!options.trajectory.empty()) inputs.push_back(options.trajectory);
+  refuse_overwriting(options.output, inputs);
   const ResultReader result(options.result);
   const Exported exported = export_table(result, options);
   spdlog::info("{}: {} {}", options.output.string(), format_count(exported.rows), exported.unit);

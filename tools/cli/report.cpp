@@ -34,6 +34,7 @@ struct ReportCommand : ConflictCommand {
   std::filesystem::path result, environment, model, trajectory, output;
   ModelOptions model_options;
   ReportOptions report;
+  std::vector<ParsedLength> classes;
   bool json = false;
 };
 
@@ -69,9 +70,12 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
 }
 
 void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {
-  spdlog::info("{}: {}, {} colliding points, {} conflicts, {}", options.output.string(),
-               summary.clear ? "clear" : "conflict", format_count(result.size()),
-               format_count(summary.conflicts.listed.size()), format_size(summary.bytes));
+  const std::string conflicts = result.parameters().first_pose
+                                    ? format_count(summary.conflicts.listed.size()) + " conflicts"
+                                    : "conflicts are not known, as the result has no first poses";
+  spdlog::info("{}: {}, {} colliding points, {}, {}", options.output.string(),
+               summary.clear ? "clear" : "conflict", format_count(result.size()), conflicts,
+               format_size(summary.bytes));
   spdlog::info("open it in a browser: it is one file and needs no network");
 }
 
@@ -88,6 +92,9 @@ void run_report(ReportCommand& options) {
   const double unit = metres_of_unit(store.length_unit()).value_or(1);
   take_unit(unit, options);
   options.model_options.environment_unit = unit;
+  for (const ParsedLength& length : options.classes) {
+    options.report.classes.push_back(length.has_unit ? length.value / unit : length.value);
+  }
   options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);
   const MessageCallback quiet = nullptr;
@@ -119,24 +126,27 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
   add_model_options(command, options.model_options, options.lengths);
 }
 
-void add_page_options(CLI::App& command, ReportOptions& options) {
-  command.add_option("--title", options.title, "Title of the page (default: names of the files)")
-      ->type_name("TEXT");
-  command.add_option("--date", options.date, "Date on the page (default: now, in UTC)")
-      ->type_name("TEXT");
+void add_classes(CLI::App& command, ReportCommand& options) {
   command
       .add_option_function<std::vector<std::string>>(
           "--classes",
           [&options](const std::vector<std::string>& texts) {
             options.classes.clear();
             for (const std::string& text : texts) {
-              options.classes.push_back(parse_length("--classes", text).value);
+              options.classes.push_back(parse_length("--classes", text));
             }
           },
           "Distances below which a point is a hit, near, or to be watched, for example "
           "0.05,0.1,0.3 (default: the radius and the clearance)")
       ->delimiter(',')
       ->type_name("METRES,...");
+}
+
+void add_page_options(CLI::App& command, ReportOptions& options) {
+  command.add_option("--title", options.title, "Title of the page (default: names of the files)")
+      ->type_name("TEXT");
+  command.add_option("--date", options.date, "Date on the page (default: now, in UTC)")
+      ->type_name("TEXT");
   command
       .add_option("--max-points", options.max_points,
                   "Environment points on the page at most; they are thinned evenly")
@@ -153,6 +163,7 @@ void add_report(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "report", "Write a page that shows what a run found: one HTML file for any browser");
   add_report_inputs(*command, *options);
+  add_classes(*command, *options);
   add_page_options(*command, options->report);
   add_conflict_options(*command, *options);
   add_axis_options(*command, options->find);

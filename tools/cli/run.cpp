@@ -124,7 +124,8 @@ std::string caveat(const SearchReport& report) {
          " above";
 }
 
-void log_report(const SearchReport& report, const RunOptions& options, double seconds) {
+void log_report(const SearchReport& report, const RunOptions& options, const std::string& unit,
+                double seconds) {
   const std::string output = options.output.string();
   if (report.was_finished) {
     spdlog::info("{}: is the finished result of this query already; nothing to do{}", output,
@@ -139,8 +140,8 @@ void log_report(const SearchReport& report, const RunOptions& options, double se
   const bool doubtful = !report.warnings.empty();
   spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
   if (options.query.clearance > 0) {
-    spdlog::info("{} points are within the clearance of {} m",
-                 format_count(report.clearance_points), options.query.clearance);
+    spdlog::info("{} points are within the clearance of {} {}",
+                 format_count(report.clearance_points), options.query.clearance, unit);
   }
   if (doubtful) spdlog::info("{}{}", found, caveat(report));
 }
@@ -212,7 +213,7 @@ bool run(RunOptions& options) {
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();
-  log_report(report, options, program.total_seconds);
+  log_report(report, options, unit_of(store), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   answer.verdict = read_verdict(options.output, query.poses);
   const std::string sentence =

@@ -7,6 +7,7 @@
 
 #include "clearway/conflicts.hpp"
 #include "clearway/pose.hpp"
+#include "io/formats/wkt.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -20,6 +21,11 @@ struct ConflictFile {
   std::vector<Message> warnings;
   /// Of files that must have one: an ISO 8601 time in UTC.
   std::string date = kNoDate;
+
+  /// Of all lengths: that which the scan's coordinate reference system names.
+  LengthUnit unit() const { return units_of_wkt(header.crs_wkt).horizontal; }
+  /// 1 where it is not known.
+  double metres_per_unit() const { return metres_of(unit()) > 0 ? metres_of(unit()) : 1; }
 
   static constexpr const char* kNoDate = "2000-01-01T00:00:00Z";
 };

@@ -47,6 +47,7 @@ std::string summary_json(const ConflictFile& file) {
   const Conflicts& conflicts = file.conflicts;
   Members out;
   out.add("kind", json_string("conflicts"));
+  out.add("unit", json_string(symbol_of(file.unit())));
   out.add_length("radius", header.radius);
   out.add_length("clearance", header.clearance);
   out.add("between_poses", header.between_poses ? "true" : "false");

@@ -8,6 +8,9 @@
 
 namespace clearway {
 
+/// Bytes that are not UTF-8 become U+FFFD.
+std::string valid_utf8(std::string_view text);
+
 /// A string of JSON, quotes included. Bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 

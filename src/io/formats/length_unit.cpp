@@ -6,16 +6,16 @@ namespace clearway {
 namespace {
 
 struct NamedUnit {
-  const char* name;
+  const char *name, *symbol;
   double metres;
 };
 
 /// In the order of LengthUnit.
-constexpr std::array<NamedUnit, 5> kUnits{{{"unknown", 0},
-                                           {"metre", 1},
-                                           {"foot", 0.3048},
-                                           {"us-survey-foot", 1200.0 / 3937},
-                                           {"degree", 0}}};
+constexpr std::array<NamedUnit, 5> kUnits{{{"unknown", "m", 0},
+                                           {"metre", "m", 1},
+                                           {"foot", "ft", 0.3048},
+                                           {"us-survey-foot", "US ft", 1200.0 / 3937},
+                                           {"degree", "deg", 0}}};
 
 }  // namespace
 
@@ -27,6 +27,8 @@ LengthUnit length_unit_of(const std::string& name) {
   }
   return LengthUnit::kUnknown;
 }
+
+const char* symbol_of(LengthUnit unit) { return kUnits[static_cast<std::size_t>(unit)].symbol; }
 
 double metres_of(LengthUnit unit) { return kUnits[static_cast<std::size_t>(unit)].metres; }
 

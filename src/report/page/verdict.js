@@ -90,7 +90,9 @@ function verdictSentences() {
         `${station(worst.chainage_from)}${after(sideWords(worst.side))}.`
       : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
         `${after(sideWords(worst.side))}: ${nearnessText(worst.least_distance, radius)}.`;
-  return [first, worstText];
+  const least = facts.least_distance;  // of a group that is too small for the list, perhaps
+  const nearer = least && worst.least_distance !== null && least.distance < worst.least_distance;
+  return [first, nearer ? `${worstText} ${leastSentence()}` : worstText];
 }
 
 function cautions() {

@@ -26,6 +26,7 @@ using nlohmann::ordered_json;
 struct Compared {
   std::string file;
   double radius;
+  std::string unit;
   Conflicts conflicts;
 };
 
@@ -33,7 +34,9 @@ Compared find_side(ConflictComparison& options, const std::filesystem::path& fil
                    const std::filesystem::path& trajectory) {
   const Result result(file);
   const std::vector<Pose> poses = read_poses(trajectory, options.trajectory_options, result);
-  return {file.string(), result.parameters().radius, find_conflicts(result, poses, options.find)};
+  return {file.string(), result.parameters().radius,
+          symbol_of(units_of_wkt(result.reader().header().crs_wkt).horizontal),
+          find_conflicts(result, poses, options.find)};
 }
 
 const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
@@ -57,21 +60,35 @@ std::string list_text(const char* title, const Conflicts& conflicts,
   return text;
 }
 
+/// Points that collide and are in no conflict: there may be new ones among them.
+bool has_more_small_points(const Compared& a, const Compared& b) {
+  return b.conflicts.small_points > a.conflicts.small_points;
+}
+
 std::string text_of(const Compared& a, const Compared& b, const ConflictMatch& match,
                     std::size_t show) {
   std::string text;
   for (const auto& [name, side] : {std::pair("a", &a), std::pair("b", &b)}) {
-    text += fmt::format("{}: {} conflicts in {}\n", name,
-                        format_count(side->conflicts.listed.size()), side->file);
+    const Conflicts& found = side->conflicts;
+    text += fmt::format("{}: {} conflicts of {} points in {}\n", name,
+                        format_count(found.listed.size()),
+                        format_count(found.colliding_points - found.small_points), side->file);
+    if (found.small_groups > 0) {
+      text += fmt::format("{}: {} groups of {} points are too small to be compared\n", name,
+                          format_count(found.small_groups), format_count(found.small_points));
+    }
   }
   if (a.radius != b.radius) {
     text += "queries differ: radius: " + format_number(a.radius) + " / " + format_number(b.radius) +
-            " m\n";
+            " " + a.unit + "\n";
   }
   text += list_text("new, only in b", b.conflicts, match.added, show);
   text += list_text("gone, only in a", a.conflicts, match.gone, show);
   text += "the same in both: " + format_count(match.same.size()) + "\n";
-  return text + (match.added.empty() ? "no new conflicts\n" : "new conflicts\n");
+  if (!match.added.empty()) return text + "new conflicts\n";
+  return text + (has_more_small_points(a, b)
+                     ? "no new conflicts, but b has more points in groups that are too small\n"
+                     : "no new conflicts\n");
 }
 
 ordered_json json_of_conflict(const Conflict& c) {
@@ -97,8 +114,13 @@ ordered_json json_of_list(const Conflicts& conflicts, const std::vector<std::uin
 
 std::string json_of(const Compared& a, const Compared& b, const ConflictMatch& match) {
   const auto side = [](const Compared& of) {
-    return ordered_json{
-        {"file", of.file}, {"radius", of.radius}, {"conflicts", of.conflicts.listed.size()}};
+    return ordered_json{{"file", of.file},
+                        {"unit", of.unit},
+                        {"radius", of.radius},
+                        {"conflicts", of.conflicts.listed.size()},
+                        {"colliding_points", of.conflicts.colliding_points},
+                        {"small_groups", of.conflicts.small_groups},
+                        {"small_points", of.conflicts.small_points}};
   };
   auto same = ordered_json::array();
   for (const auto& [in_a, in_b] : match.same) {
@@ -143,9 +165,13 @@ bool compare_conflicts(ConflictComparison& options, const std::filesystem::path&
   const Compared in_a = find_side(options, a, options.trajectory);
   const Compared in_b = find_side(
       options, b, options.trajectory_b.empty() ? options.trajectory : options.trajectory_b);
+  if (in_a.unit != in_b.unit) {
+    throw InputError(in_b.file + ": its coordinates are in " + in_b.unit + ", expected " +
+                     in_a.unit + " as in " + in_a.file);
+  }
   const ConflictMatch match = match_conflicts(in_a.conflicts, in_b.conflicts, options.find.gap);
   print(json ? json_of(in_a, in_b, match) : text_of(in_a, in_b, match, show));
-  return match.added.empty();
+  return match.added.empty() && !has_more_small_points(in_a, in_b);
 }
 
 }  // namespace clearway::tool

@@ -48,7 +48,7 @@ std::string totals_text(const ConflictFile& file) {
   if (c.colliding_points == 0) return "no conflicts: no point collides\n";
   std::string text = counted(c.listed.size(), "conflict", "conflicts") + " of " +
                      counted(c.colliding_points - c.small_points, "point", "points") + " along " +
-                     format_brief(c.path_length) + " m of path\n";
+                     format_brief(c.path_length) + " " + symbol_of(file.unit()) + " of path\n";
   if (c.small_groups > 0) {
     text += "not listed: " + counted(c.small_groups, "group", "groups") + " of fewer than " +
             counted(file.options.min_points, "point", "points") + ", together " +
@@ -64,12 +64,17 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   std::string text = totals_text(file);
   if (conflicts.listed.empty() || most == 0) return text;
   const bool distances = has_distances(conflicts);
+  const char* const unit = symbol_of(file.unit());
   const std::vector<Conflict> rows = worst_of(conflicts, most);
   if (rows.size() < conflicts.listed.size()) {
     text += fmt::format("the {} {}:\n", distances ? "worst" : "first", rows.size());
   }
-  text += fmt::format("{:>5}  {:>19}  {:>11}  {:>7}", "id", "chainage (m)", "points", "side");
-  if (distances) text += fmt::format("  {:>12}  {:>16}", "distance (m)", "encroachment (m)");
+  text += fmt::format("{:>5}  {:>19}  {:>11}  {:>7}", "id", fmt::format("chainage ({})", unit),
+                      "points", "side");
+  if (distances) {
+    text += fmt::format("  {:>12}  {:>16}", fmt::format("distance ({})", unit),
+                        fmt::format("encroachment ({})", unit));
+  }
   text += "  centroid\n";
   for (const Conflict& conflict : rows) text += row_text(conflict, distances);
   return text;

@@ -85,9 +85,8 @@ void run_conflicts(ConflictsCommand& options) {
       find_conflicts(result, poses, options.find, drawn ? &conflict_of : nullptr);
   ConflictPictures pictures{{}, std::move(model)};
   if (drawn) pictures.points = conflict_points(result.reader(), conflicts, conflict_of);
-  ConflictFile file{
-      conflicts,   options.find, result.reader().header(), poses, conflict_warnings(conflicts),
-      options.date};
+  ConflictFile file{conflicts, options.find, result.reader().header(), poses, {}, options.date};
+  file.warnings = conflict_warnings(conflicts, symbol_of(file.unit()));
   for (const auto& output : outputs) {
     write_conflicts(file, pictures, output->format, output->pending.partial());
   }

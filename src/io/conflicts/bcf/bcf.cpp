@@ -57,7 +57,7 @@ Camera camera_of(const ConflictFile& file, const Conflict& conflict) {
   const Vec3 right = unit(cross(out.direction, above), {0, 1, 0});
   out.up = cross(right, out.direction);
   const double diagonal = length_of(sum(conflict.box.hi, conflict.box.lo, -1));
-  const double away = std::max(kLeastDistance, kSizesAway * diagonal);
+  const double away = std::max(kLeastDistance / file.metres_per_unit(), kSizesAway * diagonal);
   out.place = sum(conflict.centroid, out.direction, -away);
   return out;
 }

@@ -24,6 +24,12 @@ std::string vector_element(std::string_view name, const Vec3& v) {
                            element("Z", json_number(v.z)));
 }
 
+/// Of the environment, in metres, as BCF has them.
+Vec3 in_metres(const ConflictFile& file, const Vec3& v) {
+  const double metres = file.metres_per_unit();
+  return {v.x * metres, v.y * metres, v.z * metres};
+}
+
 /// The twelve edges of a box.
 std::string edges_of(const Box& box) {
   const auto corner = [&box](int bits) {
@@ -43,21 +49,28 @@ std::string edges_of(const Box& box) {
   return out;
 }
 
-std::string title_of(const Conflict& c) {
-  std::string out =
-      "Conflict " + std::to_string(c.id) + " at " + format_brief(c.chainage_from) + " m";
-  if (c.chainage_to > c.chainage_from) out += " to " + format_brief(c.chainage_to) + " m";
+std::string length_text(const ConflictFile& file, const std::string& number) {
+  return number + " " + symbol_of(file.unit());
+}
+
+std::string title_of(const ConflictFile& file, const Conflict& c) {
+  std::string out = "Conflict " + std::to_string(c.id) + " at " +
+                    length_text(file, format_brief(c.chainage_from));
+  if (c.chainage_to > c.chainage_from) {
+    out += " to " + length_text(file, format_brief(c.chainage_to));
+  }
   if (c.side != Side::kUnknown) out += std::string(", ") + name_of(c.side);
   return out;
 }
 
 std::string description_of(const ConflictFile& file, const Conflict& c) {
-  std::string out = format_count(c.points) + " points are closer than " +
-                    format_number(file.header.radius) + " m to the moving model.";
+  std::string out = format_count(c.points) + (c.points == 1 ? " point is" : " points are") +
+                    " closer than " + length_text(file, format_number(file.header.radius)) +
+                    " to the moving model.";
   if (c.least_distance) {
-    out += " The least distance is " + format_brief(*c.least_distance) + " m, at pose " +
-           std::to_string(*c.nearest_pose) + "; " + format_brief(*c.encroachment) +
-           " m are missing.";
+    out += " The least distance is " + length_text(file, format_brief(*c.least_distance)) +
+           ", at pose " + std::to_string(*c.nearest_pose) + "; " +
+           length_text(file, format_brief(*c.encroachment)) + " are missing.";
   }
   return out + " First touched at poses " + std::to_string(c.first_pose) + " to " +
          std::to_string(c.last_pose) + ", counted from 0.";
@@ -100,7 +113,7 @@ std::string bcf_markup(const ConflictFile& file, const Conflict& conflict) {
   const auto line = [&out](std::string_view name, const std::string& content) {
     out += "    " + element(name, content) + "\n";
   };
-  line("Title", title_of(conflict));
+  line("Title", title_of(file, conflict));
   line("Index", std::to_string(conflict.id));
   line("CreationDate", file.date);
   line("CreationAuthor", "Clearway");
@@ -116,11 +129,13 @@ std::string bcf_viewpoint(const ConflictFile& file, const Conflict& conflict,
   std::string out = kDeclaration;
   out += "<VisualizationInfo Guid=\"" + conflict_uuid(file, conflict, "viewpoint") + "\">\n";
   out += "  <PerspectiveCamera>\n";
-  out += "    " + vector_element("CameraViewPoint", camera.place) + "\n";
+  out += "    " + vector_element("CameraViewPoint", in_metres(file, camera.place)) + "\n";
   out += "    " + vector_element("CameraDirection", camera.direction) + "\n";
   out += "    " + vector_element("CameraUpVector", camera.up) + "\n";
   out += "    " + element("FieldOfView", json_number(camera.field_of_view)) + "\n";
-  out += "  </PerspectiveCamera>\n  <Lines>\n" + edges_of(conflict.box) + "  </Lines>\n";
+  out += "  </PerspectiveCamera>\n  <Lines>\n" +
+         edges_of({in_metres(file, conflict.box.lo), in_metres(file, conflict.box.hi)}) +
+         "  </Lines>\n";
   return out + "</VisualizationInfo>\n";
 }
 
