@@ -3,6 +3,7 @@
 #include <span>
 #include <string_view>
 
+#include "io/conflicts/json_text.hpp"
 #include "io/system/file.hpp"
 #include "report/page_parts.hpp"
 

@@ -19,6 +19,7 @@
 #include "io/export/export_profile.hpp"
 #include "io/export/export_result.hpp"
 #include "io/export/export_scan_records.hpp"
+#include "io/system/pending_file.hpp"
 #include "io/trajectory/content_hash.hpp"
 
 namespace clearway::tool {
