@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "io/conflicts/json_text.hpp"
+#include "io/conflicts/json_text.hpp"
 #include "io/system/file.hpp"
 #include "report/page_parts.hpp"
 

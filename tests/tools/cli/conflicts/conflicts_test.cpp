@@ -264,6 +264,11 @@ TEST_CASE("compare --conflicts tells new, gone and the same, and exits with 1 on
   const Outcome equal = compare("out.h5", "out.h5", "");
   CHECK(equal.exit_code == 0);
   CHECK_THAT(equal.out, Contains("no new conflicts"));
+  const Outcome small = work.run("compare " + work.path("fewer.h5") + " " + work.path("out.h5") +
+                                 " --conflicts --trajectory " + (work.hall / "trajectory.txt") +
+                                 " --min-points 1000000");
+  CHECK(small.exit_code == 1);
+  CHECK_THAT(small.out, Contains("b has more points in groups that are too small"));
   const Outcome more = compare("fewer.h5", "out.h5", "--json");
   CHECK(more.exit_code == 1);
   const json all = json::parse(more.out);
