@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "io/conflicts/json_text.hpp"
-#include "io/conflicts/json_text.hpp"
 #include "io/system/file.hpp"
 #include "report/page_parts.hpp"
 
