@@ -61,7 +61,8 @@ function drawNumbers(context, painter, unitSize, places) {
   for (const conflict of order) {
     const at = painter.project(placeOf(conflict));
     if (!at || at[0] < 0 || at[1] < 0 || at[0] > painter.width || at[1] > painter.height) continue;
-    const free = taken.every(([x, y]) => Math.hypot(x - at[0], y - at[1]) > 21 * unitSize);
+    const apart = Math.max(21, 7 * String(conflict.id).length) * unitSize;
+    const free = taken.every(([x, y]) => Math.hypot(x - at[0], y - at[1]) > apart);
     (free ? taken : dots).push(at);
     at.conflict = conflict;
   }
@@ -73,7 +74,8 @@ function drawNumbers(context, painter, unitSize, places) {
 }
 
 function drawNumber(context, [x, y], conflict, full, unitSize) {
-  const chosen = conflict === page.conflict, radius = (full ? (chosen ? 12 : 9.5) : 3) * unitSize;
+  const chosen = conflict === page.conflict, digits = String(conflict.id).length;
+  const radius = (full ? Math.max(chosen ? 12 : 9.5, 3.2 * digits) : 3) * unitSize;
   context.beginPath();
   context.arc(x, y, radius, 0, 7);
   context.fillStyle = chosen ? "#111827" : classOf(conflict.least_distance).colour;

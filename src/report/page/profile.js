@@ -93,7 +93,7 @@ function profileConflicts() {
     const x2 = clamp(profileX(conflict.chainage_to), profile.left, profile.width - profile.right);
     const chosen = conflict === page.conflict, words = classOf(conflict.least_distance);
     const width = Math.max(3, x2 - x1), middle = x1 + width / 2;
-    const label = chosen || middle - free > 26;
+    const label = chosen || middle - free > 8 * String(conflict.id).length + 10;
     if (label) free = middle;
     const extra = conflict === worst ? " (worst)" : "";
     out.push(make("g", { class: chosen ? "mark chosen" : "mark",
