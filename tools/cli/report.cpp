@@ -28,8 +28,6 @@
 namespace clearway::tool {
 namespace {
 
-constexpr double kReportSpacingsInRadius = 4;  // as run samples a mesh
-
 struct ReportCommand : ConflictCommand {
   std::filesystem::path result, environment, model, trajectory, output;
   ModelOptions model_options;
@@ -58,8 +56,7 @@ void name_files(ReportCommand& options) {
 
 Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {
   std::vector<Message>& warnings = options.report.warnings;
-  ModelOptions how = options.model_options;
-  if (how.spacing == 0) how.spacing = result.parameters().radius / kReportSpacingsInRadius;
+  const ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
   std::vector<Vec3> model = read_model(options.model, how, &warnings);
   options.trajectory_options.default_crs = store.crs_wkt();
   std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options,

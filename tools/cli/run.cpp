@@ -13,6 +13,7 @@
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/exit_code.hpp"
+#include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
@@ -27,8 +28,6 @@ namespace {
 
 constexpr const char* kHowToResume =
     "the same command with --resume, without --force, continues from the finished work";
-
-constexpr double kSpacingsInRadius = 4;  // of a mesh, where no spacing is given
 
 /// What the result says, for people.
 struct Answer {
@@ -149,8 +148,7 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
 /// Warnings of the inputs are told at once, and go into the report with those of the search.
 Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   std::vector<Message>& warnings = options.search.input_warnings;
-  ModelOptions how = options.model_options;
-  if (how.spacing == 0) how.spacing = options.query.radius / kSpacingsInRadius;
+  const ModelOptions how = with_spacing(options.model_options, options.query.radius);
   std::vector<Vec3> model = read_model(options.model, how, &warnings);
   options.trajectory_options.default_crs = store.crs_wkt();
   std::vector<Pose> poses =

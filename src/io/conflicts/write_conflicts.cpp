@@ -1,19 +1,16 @@
 #include "io/conflicts/write_conflicts.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 
 #include "clearway/error.hpp"
 #include "io/conflicts/geopackage.hpp"
 #include "io/conflicts/text_conflicts.hpp"
+#include "io/system/file_ending.hpp"
 
 namespace clearway {
 
 ConflictFormat conflict_format_of(const std::filesystem::path& output) {
-  std::string ending = output.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = file_ending(output);
   if (ending == ".csv") return ConflictFormat::kCsv;
   if (ending == ".json") return ConflictFormat::kJson;
   if (ending == ".geojson") return ConflictFormat::kGeoJson;

@@ -1,6 +1,5 @@
 #include "io/export/row_sink.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cctype>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "io/formats/las/las_writer.hpp"
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/formats/requantize.hpp"
+#include "io/system/file_ending.hpp"
 
 namespace clearway {
 namespace {
@@ -120,9 +120,7 @@ class CsvSink final : public RowSink {
 }  // namespace
 
 ExportFormat export_format_of(const std::filesystem::path& output) {
-  std::string ending = output.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = file_ending(output);
   if (ending == ".las") return ExportFormat::kLas;
   if (ending == ".ply") return ExportFormat::kPly;
   if (ending == ".xyz") return ExportFormat::kXyz;

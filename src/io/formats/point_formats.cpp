@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/system/file_ending.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -26,10 +27,7 @@ constexpr Ending kEndings[] = {
     {".glb", PointFormat::kMesh, false}, {".dae", PointFormat::kMesh, false}};
 
 const Ending* ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = file_ending(path);
   for (const Ending& known : kEndings) {
     if (known.ending == ending) return &known;
   }

@@ -15,19 +15,12 @@
 #include "io/hdf5/hdf5.hpp"
 #include "io/journal/journal.hpp"
 #include "io/system/file.hpp"
+#include "io/system/file_ending.hpp"
 
 namespace clearway {
 namespace {
 
 constexpr std::size_t kLookedAt = 1 << 16;  ///< bytes
-
-std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return ending;
-}
 
 FileDescription describe_hdf5(const std::filesystem::path& path) {
   try {
@@ -101,7 +94,7 @@ std::string point_format_name(const std::filesystem::path& path) {
   if (!format) return "text";
   switch (*format) {
     case PointFormat::kLas:
-      return ending_of(path) == ".laz" ? "LAZ" : "LAS";
+      return file_ending(path) == ".laz" ? "LAZ" : "LAS";
     case PointFormat::kPly:
       return "PLY";
     case PointFormat::kE57:

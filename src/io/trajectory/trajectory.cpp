@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/formats/input_buffer.hpp"
+#include "io/system/file_ending.hpp"
 #include "io/system/input_error.hpp"
 #include "io/trajectory/geographic/sbet.hpp"
 #include "io/trajectory/text/text_trajectory.hpp"
@@ -17,12 +18,6 @@
 
 namespace clearway {
 namespace {
-
-std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return ending;
-}
 
 bool is_text(std::span<const std::byte> bytes) {
   return std::none_of(bytes.begin(), bytes.end(), [](std::byte byte) {
@@ -57,7 +52,7 @@ TrajectoryFormat format_by_name(const std::string& ending) {
 }
 
 void read_file(const std::filesystem::path& path, TrajectoryOptions options, TrajectoryFile& out) {
-  const std::string ending = ending_of(path);
+  const std::string ending = file_ending(path);
   if (options.format == TrajectoryFormat::kAuto) options.format = format_by_name(ending);
   if (options.format == TrajectoryFormat::kThreedtkPose ||
       options.format == TrajectoryFormat::kThreedtkFrames) {

@@ -16,8 +16,6 @@
 namespace clearway::tool {
 namespace {
 
-constexpr double kSpacingsInRadius = 4;  // as clearway run samples meshes
-
 void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char* description) {
   static const std::map<std::string, Axis> kAxes{
       {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
@@ -71,10 +69,9 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
   return poses;
 }
 
-std::vector<Vec3> read_model_of(const std::filesystem::path& path, ModelOptions options,
+std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                                 const Result& result) {
-  if (options.spacing == 0) options.spacing = result.parameters().radius / kSpacingsInRadius;
-  std::vector<Vec3> points = read_model(path, options);
+  std::vector<Vec3> points = read_model(path, with_spacing(options, result.parameters().radius));
   const ResultHeader& header = result.reader().header();
   const std::uint64_t hash = hash_of_model(points);
   if (points.size() == header.model_points && hash == header.model_hash) return points;

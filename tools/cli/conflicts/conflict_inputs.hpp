@@ -37,7 +37,7 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
                              const Result& result);
 
 /// The points of the model that a result is of. Throws InputError for another model.
-std::vector<Vec3> read_model_of(const std::filesystem::path& path, ModelOptions options,
+std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                                 const Result& result);
 
 }  // namespace clearway::tool

@@ -110,9 +110,8 @@ ParsedLength parse_length(const std::string& option, const std::string& text, Le
 }
 
 std::optional<double> metres_of_unit(const std::string& length_unit) {
-  if (length_unit == "foot") return kMetresPerFoot;
-  if (length_unit == "us-survey-foot") return 1200.0 / 3937;
-  return std::nullopt;
+  const double metres = metres_of(length_unit_of(length_unit));
+  return metres > 0 && metres != 1 ? std::optional(metres) : std::nullopt;
 }
 
 double metres_of_crs(const std::string& wkt) {

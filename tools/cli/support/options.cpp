@@ -79,6 +79,12 @@ void add_model_unit(CLI::App& command, const std::string& names, double& unit) {
                   "Unit of the model's file: mm, cm, m, in or ft (default: m)");
 }
 
+ModelOptions with_spacing(ModelOptions options, double radius) {
+  constexpr double kSpacingsInRadius = 4;
+  if (options.spacing == 0) options.spacing = radius / kSpacingsInRadius;
+  return options;
+}
+
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths) {
   CLI::Option* spacing =
       lengths.add(command, "--model-spacing", options.spacing,

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/system/file_ending.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -48,14 +49,6 @@ constexpr OtherFormat kOtherFormats[] = {{".gltf", "glTF"},
                                          {".x_t", "Parasolid"},
                                          {".mtl", "a material of OBJ"}};
 
-std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return ending;
-}
-
 [[noreturn]] void refuse_format(const File& file, const char* format) {
   refuse(file.name(), std::string(format) +
                           " is not read; expected a mesh in STL, OBJ, PLY or OFF, or points. "
@@ -85,7 +78,7 @@ std::optional<MeshFormat> mesh_format_of(const File& file, const std::filesystem
   const std::string_view text(reinterpret_cast<const char*>(first.data()), first.size());
   if (text.starts_with("glTF")) refuse_format(file, "glTF");
   if (text.starts_with("ISO-10303-21")) refuse_format(file, "STEP (also of IFC)");
-  const std::string ending = ending_of(path);
+  const std::string ending = file_ending(path);
   if (ending == ".stl") return MeshFormat::kStl;  // a binary one may begin with any text
   if (const auto format = format_of_text(text)) return format;
   if (ending == ".obj") return MeshFormat::kObj;

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -80,13 +79,9 @@ class OffParser {
   }
 
   std::uint64_t whole(std::string_view word) const {
-    std::uint64_t value = 0;
-    const char* const end = word.data() + word.size();
-    const auto [stop, error] = std::from_chars(word.data(), end, value);
-    if (error != std::errc() || stop != end) {
-      fail(excerpt(word) + "; expected a whole number from 0");
-    }
-    return value;
+    const auto value = parse_count(word);
+    if (!value) fail(excerpt(word) + "; expected a whole number from 0");
+    return *value;
   }
 
   void read_vertex(std::uint64_t index) {

@@ -1,7 +1,6 @@
 #include "io/formats/pcd/pcd_header.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -88,13 +87,9 @@ class HeaderParser {
   }
 
   std::uint64_t whole(std::string_view word) const {
-    std::uint64_t value = 0;
-    const char* const end = word.data() + word.size();
-    const auto [stop, error] = std::from_chars(word.data(), end, value);
-    if (error != std::errc() || stop != end) {
-      fail(excerpt(word) + "; expected a whole number from 0");
-    }
-    return value;
+    const auto value = parse_count(word);
+    if (!value) fail(excerpt(word) + "; expected a whole number from 0");
+    return *value;
   }
 
   void read_names() {

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -48,6 +49,16 @@ inline char skip_separator(const char*& at, const char* end) {
 /// or semicolons, one kind throughout. Returns how many there are (out.size() + 1 for more); none
 /// for anything else in the line.
 std::optional<std::size_t> parse_number_line(std::string_view line, std::span<double> out);
+
+/// The whole of a word as a whole number from 0; none for anything else, and for one that is too
+/// large.
+inline std::optional<std::uint64_t> parse_count(std::string_view word) {
+  std::uint64_t value = 0;
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
 
 /// The whole of a field, blanks around it aside, as a number.
 std::optional<double> parse_whole_number(std::string_view field);
