@@ -10,6 +10,7 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
+#include "findings/side.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
@@ -164,9 +165,22 @@ class Report {
       if (nearest == profile_.distance.end() || !std::isfinite(*nearest)) return;
       const auto pose = static_cast<std::size_t>(nearest - profile_.distance.begin());
       least_ = {*nearest, static_cast<std::uint32_t>(pose), profile_.source[pose],
-                profile_.xyz[pose]};
+                profile_.xyz[pose], {}, {}, {}};
       least_of_ = "profile";
     }
+    place_least();
+  }
+
+  /// Where the nearest point is, seen from the model.
+  void place_least() {
+    if (!least_->xyz) return;
+    const ConflictOptions& how = options_.conflicts;
+    const Pose& pose = poses_[least_->pose];
+    const Vec3 there = ahead_left_up(*least_->xyz, pose, how.forward, how.up);
+    if (!std::isfinite(there.y) || !std::isfinite(there.z)) return;
+    least_->side = side_of(*least_->xyz, pose, model_box_, how.forward, how.up);
+    least_->lateral = there.y;
+    least_->height = there.z;
   }
 
   std::vector<PageColumn> make_columns(const Conflicts& conflicts) {
