@@ -51,10 +51,10 @@ struct Conflict {
   std::optional<double> encroachment = {};           ///< radius - least_distance
   std::optional<Vec3> nearest_point = {};  ///< where it is; not for results before version 3
   Side side = Side::kUnknown;  ///< of the nearest point, or else of the centroid at the first pose
-  /// Of the same place, metres from the pose's position: to the left along the model's own axis, and
-  /// up. The model's box is not needed. None where the pose's rotation cannot be inverted.
+  /// Of the same place, metres from the pose's position: to the left along the model's own axis,
+  /// and up. The model's box is not needed. None where the pose's rotation cannot be inverted.
   std::optional<double> lateral = {}, height = {};
-  std::uint64_t group = 0;     ///< smallest source of the whole group, before it was cut
+  std::uint64_t group = 0;  ///< smallest source of the whole group, before it was cut
 };
 
 struct Conflicts {

@@ -23,8 +23,8 @@ struct ReportOptions {
   std::string date = {};  ///< as it is to stand on the page; nothing else in it depends on the time
   /// Names of the files for people; empty ones are left out.
   std::string result_name = {}, environment_name = {}, model_name = {}, trajectory_name = {};
-  /// What was left out of the model's file: points whose z is below it, and how many. For the page to
-  /// say; `model` is without them.
+  /// What was left out of the model's file: points whose z is below it, and how many. For the page
+  /// to say; `model` is without them.
   std::optional<double> model_above = {};
   std::uint64_t model_left_out = 0;
   /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.

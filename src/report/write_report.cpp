@@ -164,8 +164,13 @@ class Report {
       const auto nearest = std::ranges::min_element(profile_.distance);
       if (nearest == profile_.distance.end() || !std::isfinite(*nearest)) return;
       const auto pose = static_cast<std::size_t>(nearest - profile_.distance.begin());
-      least_ = {*nearest, static_cast<std::uint32_t>(pose), profile_.source[pose],
-                profile_.xyz[pose], {}, {}, {}};
+      least_ = {*nearest,
+                static_cast<std::uint32_t>(pose),
+                profile_.source[pose],
+                profile_.xyz[pose],
+                {},
+                {},
+                {}};
       least_of_ = "profile";
     }
     place_least();

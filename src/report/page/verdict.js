@@ -136,7 +136,7 @@ function questionTable() {
             `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
     factRow("Vehicle (model)", `${inputs.model.name}: ${count(inputs.model.points)} points, ` +
             `${size} ${unitSymbol}. `, hash(inputs.model.hash)),
-    inputs.model.above === null ? "" : factRow("Left out", leftOut(inputs.model)),
+    inputs.model.above === null ? "" : factRow("Left out", leftOut(inputs.model), optionName("--model-above")),
     factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
@@ -146,8 +146,11 @@ function questionTable() {
 /** What --model-above took from the model's file. */
 function leftOut({ above, left_out: left }) {
   return `points of the model below z = ${shortLength(above)} in its own frame` +
-      (left > 0 ? `, ${count(left)} of them` : "") + " (--model-above)";
+      (left > 0 ? `, ${count(left)} of them: ` : ": ");
 }
+
+/** Without line breaks at its hyphens. */
+const optionName = (name) => make("code", { class: "option" }, name);
 
 function askedFor(query) {
   const parts = [`required distance ${shortLength(query.radius)}`];

@@ -151,13 +151,12 @@ TEST_CASE("GeoJSON and GeoPackage open in GDAL") {
   const std::string package = said_by("ogrinfo", "-so -al " + work.path("c.gpkg"), work);
   const std::string json_text = said_by("ogrinfo", "-so -al " + work.path("c.geojson"), work);
   if (package.empty() || json_text.empty()) return;
-  CHECK_THAT(package, Contains("Layer name: conflicts") && Contains("Geometry: 3D Point") &&
-                          Contains("Layer name: footprints") && Contains("Geometry: 3D Polygon") &&
-                          Contains("Layer name: stretches") &&
-                          Contains("Geometry: 3D Line String") &&
-                          Contains("Feature Count: " + count) && Contains("encroachment: Real") &&
-                          Contains("lateral: Real") && Contains("height: Real") &&
-                          Contains("side: String"));
+  CHECK_THAT(package,
+             Contains("Layer name: conflicts") && Contains("Geometry: 3D Point") &&
+                 Contains("Layer name: footprints") && Contains("Geometry: 3D Polygon") &&
+                 Contains("Layer name: stretches") && Contains("Geometry: 3D Line String") &&
+                 Contains("Feature Count: " + count) && Contains("encroachment: Real") &&
+                 Contains("lateral: Real") && Contains("height: Real") && Contains("side: String"));
   CHECK_THAT(json_text, Contains("Feature Count: " + std::to_string(features["features"].size())) &&
                             !Contains("WGS 84"));
   const std::string first = said_by("ogrinfo", work.path("c.gpkg") + " conflicts -fid 1", work);
