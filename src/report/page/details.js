@@ -20,7 +20,7 @@ function conflictFacts(conflict) {
   if (conflict.least_distance !== null) {
     rows.push(["Distance", `${words.symbol} ${words.name}: ${metres(conflict.least_distance)} of ` +
                            `${shortLength(query.radius)}`],
-              ["Missing", metres(conflict.encroachment)]);
+              ["Missing", missingWords(conflict.encroachment, conflict.least_distance)]);
   } else {
     rows.push(["Distance", `closer than ${shortLength(query.radius)}; run with --clearance to know it`]);
   }

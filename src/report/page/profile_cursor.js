@@ -5,7 +5,7 @@ function profileValueWords(i) {
   if (d === undefined) return "";
   if (d === null) return `: beyond ${shortLength(query.profile)}, nothing is closer`;
   const missing = query.radius - d;
-  return `: ${metres(d)}` + (missing > 0 ? `, ${metres(missing)} missing` : ", enough");
+  return `: ${metres(d)}` + (missing > 0 ? `, ${missingWords(missing, d)} missing` : ", enough");
 }
 
 function showProfileValue(i) {

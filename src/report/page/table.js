@@ -13,10 +13,8 @@ function classesDiffer() {
 /** title, key to sort by, cell. */
 function tableColumns() {
   const list = conflictList(), measured = list.some((c) => c.least_distance !== null);
-  const lengths = (key) => {
-    const digits = digitsFor(list.map((c) => c[key]));
-    return (c) => c[key] === null ? "" : fixed(c[key], digits);
-  };
+  const digits = digitsFor(list.map((c) => c.least_distance));
+  const lengths = (key) => (c) => c[key] === null ? "" : fixed(c[key], digits);
   const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key])];
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],

@@ -35,7 +35,8 @@ function conflictTiles() {
   tiles.push(tile(count(facts.colliding_points), "colliding points"));
   if (worst) {
     const missing = worst.encroachment;
-    tiles.push(tile(missing === null ? plural(worst.points, "point") : metres(missing),
+    tiles.push(tile(missing === null ? plural(worst.points, "point")
+                        : missingWords(missing, worst.least_distance),
                     missing === null ? "most in one conflict"
                         : worst.least_distance < kTouching ? "missing at least: it touches"
                         : "missing at the worst place"));

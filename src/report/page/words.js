@@ -18,6 +18,8 @@ const metres = (v, digits = digitsFor([v])) => v === null || v === undefined ? "
     : `${fixed(v, digits)} ${unitSymbol}`;
 /** Below it the surfaces meet, as far as scans can tell. */
 const kTouching = 0.001;
+/** With the digits of the distance, so that both add up to what is required. */
+const missingWords = (missing, distance) => metres(missing, digitsFor([distance]));
 const station = (v) => metres(v, 2);
 const shortLength = (v) => `${+v.toPrecision(4)} ${unitSymbol}`;
 const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
