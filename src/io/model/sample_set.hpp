@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "clearway/box.hpp"
 #include "clearway/vec3.hpp"
 
 namespace clearway {
@@ -19,10 +18,6 @@ class SampleSet {
   std::size_t size() const { return points_.size(); }
 
   void add(const Vec3& point);
-
-  /// The points within the reach of a place of `box`, and others near it, into `near`. False where
-  /// any_near() may give up at such a place before it has shown all of those.
-  bool gather(const Box& box, std::vector<Vec3>& near) const;
 
   /// Calls use(point) for points until it returns true: for those within the reach of `place`, but
   /// for a few whose distance is the reach but for rounding, and for some farther ones; the last

@@ -11,7 +11,6 @@ namespace {
 constexpr double kMargin = 0x1p-16;      // kept free for all rounding
 constexpr double kFlat = 0x1p-17;        // a triangle of less height is its longest side
 constexpr double kClipMargin = 0x1p-18;  // by which the sides are moved out before clipping
-constexpr double kBoxMargin = 0x1p-10;   // about a region's box, more than rounding
 constexpr int kSplits = 5;               // of a region, to find that several samples cover it
 
 /// The sides of a triangle, moved out.
@@ -96,16 +95,15 @@ bool SurfaceCover::cover(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 bool SurfaceCover::cover_node(const TriangleFrame& triangle, const FlatPolygon& region,
                               const FlatPlace& node) {
-  if (covered(triangle, region)) return true;
+  if (covered(triangle, region, kSplits)) return true;
   if (samples_.size() >= most_) return false;
   samples_.add(triangle.nearest_in_space(node));
   return true;
 }
 
-/// any_near(place, use): as that of SampleSet.
-template <typename AnyNear>
-SurfaceCover::Found SurfaceCover::look(const AnyNear& any_near, const TriangleFrame& triangle,
-                                       const FlatPolygon& region) const {
+/// Whether samples cover a region: one alone, or each of its parts is covered.
+bool SurfaceCover::covered(const TriangleFrame& triangle, const FlatPolygon& region,
+                           int splits) const {
   std::array<Vec3, FlatPolygon::kMostCorners> corners;
   FlatPlace middle{0, 0};
   std::size_t count = 0;
@@ -118,48 +116,16 @@ SurfaceCover::Found SurfaceCover::look(const AnyNear& any_near, const TriangleFr
   const Vec3 inside = triangle.in_space({middle.x / share, middle.y / share});
   const double limit = reach_ * reach_;
   bool any = false;
-  const bool one = any_near(inside, [&](const Vec3& sample) {
+  const bool one = samples_.any_near(inside, [&](const Vec3& sample) {
     if (squared_distance(sample, inside) > limit) return false;
     any = true;
     return std::all_of(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(count),
                        [&](const Vec3& p) { return squared_distance(sample, p) <= limit; });
   });
-  return one ? Found::kCover : any ? Found::kSome : Found::kNone;
-}
-
-/// Whether one sample covers a region, or each of its parts is covered.
-template <typename AnyNear>
-bool SurfaceCover::covered_by(const AnyNear& any_near, const TriangleFrame& triangle,
-                              const FlatPolygon& region, int splits) const {
-  const Found found = look(any_near, triangle, region);
-  if (found != Found::kSome || splits == 0) return found == Found::kCover;
+  if (one || !any || splits == 0) return one;
   const auto [first, second] = region.halves();
-  return (first.empty() || covered_by(any_near, triangle, first, splits - 1)) &&
-         (second.empty() || covered_by(any_near, triangle, second, splits - 1));
-}
-
-/// Whether samples cover a region. Its parts are looked at in what lies near all of them, which is
-/// taken out of the grid once.
-bool SurfaceCover::covered(const TriangleFrame& triangle, const FlatPolygon& region) {
-  const auto in_grid = [this](const Vec3& place, const auto& use) {
-    return samples_.any_near(place, use);
-  };
-  const Found found = look(in_grid, triangle, region);
-  if (found != Found::kSome) return found == Found::kCover;
-  const double margin = spacing_ * kBoxMargin;
-  Box box{triangle.in_space(*region.begin()), triangle.in_space(*region.begin())};
-  for (const FlatPlace& corner : region) {
-    const Vec3 place = triangle.in_space(corner);
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], place[k] - margin);
-      box.hi[k] = std::max(box.hi[k], place[k] + margin);
-    }
-  }
-  if (!samples_.gather(box, near_)) return covered_by(in_grid, triangle, region, kSplits);
-  const auto in_gathered = [this](const Vec3&, const auto& use) {
-    return std::any_of(near_.begin(), near_.end(), use);
-  };
-  return covered_by(in_gathered, triangle, region, kSplits);
+  return (first.empty() || covered(triangle, first, splits - 1)) &&
+         (second.empty() || covered(triangle, second, splits - 1));
 }
 
 }  // namespace clearway

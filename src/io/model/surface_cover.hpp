@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "io/model/sample_set.hpp"
 #include "io/model/triangle_frame.hpp"
 
@@ -27,21 +25,11 @@ class SurfaceCover {
 
   bool corners_cover(const TriangleFrame& triangle) const;
   bool cover_node(const TriangleFrame& triangle, const FlatPolygon& region, const FlatPlace& node);
-  /// What samples near the middle of a region are: none, some, or one that covers all of it.
-  enum class Found { kNone, kSome, kCover };
-
-  bool covered(const TriangleFrame& triangle, const FlatPolygon& region);
-  template <typename AnyNear>
-  Found look(const AnyNear& any_near, const TriangleFrame& triangle,
-             const FlatPolygon& region) const;
-  template <typename AnyNear>
-  bool covered_by(const AnyNear& any_near, const TriangleFrame& triangle, const FlatPolygon& region,
-                  int splits) const;
+  bool covered(const TriangleFrame& triangle, const FlatPolygon& region, int splits) const;
 
   double spacing_, reach_;
   std::uint64_t most_;
   SampleSet samples_;
-  std::vector<Vec3> near_;  ///< to the region that is looked at
 };
 
 }  // namespace clearway
