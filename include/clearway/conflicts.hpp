@@ -27,6 +27,7 @@ struct ConflictOptions {
   std::uint64_t min_points = 10;  ///< groups of fewer are counted, not listed
   /// Metres along the path: longer groups are cut at multiples of it; 0: never.
   double split = 25;
+  double chainage_start = 0;  ///< metres: the chainage of the first pose; cuts stay where they are
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;  ///< of the model; not along one line
   /// Of the model's points, for results that do not hold it. Without any, sides are unknown.
   std::optional<Box> model_box = {};

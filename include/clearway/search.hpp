@@ -61,13 +61,6 @@ struct SearchSeconds {
   double write = 0;  ///< of the result
 };
 
-/// Where the model comes closest to the environment.
-struct LeastDistance {
-  double distance = 0;       ///< metres
-  std::uint32_t pose = 0;    ///< the first one that has it
-  std::uint64_t source = 0;  ///< of the point, of several the smallest
-};
-
 /// What was found, and how.
 struct SearchReport {
   bool was_finished = false;  ///< the result was there already: nothing was searched
@@ -75,7 +68,6 @@ struct SearchReport {
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
   std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
-  std::optional<LeastDistance> least;  ///< of the whole profile, where a pose is close enough
   std::vector<Message> warnings;
 
   Engine engine = Engine::kAuto;  ///< that searched

@@ -177,6 +177,8 @@ class ConflictSearch {
   }
 
   void complete(Conflict& conflict) const {
+    conflict.chainage_from += options_.chainage_start;
+    conflict.chainage_to += options_.chainage_start;
     const Pose& pose = poses_[conflict.nearest_pose.value_or(conflict.first_pose)];
     const Vec3 place = conflict.nearest_point.value_or(conflict.centroid);
     const Vec3 there = ahead_left_up(place, pose, options_.forward, options_.up);

@@ -42,6 +42,7 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.field("above", options.model_above).field("left_out", options.model_left_out).end('}');
   json.key("trajectory").begin('{').field("name", options.trajectory_name);
   json.field("poses", header.poses).field("hash", hash_text(header.trajectory_hash));
+  json.field("chainage_start", facts.options.conflicts.chainage_start);
   json.field("length", facts.path_length).end('}').end('}');
 }
 

@@ -210,26 +210,27 @@ class Report {
   }
 
   std::string facts(const Conflicts& conflicts) const {
-    return json_of({.result = result_,
-                    .store = store_,
-                    .options = options_,
-                    .title = title(),
-                    .model_box = model_box_,
-                    .classes = classes_,
-                    .path_length = chainage_.empty() ? 0 : chainage_.back(),
-                    .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
-                    .points = points_,
-                    .environment = environment_,
-                    .reach = path_.reach(),
-                    .dense_reach = path_.dense_reach(),
-                    .shown_poses = shown_.size(),
-                    .shown_model_points = shown_model_points_,
-                    .least = least_,
-                    .least_chainage = least_ ? chainage_[least_->pose] : 0,
-                    .least_of = least_of_,
-                    .lattice = lattice_,
-                    .environment_lattice = environment_lattice_,
-                    .model_lattice = model_lattice_});
+    return json_of(
+        {.result = result_,
+         .store = store_,
+         .options = options_,
+         .title = title(),
+         .model_box = model_box_,
+         .classes = classes_,
+         .path_length = chainage_.empty() ? 0 : chainage_.back(),
+         .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
+         .points = points_,
+         .environment = environment_,
+         .reach = path_.reach(),
+         .dense_reach = path_.dense_reach(),
+         .shown_poses = shown_.size(),
+         .shown_model_points = shown_model_points_,
+         .least = least_,
+         .least_chainage = least_ ? options_.conflicts.chainage_start + chainage_[least_->pose] : 0,
+         .least_of = least_of_,
+         .lattice = lattice_,
+         .environment_lattice = environment_lattice_,
+         .model_lattice = model_lattice_});
   }
 
   const Result& result_;

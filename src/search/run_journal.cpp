@@ -20,8 +20,8 @@ std::string first_pose_text(const ResultHeader& header) {
 }
 
 std::string work_text(const JournalledWork& work) {
-  if (work.poses > 0) return format_count(work.poses) + " poses finished";
-  return format_count(work.cells) + " cells finished";
+  if (work.poses > 0) return counted(work.poses, "pose") + " finished";
+  return counted(work.cells, "cell") + " finished";
 }
 
 std::string value_of(const JournalIdentity& identity, const std::string& name) {

@@ -100,11 +100,8 @@ class Search {
     report_.colliding_points = result.collisions();
     report_.clearance_points = result.clearances();
     ProfileRowStream profile(result);
-    std::uint32_t pose = 0;
     for (ProfileRows rows; profile.read(rows);) {
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        report_pose(pose++, rows.distance[i], rows.source[i]);
-      }
+      for (const double distance : rows.distance) count_pose(distance);
     }
   }
 
@@ -195,16 +192,13 @@ class Search {
 
   void report_profile(const ProfileSet& profile) {
     for (std::uint32_t pose = 0; pose < profile.poses(); ++pose) {
-      const ProfilePoint& point = profile.at(pose);
-      report_pose(pose, std::sqrt(point.squared), point.source);
+      count_pose(profile.at(pose).squared);
     }
   }
 
-  void report_pose(std::uint32_t pose, double distance, std::uint64_t source) {
-    if (std::isinf(distance)) return;
-    ++report_.profile_poses;
-    if (report_.least && report_.least->distance <= distance) return;
-    report_.least = {distance, pose, source};
+  /// distance: or its square.
+  void count_pose(double distance) {
+    if (!std::isinf(distance)) ++report_.profile_poses;
   }
 
   const Stopwatch total_;

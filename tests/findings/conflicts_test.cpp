@@ -92,6 +92,24 @@ TEST_CASE("a group is cut at multiples of the split where it is longer") {
   CHECK(conflicts_of(found, options).listed.size() == 60);
 }
 
+TEST_CASE("chainages begin where the first pose is said to be, and nothing else changes") {
+  const Found found = rail(60);
+  ConflictOptions options;
+  const Conflicts plain = conflicts_of(found, options);
+  for (const double start : {1234.5, -7.0}) {
+    options.chainage_start = start;
+    const Conflicts moved = conflicts_of(found, options);
+    REQUIRE(moved.listed.size() == plain.listed.size());
+    CHECK(moved.path_length == plain.path_length);
+    for (std::size_t i = 0; i < plain.listed.size(); ++i) {
+      CHECK(moved.listed[i].id == plain.listed[i].id);
+      CHECK(moved.listed[i].source == plain.listed[i].source);
+      CHECK(moved.listed[i].chainage_from == plain.listed[i].chainage_from + start);
+      CHECK(moved.listed[i].chainage_to == plain.listed[i].chainage_to + start);
+    }
+  }
+}
+
 TEST_CASE(
     "small groups are counted whole, and stretches of large ones listed whatever their size") {
   Found found = rail(26);
@@ -269,6 +287,14 @@ TEST_CASE("what cannot be grouped is refused") {
 
   ConflictOptions options;
   options.up = Axis::kMinusX;
+  CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
+  options = {};
+  for (const double split : {-1.0, 1e-308, 9e-10, std::nan(""), 1.0 / 0.0}) {
+    options.split = split;
+    CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
+  }
+  options = {};
+  options.chainage_start = 1.0 / 0.0;
   CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
   options = {};
   for (const double gap : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {

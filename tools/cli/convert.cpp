@@ -92,8 +92,8 @@ void log_report(const ConvertArguments& options, const ConvertReport& report) {
                  options.output.string());
     return;
   }
-  spdlog::info("{}: {} points in {} cells of {}, {} ({:.2f} bytes a point)",
-               options.output.string(), format_count(report.points), format_count(report.cells),
+  spdlog::info("{}: {} in {} of {}, {} ({:.2f} bytes a point)", options.output.string(),
+               counted(report.points, "point"), counted(report.cells, "cell"),
                format_count(options.conversion.cell_points), format_size(report.output_bytes),
                static_cast<double>(report.output_bytes) /
                    static_cast<double>(std::max<std::uint64_t>(1, report.points)));

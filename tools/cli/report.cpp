@@ -79,11 +79,10 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
 
 void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {
   const std::string conflicts = result.parameters().first_pose
-                                    ? format_count(summary.conflicts.listed.size()) + " conflicts"
+                                    ? counted(summary.conflicts.listed.size(), "conflict")
                                     : "conflicts are not known, as the result has no first poses";
-  spdlog::info("{}: {}, {} colliding points, {}, {}", options.output.string(),
-               summary.clear ? "clear" : "conflict", format_count(result.size()), conflicts,
-               format_size(summary.bytes));
+  spdlog::info("{}: {}, {}, {}, {}", options.output.string(), summary.clear ? "clear" : "conflict",
+               counted(result.size(), "colliding point"), conflicts, format_size(summary.bytes));
   spdlog::info("open it in a browser: it is one file and needs no network");
 }
 
@@ -101,7 +100,7 @@ void run_report(ReportCommand& options) {
   take_unit(unit, options);
   options.model_options.environment_unit = unit;
   for (const ParsedLength& length : options.classes) {
-    options.report.classes.push_back(length.has_unit ? length.value / unit : length.value);
+    options.report.classes.push_back(length.in_units_of(unit));
   }
   options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);

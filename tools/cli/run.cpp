@@ -21,7 +21,9 @@
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/system/pending_file.hpp"
+#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -131,16 +133,17 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
                  caveat(report));
     return;
   }
-  const std::string found =
-      fmt::format("{} of {} environment points collide", format_count(report.colliding_points),
-                  format_count(report.environment_points));
+  const std::string found = fmt::format("{} of {} {}", format_count(report.colliding_points),
+                                        counted(report.environment_points, "environment point"),
+                                        report.colliding_points == 1 ? "collides" : "collide");
   const std::string how =
       fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
   const bool doubtful = !report.warnings.empty();
   spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
   if (options.query.clearance > 0) {
-    spdlog::info("{} points are within the clearance of {} {}",
-                 format_count(report.clearance_points), options.query.clearance, unit);
+    spdlog::info("{} within the clearance of {} {}",
+                 counted(report.clearance_points, "point is", "points are"),
+                 options.query.clearance, unit);
   }
   if (doubtful) spdlog::info("{}{}", found, caveat(report));
 }
@@ -166,9 +169,10 @@ Store open_environment(const std::filesystem::path& path) {
   }
 }
 
+/// What follows a length; degrees are warned of, and count as metres here.
 std::string unit_of(const Store& store) {
-  const std::string unit = store.length_unit();
-  return unit == "foot" ? "ft" : unit == "us-survey-foot" ? "US ft" : "m";
+  const LengthUnit unit = length_unit_of(store.length_unit());
+  return symbol_of(unit == LengthUnit::kDegree ? LengthUnit::kMetre : unit);
 }
 
 Verdict read_verdict(const std::filesystem::path& output, const std::vector<Pose>& poses) {
@@ -207,7 +211,8 @@ bool run(RunOptions& options) {
     options.trajectory_options.environment_unit = *metres;
   }
   Answer answer;
-  const Query query = read_query(options, store, answer.labels);
+  const Query query =
+      in_threads(options.search.threads, [&] { return read_query(options, store, answer.labels); });
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();

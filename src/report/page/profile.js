@@ -22,6 +22,16 @@ function profileLength() {
   return Math.max(page.facts.inputs.trajectory.length, 1e-3);
 }
 
+/** The chainage of the first pose. */
+function profileStart() {
+  return page.facts.inputs.trajectory.chainage_start;
+}
+
+/** Where a stretch of the profile may begin. */
+function stretchStart(from, span) {
+  return profileStart() + clamp(from - profileStart(), 0, profileLength() - span);
+}
+
 /** Values at round steps from a to b. */
 function ticks(a, b, most) {
   const step = [1, 2, 5, 10].map((f) => f * 10 ** Math.floor(Math.log10((b - a) / most)))
@@ -168,16 +178,16 @@ function profileLabel() {
 
 function zoomProfile(factor, at) {
   const all = profileLength(), span = clamp((profile.to - profile.from) * factor, all / 5000, all);
-  const centre = at ?? page.poses.chainage[page.pose] ?? all / 2;
+  const centre = at ?? page.poses.chainage[page.pose] ?? profileStart() + all / 2;
   const share = clamp((centre - profile.from) / (profile.to - profile.from), 0, 1);
-  profile.from = clamp(centre - share * span, 0, all - span);
+  profile.from = stretchStart(centre - share * span, span);
   profile.to = profile.from + span;
   drawProfile();
 }
 
 function panProfile(metresAlong) {
   const span = profile.to - profile.from;
-  profile.from = clamp(profile.from + metresAlong, 0, profileLength() - span);
+  profile.from = stretchStart(profile.from + metresAlong, span);
   profile.to = profile.from + span;
   drawProfile();
 }
@@ -191,7 +201,7 @@ function chainageAt(svg, event) {
 
 function watchProfile(svg) {
   svg.addEventListener("pointermove", (event) => {
-    const chainage = clamp(chainageAt(svg, event), 0, profileLength());
+    const chainage = stretchStart(chainageAt(svg, event), 0);
     if (event.buttons & 1) {
       panProfile((profile.grip ?? chainage) - chainage);
     } else if (page.poses.count > 0) {

@@ -34,7 +34,7 @@ function moveProfileCursor() {
   if (page.poses.count === 0) return;
   const chainage = page.poses.chainage[page.pose], span = profile.to - profile.from;
   if (chainage < profile.from || chainage > profile.to) {
-    profile.from = clamp(chainage - span / 2, 0, profileLength() - span);
+    profile.from = stretchStart(chainage - span / 2, span);
     profile.to = profile.from + span;
     drawProfile();
     return;
@@ -51,8 +51,8 @@ function goToNearest() {
 }
 
 function buildProfile() {
-  profile.from = 0;
-  profile.to = profileLength();
+  profile.from = profileStart();
+  profile.to = profileStart() + profileLength();
   byId("profile-tools").append(
     button("Zoom in", () => zoomProfile(0.5)), button("Zoom out", () => zoomProfile(2)),
     button("All", () => zoomProfile(1e9)),

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "clearway/error.hpp"
 #include "cli/support/advice.hpp"
@@ -23,6 +24,16 @@
 namespace clearway::tool {
 namespace {
 
+/// Of CLI11's own messages the one that says too little.
+std::string failure_text(const CLI::App* program, const CLI::Error& error) {
+  constexpr std::string_view kOnce = ": At Most 1 required but received ";
+  std::string text = CLI::FailureMessage::simple(program, error);
+  const std::size_t at = text.find(kOnce);
+  if (at == std::string::npos) return text;
+  text.replace(at, kOnce.size(), ": given more than once; expected one, but there are ");
+  return text;
+}
+
 /// Help goes to standard output too: a disk that is full there is an error.
 int finish(const CLI::App& program, const CLI::ParseError& error) {
   if (program.exit(error) != 0) return kWrongUsage;
@@ -35,6 +46,7 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   program.set_version_flag("--version", CLEARWAY_VERSION);
   program.require_subcommand(1);
   int exit_code = kDone;
+  program.failure_message(failure_text);
   add_commands(program, exit_code);
   check_words(program, text.name, argc, argv);
   try {
