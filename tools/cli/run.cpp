@@ -172,7 +172,7 @@ Store open_environment(const std::filesystem::path& path) {
 /// What follows a length; degrees are warned of, and count as metres here.
 std::string unit_of(const Store& store) {
   const LengthUnit unit = length_unit_of(store.length_unit());
-  return symbol_of(unit == LengthUnit::kDegree ? LengthUnit::kMetre : unit);
+  return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
 }
 
 Verdict read_verdict(const std::filesystem::path& output, const std::vector<Pose>& poses) {

@@ -33,7 +33,7 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
          (!options.strict || found.point_count == found.input_points) &&
          (options.ignore_crs ||
-          (found.unit != LengthUnit::kDegree && units_of_wkt(found.crs_wkt).trouble.empty()));
+          (found.unit != LengthUnit::kDegrees && units_of_wkt(found.crs_wkt).trouble.empty()));
 }
 
 }  // namespace
