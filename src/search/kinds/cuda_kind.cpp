@@ -12,8 +12,11 @@
 namespace clearway {
 namespace {
 
-/// Small pages, many in flight: a page takes a reading thread about a millisecond.
 constexpr std::uint32_t kMostSlots = 64;
+/// Pages on the way to a device, on it and back, beside those that are read. A slot takes 4 ms to
+/// make, so that more of them cost more than they spare.
+constexpr std::uint32_t kPagesOnDevice = 8;
+/// Small pages, many in flight: a page takes a reading thread about a millisecond.
 constexpr std::uint32_t kPageCells = 16;
 /// A third of the usual voxel: a GPU has the bandwidth for a larger field, and fewer exact searches
 /// keep its warps together.
@@ -28,7 +31,8 @@ std::uint64_t usual_page_bytes(const StoreReader& store) {
 /// waiting: threads that wait for each device.
 PageEngineNeeds needs_of(const StoreReader& store, const SearchOptions& options,
                          const DeviceChoice& device, std::uint32_t waiting) {
-  return {.most_slots = kMostSlots,
+  const auto wanted = static_cast<std::uint32_t>(options.threads) + kPagesOnDevice;
+  return {.most_slots = waiting > 1 ? kMostSlots : std::min(kMostSlots, wanted),
           .page_cells = kPageCells,
           .page_bytes = usual_page_bytes(store),
           .threads = options.threads + static_cast<int>(device.gpus.size() * waiting),
