@@ -98,6 +98,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   cells_ = plan(store_, reach);
   index_seconds_ += indexed;
   plan_seconds_ += clock.seconds() - indexed;
+  kind_.resolve_devices();
   const std::uint64_t planned = planned_bytes();
   const std::uint64_t most_poses = most_poses_of(trees_.motion, cells_);
   for (const SlotLayout& layout : layouts(kind_.needs(), smallest_page_bytes(store_, cells_))) {

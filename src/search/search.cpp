@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -15,6 +16,7 @@
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
+#include "search/device_start.hpp"
 #include "search/devices.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/cuda_kind.hpp"
@@ -27,6 +29,9 @@
 
 namespace clearway {
 namespace {
+
+/// A GPU is not to be had, which has been told.
+struct NoGpu {};
 
 /// One call of search(), step by step.
 class Search {
@@ -43,6 +48,7 @@ class Search {
         header_(header()) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
     options_.engine = chosen_engine(options_);
+    if (!options_.started) options_.started = start_devices(options_);
   }
 
   SearchReport run() {
@@ -52,7 +58,7 @@ class Search {
       report_finished();
     } else {
       resolve_device();
-      publish(find());
+      publish(find());  // the engine has been taken down beside that
     }
     report_.seconds.total = total_.seconds();
     return std::move(report_);
@@ -119,15 +125,14 @@ class Search {
   }
 
   Found find() {
-    const DeviceChoice device = choose_device(options_, log_);
+    const bool gpu = may_take_gpus(options_);
     if (options_.threads == 0) options_.threads = tbb::this_task_arena::max_concurrency();
     check_threads(options_.threads);
     report_.engine = options_.engine;
     report_.searches = report_.poses * report_.model_points;
-    report_.seconds.context = device.context_seconds;
     Found found = options_.engine == Engine::kKdtree
                       ? search_kdtree(store_, query_, options_, open_journal(), progress_, report_)
-                      : find_on_pages(device);
+                      : find_on_pages(gpu);
     report_.resumed_cells = journal_.earlier().cells;
     report_.resumed_poses = journal_.earlier().poses;
     return found;
@@ -135,34 +140,51 @@ class Search {
 
   /// A GPU that was not asked for and proves too small, or fails, before the journal is open gives
   /// way to the CPU.
-  Found find_on_pages(const DeviceChoice& device) {
+  Found find_on_pages(bool gpu) {
+    if (!gpu) return find_on(Device::kCpu);
     try {
-      return find_on(device);
+      return find_on(Device::kCuda);
+    } catch (const NoGpu&) {
     } catch (const ResourceError& error) {
-      if (open_ != nullptr || !device.fallback_allowed) throw;
+      if (open_ != nullptr || !fallback_allowed(options_)) throw;
       log_.note(std::string("the CPU is taken: ") + error.what());
     }
-    return find_on({});
+    return find_on(Device::kCpu);
   }
 
-  Found find_on(const DeviceChoice& device) {
-    report_.device = device.is_cuda() ? Device::kCuda : Device::kCpu;
-    report_.device_name = device.name;
-    if (!device.fallback_allowed) open_journal();  // what is refused is so before it is planned
+  Found find_on(Device device) {
+    report_.device = device;
+    report_.device_name = DeviceChoice().name;
+    // What is refused is so before it is planned.
+    if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
     const std::unique_ptr<PageEngineKind> kind = kind_on(device);
     return search_pages(
         store_, query_, options_.memory_bytes, *kind,
         [this]() -> SearchJournal& { return open_journal(); }, progress_, report_, log_);
   }
 
-  std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] const DeviceChoice& device) const {
+  std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] Device device) {
 #ifdef CLEARWAY_CUDA
-    if (device.is_cuda()) return cuda_kind(store_, query_, options_, device);
+    if (device == Device::kCuda) {
+      return cuda_kind(store_, query_, options_, [this] { return open_gpus(); });
+    }
 #endif
     if (options_.engine == Engine::kGrid) {
       return std::make_unique<CpuGridKind>(store_, query_, options_);
     }
     return std::make_unique<CpuSweepKind>(store_, query_, options_);
+  }
+
+  /// Where the search needs them: they have been starting meanwhile. Throws NoGpu.
+  DeviceChoice open_gpus() {
+    const Stopwatch waiting;
+    options_.started->wait();
+    DeviceChoice choice = choose_device(options_, log_);
+    report_.seconds.context_wait = waiting.seconds();
+    report_.seconds.context = std::max(options_.started->seconds(), waiting.seconds());
+    if (!choice.is_cuda()) throw NoGpu();
+    report_.device_name = choice.name;
+    return choice;
   }
 
   SearchJournal& open_journal() {

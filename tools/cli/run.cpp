@@ -45,6 +45,7 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
   return {{"total", program.total_seconds},
           {"inputs", program.inputs_seconds},
           {"context", search.context},
+          {"context_wait", search.context_wait},
           {"thin", search.thin},
           {"plan", search.plan},
           {"field", search.field},
@@ -198,6 +199,8 @@ bool run(RunOptions& options) {
   watch_call(options.search, progress);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
+  options.search.end_gpus = true;
+  options.search.started = start_devices(options.search);
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
