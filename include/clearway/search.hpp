@@ -65,7 +65,8 @@ struct SearchSeconds {
   double plan = 0;
   double engine = 0;  ///< of making the engine with its slots
   double search = 0, read = 0, upload = 0, compute = 0, collect = 0;
-  double write = 0;  ///< of the result
+  double write = 0;     ///< of the result; beside it the GPUs' memory is given back
+  double end_wait = 0;  ///< of that, what came after the writing
 };
 
 /// Where the model comes closest to the environment.

@@ -58,7 +58,11 @@ class Search {
       report_finished();
     } else {
       resolve_device();
-      publish(find());  // the engine has been taken down beside that
+      Found found = find();
+      publish(found);
+      const Stopwatch ending;
+      found.engine_end.clear();
+      report_.seconds.end_wait = ending.seconds();
     }
     report_.seconds.total = total_.seconds();
     return std::move(report_);

@@ -55,7 +55,8 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"upload", search.upload},
           {"compute", search.compute},
           {"collect", search.collect},
-          {"write", search.write}};
+          {"write", search.write},
+          {"end_wait", search.end_wait}};
 }
 
 /// What the tolerance spared; null for an exact result.
