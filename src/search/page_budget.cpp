@@ -50,7 +50,7 @@ PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query
       asked_(asked),
       memory_bytes_(memory_bytes),
       kind_(kind),
-      trees_(searched),
+      trees_(searched, kind.needs().threads - kind.needs().waiting_threads),
       building_bytes_(tree_building_bytes(asked)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
                   search_result_bytes(store, asked)) {}

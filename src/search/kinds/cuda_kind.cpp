@@ -39,6 +39,7 @@ PageEngineNeeds needs_of(const StoreReader& store, const SearchOptions& options,
           .page_cells = kPageCells,
           .page_bytes = usual_page_bytes(store),
           .threads = options.threads + static_cast<int>(gpus * waiting),
+          .waiting_threads = static_cast<int>(gpus * waiting),
           .devices = static_cast<std::uint32_t>(gpus),
           .on_gpu = true};
 }

@@ -31,6 +31,7 @@ struct PageEngineNeeds {
   std::uint32_t page_cells = 1;  ///< the most cells of a page
   std::uint64_t page_bytes = 0;  ///< wanted; more where a cell needs it, less with little memory
   int threads = 1;               ///< that run the pipeline, those that wait for a device included
+  int waiting_threads = 0;       ///< of them, those that wait
   std::uint32_t devices = 1;     ///< engines that are made
   bool on_gpu = false;
   std::uint64_t most_device_bytes = 0;  ///< of each GPU, once resolved
