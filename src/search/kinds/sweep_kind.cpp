@@ -35,7 +35,8 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
                  ModelFieldOptions{.voxel = options_.field_voxel,
                                    .fineness = fineness_,
                                    .reach = std::max(query_.clearance, query_.profile),
-                                   .most_bytes = most_bytes},
+                                   .most_bytes = most_bytes,
+                                   .by_need = !needs_.on_gpu},
                  options_.threads);
   return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
 }
