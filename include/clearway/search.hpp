@@ -69,6 +69,11 @@ struct SearchSeconds {
   double end_wait = 0;  ///< of that, what came after the writing
 };
 
+/// Estimated seconds of answering, in which a GPU's start counts.
+struct DeviceEstimate {
+  double cpu = 0, cuda = 0;
+};
+
 /// Where the model comes closest to the environment.
 struct LeastDistance {
   double distance = 0;       ///< metres
@@ -88,8 +93,9 @@ struct SearchReport {
 
   Engine engine = Engine::kAuto;  ///< that searched
   Device device = Device::kCpu;
-  std::string device_name = "the CPU";  ///< for people
-  std::uint64_t searches = 0;           ///< pairs of pose and model point
+  std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
+  std::string device_name = "the CPU";     ///< for people
+  std::uint64_t searches = 0;              ///< pairs of pose and model point
   std::optional<ToleranceReport> tolerance;
   double field_voxel = 0, grid_cell = 0;  ///< metres, of what the engine built; 0: nothing
   std::uint64_t cells_total = 0, cells_read = 0, bytes_read = 0;
@@ -111,9 +117,12 @@ struct SearchReport {
 SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
                     const SearchOptions& options = {});
 
-/// Begins to start the GPUs that a search with these options may take, and returns at once: for
-/// callers that read large inputs first. Goes into SearchOptions::started.
-std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options);
+/// Begins to start the GPUs that a search with these options takes, and returns at once: for
+/// callers that read large inputs first. Goes into SearchOptions::started. Null where nothing is
+/// started: with device kAuto without the store, or where it has so few points that the CPU may be
+/// taken.
+std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options,
+                                                 const Store* store = nullptr);
 
 /// Throws what search() would throw before it looks at store, model and trajectory: for callers
 /// that read large inputs first. As search() does, it replaces a file OUTPUT.partial: see before

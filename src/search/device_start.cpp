@@ -1,13 +1,13 @@
 #include "search/device_start.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 
 #include "core/util/stopwatch.hpp"
 #include "search/check_query.hpp"
-
-#ifdef CLEARWAY_CUDA
-#include "gpu/devices.hpp"
-#endif
+#include "search/choice/device_estimate.hpp"
+#include "search/devices.hpp"
 
 namespace clearway {
 
@@ -41,7 +41,12 @@ double DeviceStart::seconds() const {
   return seconds;
 }
 
-std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options) {
+std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options, const Store* store) {
+  if (fallback_allowed(options)) {
+    const int threads =
+        options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+    if (store == nullptr || store->point_count() < surely_many_points(threads)) return nullptr;
+  }
   return std::make_shared<const DeviceStart>(options);
 }
 

@@ -10,12 +10,14 @@
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
+#include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
+#include "search/choice/device_estimate.hpp"
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
 #include "search/kdtree_search.hpp"
@@ -48,7 +50,7 @@ class Search {
         header_(header()) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
     options_.engine = chosen_engine(options_);
-    if (!options_.started) options_.started = start_devices(options_);
+    if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
   SearchReport run() {
@@ -129,9 +131,10 @@ class Search {
   }
 
   Found find() {
-    const bool gpu = may_take_gpus(options_);
     if (options_.threads == 0) options_.threads = tbb::this_task_arena::max_concurrency();
+    const bool gpu = gpu_pays() && may_take_gpus(options_);
     check_threads(options_.threads);
+    if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
     report_.engine = options_.engine;
     report_.searches = report_.poses * report_.model_points;
     Found found = options_.engine == Engine::kKdtree
@@ -140,6 +143,21 @@ class Search {
     report_.resumed_cells = journal_.earlier().cells;
     report_.resumed_poses = journal_.earlier().poses;
     return found;
+  }
+
+  /// By estimate, where neither device was asked for.
+  bool gpu_pays() {
+#ifdef CLEARWAY_CUDA
+    if (!fallback_allowed(options_) || options_.engine != Engine::kSweep) return true;
+    report_.estimate = estimate_devices(workload_of(store_, query_), query_, options_.threads);
+    const auto [cpu, cuda] = *report_.estimate;
+    if (cpu > cuda) return true;
+    log_.note("the CPU is taken: about " + format_brief(cpu) + " s there, " + format_brief(cuda) +
+              " s with a GPU's start");
+    return false;
+#else
+    return true;  // what is asked for in vain is refused later
+#endif
   }
 
   /// A GPU that was not asked for and proves too small, or fails, before the journal is open gives
@@ -247,32 +265,6 @@ class Search {
 };
 
 }  // namespace
-
-const char* name_of(Engine engine) {
-  switch (engine) {
-    case Engine::kSweep:
-      return "sweep";
-    case Engine::kGrid:
-      return "grid";
-    case Engine::kKdtree:
-      return "kdtree";
-    case Engine::kAuto:
-      break;
-  }
-  return "auto";
-}
-
-const char* name_of(Device device) {
-  switch (device) {
-    case Device::kCpu:
-      return "cpu";
-    case Device::kCuda:
-      return "cuda";
-    case Device::kAuto:
-      break;
-  }
-  return "auto";
-}
 
 void check_search(const QueryParameters& query, const std::filesystem::path& output,
                   const SearchOptions& options) {

@@ -78,6 +78,11 @@ nlohmann::ordered_json known(bool is_known, const Value& value) {
   return is_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+nlohmann::ordered_json estimate_of(const SearchReport& report) {
+  if (!report.estimate) return nullptr;
+  return {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
+}
+
 /// Of a result that was there already no engine searched: what only a search knows is null.
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
                                const Answer& answer, const ProgramReport& program) {
@@ -97,6 +102,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   add_verdict(answer.verdict, answer.labels, out);
   out["engine"] = known(searched, name_of(report.engine));
   out["device"] = known(searched, name_of(report.device));
+  out["device_estimate"] = estimate_of(report);
   out["searches"] = known(searched, report.searches);
   out["field_voxel"] = known(searched, report.field_voxel);
   out["grid_cell"] = known(searched, report.grid_cell);
@@ -205,6 +211,7 @@ bool run(RunOptions& options) {
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
+  if (!options.search.started) options.search.started = start_devices(options.search, &store);
   if (const auto metres = metres_of_unit(store.length_unit())) {
     options.lengths.convert(*metres);
     options.model_options.environment_unit = *metres;
