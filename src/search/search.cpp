@@ -148,8 +148,9 @@ class Search {
   /// By estimate, where neither device was asked for.
   bool gpu_pays() {
 #ifdef CLEARWAY_CUDA
-    if (!fallback_allowed(options_) || options_.engine != Engine::kSweep) return true;
-    report_.estimate = estimate_devices(workload_of(store_, query_), query_, options_.threads);
+    if (!fallback_allowed(options_) || options_.engine == Engine::kGrid) return true;
+    report_.estimate =
+        estimate_devices(workload_of(store_, query_), query_, options_.engine, options_.threads);
     const auto [cpu, cuda] = *report_.estimate;
     if (cpu > cuda) return true;
     log_.note("the CPU is taken: about " + format_brief(cpu) + " s there, " + format_brief(cuda) +

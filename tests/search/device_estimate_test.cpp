@@ -18,7 +18,7 @@ Workload work_of(double reached_points) {
 }
 
 bool pays(const Workload& work, const QueryParameters& query, int threads) {
-  const DeviceEstimate estimate = estimate_devices(work, query, threads);
+  const DeviceEstimate estimate = estimate_devices(work, query, Engine::kSweep, threads);
   return estimate.cuda < estimate.cpu;
 }
 

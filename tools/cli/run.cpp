@@ -78,7 +78,7 @@ nlohmann::ordered_json known(bool is_known, const Value& value) {
   return is_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json estimate_of(const SearchReport& report) {
+nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
   if (!report.estimate) return nullptr;
   return {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
 }
@@ -102,7 +102,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   add_verdict(answer.verdict, answer.labels, out);
   out["engine"] = known(searched, name_of(report.engine));
   out["device"] = known(searched, name_of(report.device));
-  out["device_estimate"] = estimate_of(report);
+  out["device_estimate"] = device_estimate_of(report);
   out["searches"] = known(searched, report.searches);
   out["field_voxel"] = known(searched, report.field_voxel);
   out["grid_cell"] = known(searched, report.grid_cell);

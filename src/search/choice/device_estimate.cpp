@@ -20,9 +20,13 @@ constexpr double kPointsPerCore = 13e6;
 
 }  // namespace
 
-DeviceEstimate estimate_devices(const Workload& work, const QueryParameters& query, int threads) {
+DeviceEstimate estimate_devices(const Workload& work, const QueryParameters& query, Engine engine,
+                                int threads) {
   const bool distances = query.clearance > 0 || query.profile > 0;
-  const double cpu = (distances ? kDistances : 1) * estimate_on_cpu(work, threads).sweep;
+  const CpuEstimate on_cpu = estimate_on_cpu(work, threads);
+  const bool may_be_kdtree = engine == Engine::kAuto && !distances;
+  const double set = may_be_kdtree ? std::min(on_cpu.sweep, on_cpu.kdtree) : on_cpu.sweep;
+  const double cpu = (distances ? kDistances : 1) * set;
   return {cpu, kStart + cpu * threads / kCores};
 }
 

@@ -6,8 +6,10 @@
 namespace clearway {
 
 /// Wall clock of answering on the CPU with so many threads, and on a GPU with its start and end.
-/// For choosing between them only. docs/design/pipeline.md says how its constants are measured.
-DeviceEstimate estimate_devices(const Workload& work, const QueryParameters& query, int threads);
+/// engine: that searches on the CPU, not the grid; kAuto: the faster one. For choosing only.
+/// docs/design/pipeline.md says how its constants are measured.
+DeviceEstimate estimate_devices(const Workload& work, const QueryParameters& query, Engine engine,
+                                int threads);
 
 /// Environment points from which on a GPU is started before the query is known. With fewer the CPU
 /// answers most queries before a GPU has started.
