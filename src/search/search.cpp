@@ -148,7 +148,8 @@ class Search {
   /// By estimate, where neither device was asked for.
   bool gpu_pays() {
 #ifdef CLEARWAY_CUDA
-    if (!fallback_allowed(options_) || options_.engine == Engine::kGrid) return true;
+    const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
+    if (!fallback_allowed(options_) || other) return true;
     report_.estimate =
         estimate_devices(workload_of(store_, query_), query_, options_.engine, options_.threads);
     const auto [cpu, cuda] = *report_.estimate;
