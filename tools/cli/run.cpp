@@ -47,6 +47,7 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
   return {{"total", program.total_seconds},
           {"inputs", program.inputs_seconds},
           {"context", search.context},
+          {"context_wait", search.context_wait},
           {"thin", search.thin},
           {"plan", search.plan},
           {"field", search.field},
@@ -56,7 +57,8 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"upload", search.upload},
           {"compute", search.compute},
           {"collect", search.collect},
-          {"write", search.write}};
+          {"write", search.write},
+          {"end_wait", search.end_wait}};
 }
 
 /// What the tolerance spared; null for an exact result.
@@ -78,6 +80,11 @@ nlohmann::ordered_json known(bool is_known, const Value& value) {
   return is_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
+  if (!report.estimate) return nullptr;
+  return {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
+}
+
 /// Of a result that was there already no engine searched: what only a search knows is null.
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
                                const Answer& answer, const ProgramReport& program) {
@@ -97,6 +104,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   add_verdict(answer.verdict, answer.labels, out);
   out["engine"] = known(searched, name_of(report.engine));
   out["device"] = known(searched, name_of(report.device));
+  out["device_estimate"] = device_estimate_of(report);
   out["searches"] = known(searched, report.searches);
   out["field_voxel"] = known(searched, report.field_voxel);
   out["grid_cell"] = known(searched, report.grid_cell);
@@ -202,9 +210,12 @@ bool run(RunOptions& options) {
   watch_call(options.search, progress);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
+  options.search.end_gpus = true;
+  options.search.started = start_devices(options.search);
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
+  if (!options.search.started) options.search.started = start_devices(options.search, &store);
   if (const auto metres = metres_of_unit(store.length_unit())) {
     options.lengths.convert(*metres);
     options.model_options.environment_unit = *metres;

@@ -46,48 +46,54 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
            .profile = query.profile,
            .rounding = rounding_of(query, motion, field, cloud),
            .first_pose = query.first_pose,
-           .between_poses = query.between_poses} {
+           .between_poses = query.between_poses},
+      for_plan_(ref_) {
+  for_plan_.field = field.ref_as_made();
   if (query.clearance > 0) first_equal_pose_ = first_equal_poses(query.poses);
 }
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
-  narrow(box, nodes, 0, out, statistics);
+  narrow(ref_, box, nodes, 0, out, statistics);
 }
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out) const {
   SweepStatistics not_counted;
-  narrow(box, nodes, ref_.profile * kRoundedUp, out, not_counted);
+  narrow(for_plan_, box, nodes, ref_.profile * kRoundedUp, out, not_counted);
 }
 
 /// at_least: a distance within which every pose matters.
-void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes, double at_least,
-                         std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+void SweepFilter::narrow(const SweepRef& ref, const Box& box, std::span<const std::uint32_t> nodes,
+                         double at_least, std::vector<std::uint32_t>& out,
+                         SweepStatistics& statistics) {
   out.clear();
   const Vec3 centre = centre_of(box);
   const double rho = half_diagonal(box);
   const double limit = std::max(
-      at_least, ref_.clearance > 0
-                    ? ref_.clearance_limit(centre, rho, nodes.data(),
-                                           static_cast<std::uint32_t>(nodes.size()), statistics)
-                    : ref_.radius);
-  for (const std::uint32_t node : nodes) narrow_node(centre, rho, limit, node, out, statistics);
+      at_least, ref.clearance > 0
+                    ? ref.clearance_limit(centre, rho, nodes.data(),
+                                          static_cast<std::uint32_t>(nodes.size()), statistics)
+                    : ref.radius);
+  for (const std::uint32_t node : nodes) {
+    narrow_node(ref, centre, rho, limit, node, out, statistics);
+  }
 }
 
-void SweepFilter::narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t index,
-                              std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+void SweepFilter::narrow_node(const SweepRef& ref, const Vec3& centre, double rho, double limit,
+                              std::uint32_t index, std::vector<std::uint32_t>& out,
+                              SweepStatistics& statistics) {
   ++statistics.node_tests;
-  const MotionNode& node = motion_.nodes()[index];
-  switch (ref_.classify_box(node, centre, rho, limit)) {
+  const MotionNode& node = ref.motion.nodes[index];
+  switch (ref.classify_box(node, centre, rho, limit)) {
     case SweepRef::BoxClass::kDismissed:
       return;
     case SweepRef::BoxClass::kKept:
       out.push_back(index);
       return;
     case SweepRef::BoxClass::kSplit:
-      narrow_node(centre, rho, limit, index + 1, out, statistics);
-      narrow_node(centre, rho, limit, node.later, out, statistics);
+      narrow_node(ref, centre, rho, limit, index + 1, out, statistics);
+      narrow_node(ref, centre, rho, limit, node.later, out, statistics);
   }
 }
 

@@ -51,10 +51,11 @@ class SweepFilter final : public PoseReach {
                            SweepStatistics& statistics) const;
 
  private:
-  void narrow(const Box& box, std::span<const std::uint32_t> nodes, double at_least,
-              std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
-  void narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t node,
-                   std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
+  static void narrow(const SweepRef& ref, const Box& box, std::span<const std::uint32_t> nodes,
+                     double at_least, std::vector<std::uint32_t>& out, SweepStatistics& statistics);
+  static void narrow_node(const SweepRef& ref, const Vec3& centre, double rho, double limit,
+                          std::uint32_t node, std::vector<std::uint32_t>& out,
+                          SweepStatistics& statistics);
   SweepRef::Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                          double& squared_lower) const;
   bool touches_below(const Vec3& e, std::uint32_t node, SweepStatistics& statistics) const;
@@ -65,6 +66,7 @@ class SweepFilter final : public PoseReach {
   const MotionTree& motion_;
   const ModelTree& model_;
   SweepRef ref_;
+  SweepRef for_plan_;  ///< makes no bricks: cells are too large to need them
   std::vector<std::uint32_t> first_equal_pose_;
 };
 

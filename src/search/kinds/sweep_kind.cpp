@@ -5,6 +5,7 @@
 #include "core/sweep/tolerance.hpp"
 #include "core/util/format.hpp"
 #include "cpu/sweep_engine.hpp"
+#include "search/choice/field_fineness.hpp"
 
 namespace clearway {
 namespace {
@@ -33,11 +34,19 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
   field_.reset();
   field_.emplace(trees.model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
-                                   .fineness = fineness_,
+                                   .fineness = fineness_for(trees.model),
                                    .reach = std::max(query_.clearance, query_.profile),
-                                   .most_bytes = most_bytes},
+                                   .most_bytes = most_bytes,
+                                   .by_need = !needs_.on_gpu},
                  options_.threads);
   return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
+}
+
+/// Coarser for a small question. Not with a tolerance, whose result depends on the field; and other
+/// modes ask more of it.
+double SweepKind::fineness_for(const ModelTree& model) const {
+  if (query_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
+  return fineness_ * field_fineness(workload_of(store_, query_), model.spacing());
 }
 
 void SweepKind::report_index(SearchReport& report, const MessageLog& log) const {

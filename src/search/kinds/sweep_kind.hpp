@@ -38,6 +38,8 @@ class SweepKind : public PageEngineKind {
   std::optional<SweepFilter> filter_;
 
  private:
+  double fineness_for(const ModelTree& model) const;
+
   double fineness_;
 };
 

@@ -178,8 +178,8 @@ TEST_CASE("run --json prints one object with all that was asked for") {
     CAPTURE(key);
     CHECK(report.contains(key));
   }
-  for (const char* key :
-       {"total", "context", "plan", "field", "read", "upload", "compute", "write"}) {
+  for (const char* key : {"total", "context", "context_wait", "plan", "field", "read", "upload",
+                          "compute", "write", "end_wait"}) {
     CAPTURE(key);
     CHECK(report["seconds"][key].is_number());
   }

@@ -3,7 +3,6 @@
 #include <malloc.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
-#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
@@ -61,7 +60,6 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
 void prepare_process() {
   start_log();
   hdf5::silence_for_good();
-  ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);  // pages on many streams do not wait in line
   install_map_fault_handler(kResource);
   ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error like a full disk
   ::signal(SIGPIPE, SIG_IGN);  // and so is a pipe that nobody reads
