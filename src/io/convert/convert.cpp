@@ -119,7 +119,7 @@ class Conversion {
     const Lattice lattice = lattice_for(options_, environment.quantisation());
     InputSurvey survey;
     CountedEnvironment counted =
-        count_environment(environment, lattice, survey, threads_, progress_);
+        count_environment(environment, lattice, survey, threads_, clocks_, progress_);
     fill_metadata(environment, counted, sources.get());
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
@@ -130,7 +130,7 @@ class Conversion {
     PlaceCounter places(survey.places.suspects());
     const Distribution distribution =
         distribute(environment, counted.points_hash, lattice, tree, places, folder_, kBufferBytes,
-                   threads_, progress_);
+                   threads_, clocks_, progress_);
     environment.refuse_changed();  // the sources' hashes too are of what was converted
     report_.largest_change = environment.largest_change();
     report_.temporary_bytes = counted.points * sizeof(DistributedPoint);
@@ -207,12 +207,20 @@ class Conversion {
     StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
     const std::size_t units_in_flight = std::min<std::size_t>(
         bytes_for_units() / kUnitBytes, static_cast<std::size_t>(threads_) + 1);
-    write_cells(distribution, tree, lattice, report_.metadata, units_in_flight, writer, progress_);
+    write_cells(distribution, tree, lattice, report_.metadata, units_in_flight, writer, clocks_,
+                progress_);
     report_.partition_seconds = watch_.lap();
-    writer.finish(top);
-    output_.publish();
+    {
+      const auto running = clocks_.measure(Stage::kConfirm);
+      writer.finish(top);
+    }
+    {
+      const auto running = clocks_.measure(Stage::kSync);
+      output_.publish();
+    }
     report_.output_bytes = std::filesystem::file_size(options_.output);
     report_.confirm_seconds = watch_.lap();
+    report_.busy_seconds = clocks_.seconds();
   }
 
   const ConversionOptions& options_;
@@ -222,6 +230,7 @@ class Conversion {
   PendingFile output_;
   ConversionReport report_;
   MessageLog log_{options_.message, report_.warnings};
+  StageClocks clocks_;
   Stopwatch watch_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "io/convert/count/count.hpp"
 #include "io/convert/points_hash.hpp"
 
 namespace clearway {
@@ -110,7 +111,8 @@ class RegionWriter {
 
 /// Reads batches into the hash, groups several at a time, and writes them in their order.
 void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper& group,
-                PlaceCounter& places, RegionWriter& writer, int threads, Progress& progress) {
+                PlaceCounter& places, RegionWriter& writer, int threads, StageClocks& clocks,
+                Progress& progress) {
   using Batch = std::shared_ptr<QuantaBatch>;
   using Grouped = std::shared_ptr<GroupedBatch>;
   const ParallelScope scope;
@@ -118,7 +120,8 @@ void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper&
   const auto read = piece_of(scope, input, [&](tbb::flow_control& flow) {
     throw_if_stopped(progress);
     auto batch = std::make_shared<QuantaBatch>();
-    if (environment.read(*batch)) {
+    if (read_measured(environment, *batch, clocks)) {
+      const auto running = clocks.measure(Stage::kHash);
       hash.add(*batch);
     } else {
       flow.stop();
@@ -126,10 +129,12 @@ void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper&
     return batch;
   });
   const auto grouped = piece_of(scope, [&](const Batch& batch) {
+    const auto running = clocks.measure(Stage::kGroup);
     places.add(*batch);
     return std::make_shared<GroupedBatch>(group(*batch));
   });
   const auto write = piece_of(scope, output, [&](const Grouped& batch) {
+    const auto running = clocks.measure(Stage::kDistribute);
     writer.append(*batch);
     progress.advance(batch->points.size());
   });
@@ -147,7 +152,7 @@ void run_stages(EnvironmentSource& environment, PointsHash& hash, const Grouper&
 Distribution distribute(EnvironmentSource& environment, std::uint64_t points_hash,
                         const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                         const std::filesystem::path& temporary_folder, std::uint64_t buffer_bytes,
-                        int threads, Progress& progress) {
+                        int threads, StageClocks& clocks, Progress& progress) {
   Distribution out{File::create_temporary(temporary_folder), {0}};
   for (const std::uint32_t node : tree.units()) {
     out.first.push_back(out.first.back() + tree.nodes()[node].count);
@@ -163,7 +168,7 @@ Distribution distribute(EnvironmentSource& environment, std::uint64_t points_has
 
   progress.begin("distribute", points, "points");
   environment.rewind();
-  run_stages(environment, hash, group, places, writer, threads, progress);
+  run_stages(environment, hash, group, places, writer, threads, clocks, progress);
   writer.finish();
   if (hash.digest(environment.input_points()) != points_hash) refuse_change(environment);
   progress.end();

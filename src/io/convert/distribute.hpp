@@ -8,6 +8,7 @@
 #include "io/convert/checks/same_place.hpp"
 #include "io/convert/inputs/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
+#include "io/convert/stage_clocks.hpp"
 #include "io/system/file.hpp"
 
 namespace clearway {
@@ -33,6 +34,6 @@ struct Distribution {
 Distribution distribute(EnvironmentSource& environment, std::uint64_t points_hash,
                         const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                         const std::filesystem::path& temporary_folder, std::uint64_t buffer_bytes,
-                        int threads, Progress& progress);
+                        int threads, StageClocks& clocks, Progress& progress);
 
 }  // namespace clearway

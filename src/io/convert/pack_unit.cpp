@@ -16,10 +16,11 @@ namespace {
 /// The points of a unit: as loaded (in source order) and as they are put in order.
 class Unit {
  public:
-  Unit(const Distribution& distribution, std::size_t unit)
+  Unit(const Distribution& distribution, std::size_t unit, StageClocks& clocks)
       : loaded_(distribution.first[unit + 1] - distribution.first[unit]),
         points_(loaded_.size()),
         scratch_(loaded_.size()) {
+    const auto running = clocks.measure(Stage::kLoad);
     distribution.file.read_at(distribution.first[unit] * sizeof(DistributedPoint),
                               std::as_writable_bytes(std::span(loaded_)));
     for (std::size_t i = 0; i < loaded_.size(); ++i) {
@@ -110,6 +111,7 @@ class UnitBuckets {
 }  // namespace
 
 struct OrderedUnit::State {
+  StageClocks& clocks;
   Unit unit;
   std::uint32_t cell_points;
   std::vector<std::span<const BucketPoint>> cells;
@@ -118,14 +120,14 @@ struct OrderedUnit::State {
 
 OrderedUnit::OrderedUnit(const Distribution& distribution, std::size_t unit, const SplitTree& tree,
                          const Lattice& lattice, const Quantisation& quantisation,
-                         std::uint32_t cell_points)
-    : state_(new State{Unit(distribution, unit), cell_points, {}}) {
+                         std::uint32_t cell_points, StageClocks& clocks)
+    : state_(new State{clocks, Unit(distribution, unit, clocks), cell_points, {}}) {
   Unit& loaded = state_->unit;
   for (const std::span<BucketPoint> bucket :
        UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
     const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
     order_bucket(bucket, loaded.scratch().subspan(first, bucket.size()), cell_points,
-                 quantisation.scale);
+                 quantisation.scale, clocks);
     for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
       state_->cells.emplace_back(
           bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
@@ -145,6 +147,7 @@ std::vector<PackedCell> OrderedUnit::pack_next() {
   {
     const ParallelScope scope;
     const auto pack = piece_of(scope, [&](std::size_t i) {
+      const auto running = state.clocks.measure(Stage::kPack);
       packed[i] = pack_cell(state.unit, state.cells[first + i], state.cell_points);
     });
     scope.begin();

@@ -6,6 +6,7 @@
 
 #include "io/convert/distribute.hpp"
 #include "io/convert/split_tree.hpp"
+#include "io/convert/stage_clocks.hpp"
 #include "io/store/store_writer.hpp"
 
 namespace clearway {
@@ -19,7 +20,8 @@ inline constexpr std::uint64_t kUnitBytes = kBucketPoints * 72;
 class OrderedUnit {
  public:
   OrderedUnit(const Distribution& distribution, std::size_t unit, const SplitTree& tree,
-              const Lattice& lattice, const Quantisation& quantisation, std::uint32_t cell_points);
+              const Lattice& lattice, const Quantisation& quantisation, std::uint32_t cell_points,
+              StageClocks& clocks);
   ~OrderedUnit();
 
   /// The next cells, with padding at most kBucketPoints points but at least a cell; empty at the

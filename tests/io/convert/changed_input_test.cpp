@@ -97,11 +97,12 @@ TEST_CASE("points are distributed only where they are those that were counted") 
   const Lattice lattice;
   InputSurvey survey;
   PlaceCounter places({});
-  CountedEnvironment counted = count_environment(environment, lattice, survey, 1, progress);
+  StageClocks clocks;
+  CountedEnvironment counted = count_environment(environment, lattice, survey, 1, clocks, progress);
   const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
   const auto distribute_again = [&] {
     return distribute(environment, counted.points_hash, lattice, tree, places, scans.folder / "",
-                      1 << 20, 2, progress);
+                      1 << 20, 2, clocks, progress);
   };
   CHECK(distribute_again().first == std::vector<std::uint64_t>{0, 2000});
   put_bytes(scans.second, bytes_of(scans.other));

@@ -20,18 +20,19 @@ constexpr std::size_t kMostSubBins = 1 << 10;  // of one overfull bin
 constexpr unsigned kSourceShift = 20;          // coinciding points: ranges of 2^20 source indices
 
 std::vector<Bin> count_bins(EnvironmentSource& environment, const Lattice& lattice, int threads,
-                            PointsHash& hash, InputSurvey& survey, std::uint64_t& points,
-                            Progress& progress) {
+                            StageClocks& clocks, PointsHash& hash, InputSurvey& survey,
+                            std::uint64_t& points, Progress& progress) {
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
   for_each_batch(
-      environment, threads, progress,
+      environment, threads, clocks, progress,
       [&](const QuantaBatch& batch) {
         hash.add(batch);
         survey.places.add(batch);
         points += batch.quanta.size();
       },
       [&](const QuantaBatch& batch) {
+        const auto running = clocks.measure(Stage::kCount);
         survey.boxes.add(batch);
         BinCounter& counter = counters.local();
         for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
@@ -99,13 +100,15 @@ class Refinement {
 
 /// Replaces the overfull bins of `bins` by finer ones; one more pass over the input.
 void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
-            const SplitTree& tree, std::vector<Bin>& bins, Progress& progress) {
+            StageClocks& clocks, const SplitTree& tree, std::vector<Bin>& bins,
+            Progress& progress) {
   tbb::enumerable_thread_specific<Refinement> counters(
       [&tree] { return Refinement(tree.overfull()); });
   environment.rewind();
   for_each_batch(
-      environment, threads, progress, [](const QuantaBatch&) {},
+      environment, threads, clocks, progress, [](const QuantaBatch&) {},
       [&](const QuantaBatch& batch) {
+        const auto running = clocks.measure(Stage::kCount);
         Refinement& counter = counters.local();
         for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
           const LatticePoint point = lattice(batch.quanta[i], batch.source(i));
@@ -124,7 +127,13 @@ void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
 
 }  // namespace
 
-void for_each_batch(EnvironmentSource& environment, int threads, const Progress& progress,
+bool read_measured(EnvironmentSource& environment, QuantaBatch& batch, StageClocks& clocks) {
+  const auto running = clocks.measure(Stage::kRead);
+  return environment.read(batch);
+}
+
+void for_each_batch(EnvironmentSource& environment, int threads, StageClocks& clocks,
+                    const Progress& progress,
                     const std::function<void(const QuantaBatch&)>& in_order,
                     const std::function<void(const QuantaBatch&)>& work) {
   using Batch = std::shared_ptr<QuantaBatch>;
@@ -133,7 +142,8 @@ void for_each_batch(EnvironmentSource& environment, int threads, const Progress&
   const auto read = piece_of(scope, input, [&](tbb::flow_control& flow) {
     auto batch = std::make_shared<QuantaBatch>();
     throw_if_stopped(progress);
-    if (environment.read(*batch)) {
+    if (read_measured(environment, *batch, clocks)) {
+      const auto running = clocks.measure(Stage::kHash);
       in_order(*batch);
     } else {
       flow.stop();
@@ -149,12 +159,14 @@ void for_each_batch(EnvironmentSource& environment, int threads, const Progress&
 }
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
-                                     InputSurvey& survey, int threads, Progress& progress) {
+                                     InputSurvey& survey, int threads, StageClocks& clocks,
+                                     Progress& progress) {
   CountedEnvironment counted;
   PointsHash hash(environment.quantisation());
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  counted.bins = count_bins(environment, lattice, threads, hash, survey, counted.points, progress);
+  counted.bins =
+      count_bins(environment, lattice, threads, clocks, hash, survey, counted.points, progress);
   counted.input_points = environment.input_points();
   counted.points_hash = hash.digest(counted.input_points);
   progress.end();
@@ -162,7 +174,7 @@ CountedEnvironment count_environment(EnvironmentSource& environment, const Latti
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     if (tree.overfull().empty()) return counted;
     progress.begin("refine", counted.points, "points");
-    refine(environment, lattice, threads, tree, counted.bins, progress);
+    refine(environment, lattice, threads, clocks, tree, counted.bins, progress);
     progress.end();
   }
 }
