@@ -34,7 +34,7 @@ void write_unit(UnitInFlight& unit, StoreWriter& writer, StageClocks& clocks, Pr
 
 }  // namespace
 
-void write_cells(const Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
+void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
                  StageClocks& clocks, Progress& progress) {
   using Flying = std::shared_ptr<UnitInFlight>;
