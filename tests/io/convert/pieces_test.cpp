@@ -71,7 +71,7 @@ TEST_CASE("a store tells sizes and hashes of files read in pieces and of others"
 }
 
 TEST_CASE("points wait in memory where they fit and else in files and the store is the same") {
-  constexpr std::size_t kPoints = 700'000;
+  constexpr std::size_t kPoints = 1'000'000;
   const ScratchFolder folder;
   write_las(folder / "a.las", cube_cloud(kPoints, -5000, 5000, 1));
   auto options = conversion_of({folder / "a.las"}, folder / "s.h5", 1000);

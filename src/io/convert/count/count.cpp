@@ -27,7 +27,7 @@ std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice,
   for_each_batch<Nothing>(
       pass,
       [&](const QuantaBatch& batch) {
-        const auto running = pass.clocks.measure(Stage::kCount);
+        const auto running = pass.clocks().measure(Stage::kCount);
         survey.boxes.add(batch);
         BinCounter& counter = counters.local();
         for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
@@ -108,7 +108,7 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
   for_each_batch<Nothing>(
       pass,
       [&](const QuantaBatch& batch) {
-        const auto running = pass.clocks.measure(Stage::kCount);
+        const auto running = pass.clocks().measure(Stage::kCount);
         Refinement& counter = counters.local();
         for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
           const LatticePoint point = lattice(batch.quanta[i], batch.source(i));
