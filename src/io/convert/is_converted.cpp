@@ -47,7 +47,7 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
   if (!store || !would_make(options, store->metadata())) return false;
   std::vector<std::filesystem::path> files = list_point_files(options.inputs);
   if (options.skip_unreadable) files = readable_files(files, {}, progress).files;
-  SourceDescription sources(with_pose_files(files), progress);
+  SourceDescription sources(with_pose_files(files), {}, progress);
   if (sources.get() != store->metadata().sources) return false;
   const std::vector<std::string> faults = verify_store(*store, progress, 1);
   if (faults.empty()) return true;

@@ -51,6 +51,10 @@ File File::open_regular(const std::filesystem::path& path) {
   return file;
 }
 
+File File::open_for_writing(const std::filesystem::path& path) {
+  return {checked_open(path, O_RDWR | O_NOFOLLOW, "open"), path.string()};
+}
+
 File File::create(const std::filesystem::path& path) {
   return {checked_open(path, O_RDWR | O_CREAT | O_TRUNC | O_NOFOLLOW, "create"), path.string()};
 }

@@ -15,6 +15,8 @@ class File {
   static File open_for_reading(const std::filesystem::path& path);
   /// Refuses what is no regular file, such as a pipe, at once instead of waiting for its bytes.
   static File open_regular(const std::filesystem::path& path);
+  /// An existing file, whose bytes stay.
+  static File open_for_writing(const std::filesystem::path& path);
   /// Creates the file or empties an existing one.
   static File create(const std::filesystem::path& path);
   /// A file without a name in `folder`, gone when closed or when the process dies.
