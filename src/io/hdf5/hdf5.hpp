@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -162,6 +163,11 @@ class Rows {
 
   std::uint64_t rows() const { return rows_; }
   void write(std::uint64_t first_row, std::span<const Number> values);
+  /// Makes the index of a dataset with rows, as the first write() does. For write_chunk().
+  void make_index();
+  /// A whole chunk as stored_chunk.hpp has it, to where the file ends now. After make_index(), for
+  /// all chunks, and without write().
+  void write_chunk(std::uint64_t first_row, std::span<const std::byte> chunk);
   /// After the last write, which may fail as late as here.
   void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;

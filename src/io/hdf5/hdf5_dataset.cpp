@@ -1,26 +1,26 @@
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <tuple>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "io/hdf5/hdf5_detail.hpp"
+#include "io/hdf5/stored_chunk.hpp"
 
 namespace clearway::hdf5 {
 namespace {
 
-constexpr hsize_t kChunkBytes = 1 << 18;
+constexpr hsize_t kChunkBytes = 1 << 18;  // the most
 
-/// Chunked with fletcher32 by a power of two of rows, at most kChunkBytes, so that row ranges of
-/// 2^16 end at the ends of chunks whatever the columns; an empty dataset has no chunks.
+constexpr std::uint32_t kAllFilters = 0;  // a mask of those that were left out
+
+/// Chunked with fletcher32; an empty dataset has no chunks.
 Id checked_layout(std::uint64_t rows, std::uint64_t columns, std::size_t number_bytes) {
   Id list = untimed(H5P_DATASET_CREATE);
   if (rows == 0) return list;
   const std::uint64_t row_bytes = std::max<std::uint64_t>(columns, 1) * number_bytes;
-  const std::uint64_t chunk_rows =
-      std::min(rows, std::bit_floor(std::max<std::uint64_t>(1, kChunkBytes / row_bytes)));
-  const std::array<hsize_t, 2> chunk{chunk_rows, std::max<std::uint64_t>(columns, 1)};
+  const std::array<hsize_t, 2> chunk{rows_of_chunk(rows, row_bytes),
+                                     std::max<std::uint64_t>(columns, 1)};
   check(H5Pset_chunk(list.get(), columns == 0 ? 1 : 2, chunk.data()), "HDF5 chunk size");
   check(H5Pset_fletcher32(list.get()), "HDF5 fletcher32");
   return list;
@@ -167,6 +167,20 @@ void Rows<Number>::write(std::uint64_t first_row, std::span<const Number> values
   const Id space = select(first_row, values.size() / std::max<std::uint64_t>(columns_, 1), memory);
   check(H5Dwrite(dataset_.get(), memory_type<Number>(), memory.get(), space.get(), H5P_DEFAULT,
                  values.data()),
+        "write dataset " + name_);
+}
+
+template <typename Number>
+void Rows<Number>::make_index() {
+  const std::vector<Number> row(std::max<std::uint64_t>(columns_, 1));
+  write(0, row);
+}
+
+template <typename Number>
+void Rows<Number>::write_chunk(std::uint64_t first_row, std::span<const std::byte> chunk) {
+  const std::array<hsize_t, 2> at{first_row, 0};
+  check(H5Dwrite_chunk(dataset_.get(), H5P_DEFAULT, kAllFilters, at.data(), chunk.size(),
+                       chunk.data()),
         "write dataset " + name_);
 }
 

@@ -10,6 +10,7 @@
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "io/result/encoded_rows.hpp"
 
 namespace clearway {
 
@@ -44,6 +45,10 @@ struct ResultHeader : QueryParameters {
 /// first, then clearances, then the profile. All append functions throw std::logic_error for rows
 /// out of this order, more rows than promised, sources that do not ascend (but in the profile) and
 /// spans of unequal lengths. A failing disk throws ResourceError.
+///
+/// Instead of appending rows, threads may encode them kEncodedRows at a time, fewer only at the
+/// end of a table. These are then hashed in order, and written in order, one at a time each; one
+/// thread may hash while another writes.
 class ResultWriter {
  public:
   /// The profile has a row a pose.
@@ -60,6 +65,15 @@ class ResultWriter {
   /// The next poses' rows, as Profile has them. Only where the header asks for a profile.
   void append_profile(std::span<const double> distance, std::span<const std::uint64_t> source,
                       std::span<const Vec3> xyz, std::span<const double> chainage);
+
+  /// To be filled and sealed. Thread safe.
+  EncodedCollisions new_collisions() const;
+  EncodedClearances new_clearances() const;
+  void hash(const EncodedCollisions& rows);
+  void hash(const EncodedClearances& rows);
+  void write(EncodedCollisions& rows);
+  void write(EncodedClearances& rows);
+
   /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
   void finish();
 

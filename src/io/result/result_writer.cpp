@@ -22,26 +22,6 @@ constexpr ClearanceTable::Names kClearanceColumns{names::kSource, names::kXyz, n
 constexpr ProfileTable::Names kProfileColumns{names::kDistance, names::kSource, names::kXyz,
                                               names::kChainage};
 
-/// Sources so far.
-class AscendingSources {
- public:
-  void check(std::span<const std::uint64_t> source) const {
-    std::optional<std::uint64_t> last = last_;
-    for (const std::uint64_t index : source) {
-      if (last && index <= *last) {
-        throw std::logic_error("ResultWriter: rows not ascending by source");
-      }
-      last = index;
-    }
-  }
-  void add(std::span<const std::uint64_t> source) {
-    if (!source.empty()) last_ = source.back();
-  }
-
- private:
-  std::optional<std::uint64_t> last_;
-};
-
 }  // namespace
 
 struct ResultWriter::State {
@@ -75,7 +55,6 @@ struct ResultWriter::State {
   std::optional<CollisionTable> collisions;
   std::optional<ClearanceTable> clearances;
   std::optional<ProfileTable> profile;
-  AscendingSources collision_sources, clearance_sources;
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
@@ -92,9 +71,7 @@ ResultWriter::~ResultWriter() {
 void ResultWriter::append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
                           std::span<const std::uint32_t> first_pose) {
   State& s = *state_;
-  s.collision_sources.check(source);
   hdf5::naming(s.name, [&] { s.collisions->append(source, xyz, first_pose); });
-  s.collision_sources.add(source);
 }
 
 void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
@@ -102,10 +79,8 @@ void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
                                      std::span<const std::uint32_t> pose) {
   State& s = *state_;
   if (!s.clearances) throw std::logic_error("ResultWriter: no clearances");
-  s.clearance_sources.check(source);
   s.complete(s.collisions);
   hdf5::naming(s.name, [&] { s.clearances->append(source, xyz, distance, pose); });
-  s.clearance_sources.add(source);
 }
 
 void ResultWriter::append_profile(std::span<const double> distance,
@@ -118,6 +93,26 @@ void ResultWriter::append_profile(std::span<const double> distance,
   hdf5::naming(s.name, [&] { s.profile->append(distance, source, xyz, chainage); });
 }
 
+EncodedCollisions ResultWriter::new_collisions() const { return state_->collisions->new_rows(); }
+
+EncodedClearances ResultWriter::new_clearances() const {
+  if (!state_->clearances) throw std::logic_error("ResultWriter: no clearances");
+  return state_->clearances->new_rows();
+}
+
+void ResultWriter::hash(const EncodedCollisions& rows) { state_->collisions->hash(rows); }
+void ResultWriter::hash(const EncodedClearances& rows) { state_->clearances->hash(rows); }
+
+void ResultWriter::write(EncodedCollisions& rows) {
+  hdf5::naming(state_->name, [&] { state_->collisions->write(rows); });
+}
+
+void ResultWriter::write(EncodedClearances& rows) {
+  State& s = *state_;
+  s.complete(s.collisions);
+  hdf5::naming(s.name, [&] { s.clearances->write(rows); });
+}
+
 void ResultWriter::finish() {
   State& s = *state_;
   s.complete(s.collisions);
@@ -128,6 +123,9 @@ void ResultWriter::finish() {
     if (s.clearances) hdf5::write_number(s.file, names::kClearanceHash, s.clearances->hash());
     if (s.profile) hdf5::write_number(s.file, names::kProfileHash, s.profile->hash());
     hdf5::write_number(s.file, "complete", std::uint8_t{1});
+    s.collisions->write_held();
+    if (s.clearances) s.clearances->write_held();
+    if (s.profile) s.profile->write_held();
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
     // After the flush nothing is left that closing could fail to write.
     s.profile.reset();

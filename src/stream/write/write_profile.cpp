@@ -1,4 +1,4 @@
-#include "stream/write_profile.hpp"
+#include "stream/write/write_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
