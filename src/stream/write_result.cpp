@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "io/system/thread_limit.hpp"
 #include "stream/write/gather_rows.hpp"
 #include "stream/write/write_profile.hpp"
 #include "stream/write/write_rows.hpp"
@@ -79,45 +80,60 @@ void set_column(std::vector<Values>& column, std::span<const Row> rows, ValueOf 
   std::ranges::transform(rows, column.begin(), value_of);
 }
 
-auto place_of(const Quantisation& quantisation) {
-  return [&quantisation](const auto& row) {
-    return position(quantisation, row.q[0], row.q[1], row.q[2]);
-  };
+Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
+  return position(quantisation, q[0], q[1], q[2]);
 }
 
-std::shared_ptr<EncodedCollisions> encode(const ResultWriter& writer, bool first_pose,
-                                          const Quantisation& quantisation,
-                                          std::span<const CollisionRow> rows) {
-  auto out = std::make_shared<EncodedCollisions>(writer.new_collisions());
-  std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;
-  std::vector<std::uint32_t> pose;
-  for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
-    set_column(source, strip, [](const CollisionRow& row) { return row.source; });
-    set_column(xyz, strip, place_of(quantisation));
-    if (first_pose) set_column(pose, strip, [](const CollisionRow& row) { return row.first_pose; });
-    out->add(source, xyz, pose);
-  });
-  out->seal();
-  return out;
+/// Of the points of equal rank the one with the smallest source, as rows ascend by it.
+template <typename Row, typename RankOf>
+const Row& least_row(std::span<const Row> rows, RankOf rank_of) {
+  return *std::ranges::min_element(rows, {}, rank_of);
 }
 
-std::shared_ptr<EncodedClearances> encode(const ResultWriter& writer,
-                                          const Quantisation& quantisation,
-                                          std::span<const ClearanceRow> rows) {
-  auto out = std::make_shared<EncodedClearances>(writer.new_clearances());
+/// The columns of a strip of rows.
+struct Strip {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<double> distance;
   std::vector<std::uint32_t> pose;
-  for_each_strip(rows, [&](std::span<const ClearanceRow> strip) {
-    set_column(source, strip, [](const ClearanceRow& row) { return row.source; });
-    set_column(xyz, strip, place_of(quantisation));
-    set_column(distance, strip, [](const ClearanceRow& row) { return row.distance; });
-    set_column(pose, strip, [](const ClearanceRow& row) { return row.pose; });
-    out->add(source, xyz, distance, pose);
+};
+
+using CollisionPiece = WritePiece<EncodedCollisions>;
+using ClearancePiece = WritePiece<EncodedClearances>;
+
+std::shared_ptr<CollisionPiece> encode(const ResultWriter& writer, bool first_pose,
+                                       const Quantisation& quantisation,
+                                       std::span<const CollisionRow> rows) {
+  auto out = std::make_shared<CollisionPiece>(writer.new_collisions());
+  Strip columns;
+  for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
+    set_column(columns.source, strip, [](const auto& row) { return row.source; });
+    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
+    if (first_pose) set_column(columns.pose, strip, [](const auto& row) { return row.first_pose; });
+    out->rows.add(columns.source, columns.xyz, columns.pose);
   });
-  out->seal();
+  out->rows.seal();
+  if (first_pose) {
+    const CollisionRow& first = least_row(rows, &CollisionRow::first_pose);
+    out->place = {first.source, first.first_pose, xyz_of(quantisation, first.q), 0};
+  }
+  return out;
+}
+
+std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const Quantisation& quantisation,
+                                       std::span<const ClearanceRow> rows) {
+  auto out = std::make_shared<ClearancePiece>(writer.new_clearances());
+  Strip columns;
+  for_each_strip(rows, [&](std::span<const ClearanceRow> strip) {
+    set_column(columns.source, strip, [](const auto& row) { return row.source; });
+    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
+    set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
+    set_column(columns.pose, strip, [](const auto& row) { return row.pose; });
+    out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose);
+  });
+  out->rows.seal();
+  const ClearanceRow& least = least_row(rows, &ClearanceRow::distance);
+  out->place = {least.source, least.pose, xyz_of(quantisation, least.q), least.distance};
   return out;
 }
 
@@ -162,59 +178,108 @@ void write_set(const StoreReader& store, const Set& set, const SetCells& in, con
   }
 }
 
-void write_collisions(const StoreReader& store, const HitSet& hits, const SetCells& in,
-                      std::uint64_t memory_bytes, ResultWriter& writer, Progress& progress) {
-  const WritePlan plan = plan_of<CollisionRow>(store, memory_bytes);
-  const bool first_pose = hits.has_first_pose();
-  const auto rows_of = [&](std::uint32_t cell) {
-    return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
-                                            std::uint32_t i) {
-      return CollisionRow{
-          source, {q[0][i], q[1][i], q[2][i]}, first_pose ? hits.first_pose(entry) : 0};
-    };
-  };
-  write_set<CollisionRow>(
-      store, hits, in, plan, progress, rows_of, [&](std::span<const CollisionRow> rows) {
-        write_rows<EncodedCollisions>(writer, rows, plan.pieces, progress, [&](auto piece) {
-          return encode(writer, first_pose, store.quantisation(), piece);
-        });
-      });
-}
+/// Writes one result, table by table.
+class ResultWriting {
+ public:
+  ResultWriting(const StoreReader& store, const SearchResult& answer, std::uint64_t memory_bytes,
+                ResultWriter& writer, Progress& progress)
+      : store_(store),
+        answer_(answer),
+        memory_bytes_(memory_bytes),
+        writer_(writer),
+        progress_(progress) {}
 
-void write_clearances(const StoreReader& store, const ClearanceSet& clearances, const SetCells& in,
-                      std::uint64_t memory_bytes, ResultWriter& writer, Progress& progress) {
-  const WritePlan plan = plan_of<ClearanceRow>(store, memory_bytes);
-  const auto rows_of = [&](std::uint32_t cell) {
-    return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
-                                            std::uint32_t i) {
-      const Clearance clearance = clearances.at(entry);
-      return ClearanceRow{
-          source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
+  void write_collisions(const SetCells& in, std::optional<FoundPlace>& first) {
+    const WritePlan plan = plan_of<CollisionRow>(store_, memory_bytes_);
+    const HitSet& hits = answer_.hits;
+    const bool first_pose = hits.has_first_pose();
+    const auto rows_of = [&](std::uint32_t cell) {
+      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
+                                               std::uint32_t i) {
+        return CollisionRow{
+            source, {q[0][i], q[1][i], q[2][i]}, first_pose ? hits.first_pose(entry) : 0};
+      };
     };
-  };
-  write_set<ClearanceRow>(
-      store, clearances, in, plan, progress, rows_of, [&](std::span<const ClearanceRow> rows) {
-        write_rows<EncodedClearances>(writer, rows, plan.pieces, progress, [&](auto piece) {
-          return encode(writer, store.quantisation(), piece);
-        });
-      });
+    const auto encode_rows = [&](std::span<const CollisionRow> rows) {
+      return encode(writer_, first_pose, store_.quantisation(), rows);
+    };
+    const auto keep_first = [&](const CollisionPiece& piece) {
+      if (!piece.place || (first && first->pose <= piece.place->pose)) return;
+      first = piece.place;
+    };
+    write_set<CollisionRow>(store_, hits, in, plan, progress_, rows_of,
+                            [&](std::span<const CollisionRow> rows) {
+                              write_rows<EncodedCollisions>(writer_, rows, plan.pieces, progress_,
+                                                            encode_rows, keep_first);
+                            });
+  }
+
+  void write_clearances(const SetCells& in, std::optional<FoundPlace>& least) {
+    const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
+    const ClearanceSet& clearances = answer_.clearances;
+    const auto rows_of = [&](std::uint32_t cell) {
+      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
+                                               std::uint32_t i) {
+        const Clearance clearance = clearances.at(entry);
+        return ClearanceRow{
+            source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
+      };
+    };
+    const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
+      return encode(writer_, store_.quantisation(), rows);
+    };
+    const auto keep_least = [&](const ClearancePiece& piece) {
+      if (least && least->distance <= piece.place->distance) return;
+      least = piece.place;
+    };
+    write_set<ClearanceRow>(store_, clearances, in, plan, progress_, rows_of,
+                            [&](std::span<const ClearanceRow> rows) {
+                              write_rows<EncodedClearances>(writer_, rows, plan.pieces, progress_,
+                                                            encode_rows, keep_least);
+                            });
+  }
+
+ private:
+  const StoreReader& store_;
+  const SearchResult& answer_;
+  std::uint64_t memory_bytes_;
+  ResultWriter& writer_;
+  Progress& progress_;
+};
+
+WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
+                           const ResultHeader& header, const std::filesystem::path& path,
+                           std::uint64_t memory_bytes, Progress& progress,
+                           std::span<const double> chainage) {
+  WrittenResult out;
+  const SetCells collisions = cells_of(store, answer.hits);
+  const SetCells clearances =
+      header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
+  out.collisions = collisions.entries;
+  out.clearances = clearances.entries;
+  ResultWriter writer(path, header, out.collisions, out.clearances);
+  progress.begin("write", out.collisions + out.clearances, "points");
+  ResultWriting writing(store, answer, memory_bytes, writer, progress);
+  writing.write_collisions(collisions, out.first_place);
+  writing.write_clearances(clearances, out.least_clearance);
+  if (header.profile > 0) {
+    out.least_profile = write_profile(store, answer.profile, chainage, writer, progress);
+  }
+  writer.finish();
+  progress.end();
+  return out;
 }
 
 }  // namespace
 
-void write_result(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
-                  const std::filesystem::path& path, std::uint64_t memory_bytes, Progress& progress,
-                  std::span<const double> chainage) {
-  const SetCells collisions = cells_of(store, answer.hits);
-  const SetCells clearances =
-      header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
-  ResultWriter writer(path, header, collisions.entries, clearances.entries);
-  progress.begin("write", collisions.entries + clearances.entries, "points");
-  write_collisions(store, answer.hits, collisions, memory_bytes, writer, progress);
-  write_clearances(store, answer.clearances, clearances, memory_bytes, writer, progress);
-  if (header.profile > 0) write_profile(store, answer.profile, chainage, writer, progress);
-  writer.finish();
-  progress.end();
+WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
+                           const ResultHeader& header, const std::filesystem::path& path,
+                           std::uint64_t memory_bytes, Progress& progress,
+                           std::span<const double> chainage, int threads) {
+  if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
+  const ThreadLimit limit(threads);
+  return tbb::task_arena(threads).execute(
+      [&] { return write_tables(store, answer, header, path, memory_bytes, progress, chainage); });
 }
 
 std::uint64_t least_write_bytes() {

@@ -171,6 +171,12 @@ class Rows {
   /// After the last write, which may fail as late as here.
   void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;
+  /// The chunks from `first_row`, which begins one, as stored_chunk.hpp has them, not checked.
+  /// False where they are stored in another way or cannot be read: read() tells what is wrong then.
+  bool read_chunks(std::uint64_t first_row, std::uint64_t row_count,
+                   std::vector<std::vector<std::byte>>& chunks) const;
+  /// Rows of a chunk of those.
+  std::uint64_t chunk_rows() const;
 
  private:
   Rows() = default;

@@ -200,6 +200,36 @@ void Rows<Number>::read(std::uint64_t first_row, std::span<Number> values) const
   }
 }
 
+template <typename Number>
+std::uint64_t Rows<Number>::chunk_rows() const {
+  return rows_of_chunk(rows_, std::max<std::uint64_t>(columns_, 1) * sizeof(Number));
+}
+
+template <typename Number>
+bool Rows<Number>::read_chunks(std::uint64_t first_row, std::uint64_t row_count,
+                               std::vector<std::vector<std::byte>>& chunks) const {
+  const Id list(H5Dget_create_plist(dataset_.get()), H5Pclose, name_);
+  std::array<hsize_t, 2> chunk{};
+  const int dimensions = columns_ == 0 ? 1 : 2;
+  if (H5Pget_chunk(list.get(), dimensions, chunk.data()) != dimensions) return false;
+  if (chunk[0] != chunk_rows() || chunk[1] != columns_) return false;
+  const std::uint64_t row_bytes = std::max<std::uint64_t>(columns_, 1) * sizeof(Number);
+  const std::uint64_t bytes = chunk_rows() * row_bytes + kChecksumBytes;
+  for (std::uint64_t row = first_row; row < first_row + row_count; row += chunk_rows()) {
+    const std::array<hsize_t, 2> at{row, 0};
+    hsize_t stored = 0;
+    if (H5Dget_chunk_storage_size(dataset_.get(), at.data(), &stored) < 0) return false;
+    if (stored != bytes) return false;
+    std::vector<std::byte>& into = chunks.emplace_back(bytes);
+    std::uint32_t filters_left_out = 0;
+    if (H5Dread_chunk(dataset_.get(), H5P_DEFAULT, at.data(), &filters_left_out, into.data()) < 0) {
+      return false;
+    }
+    if (filters_left_out != kAllFilters) return false;
+  }
+  return true;
+}
+
 #define CLEARWAY_INSTANTIATE(Number)                                                      \
   template void write_dataset(const Id&, const std::string&, std::span<const Number>,     \
                               std::uint64_t);                                             \

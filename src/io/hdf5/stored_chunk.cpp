@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::uint64_t kChunkBytes = 1 << 18;
+constexpr std::uint64_t kMostBytes = 1 << 18;
 
 constexpr std::uint64_t kModulus = 65535;
 
@@ -59,7 +59,7 @@ bool is_zero(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::uint64_t rows_of_chunk(std::uint64_t rows, std::uint64_t row_bytes) {
-  return std::min(rows, std::bit_floor(std::max<std::uint64_t>(1, kChunkBytes / row_bytes)));
+  return std::min(rows, std::bit_floor(std::max<std::uint64_t>(1, kMostBytes / row_bytes)));
 }
 
 std::uint32_t fletcher32(std::span<const std::byte> bytes) {

@@ -31,6 +31,15 @@ struct EncodedChunk {
   std::span<const std::byte> values() const { return {bytes.get(), used_bytes}; }
 };
 
+/// Bytes that a column's chunks take in the file.
+template <typename Value>
+std::uint64_t stored_bytes(std::uint64_t rows) {
+  if (rows == 0) return 0;
+  const std::uint64_t chunk_rows = hdf5::rows_of_chunk(rows, sizeof(Value));
+  const std::uint64_t chunks = (rows + chunk_rows - 1) / chunk_rows;
+  return chunks * (chunk_rows * sizeof(Value) + hdf5::kChecksumBytes);
+}
+
 /// Up to kEncodedRows consecutive values of a column.
 template <typename Value>
 class EncodedColumn {

@@ -11,6 +11,7 @@
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/result/encoded_rows.hpp"
+#include "io/system/xxh64.hpp"
 
 namespace clearway {
 
@@ -101,6 +102,10 @@ class ResultReader {
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
   /// Below header().poses. Only where the header has first poses.
   void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
+  /// All three, with many threads; first_pose: empty unless the header has it. Adds the columns to
+  /// their hashes. first: a multiple of kEncodedRows.
+  void read_collisions(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
+                       std::span<std::uint32_t> first_pose, std::span<Xxh64Stream> hashes) const;
 
   /// Rows of the clearances, 0 where the header has none.
   std::uint64_t clearances() const;
@@ -110,6 +115,11 @@ class ResultReader {
   /// where the header has clearances. xyz: empty unless the header has them.
   void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<double> distance, std::span<std::uint32_t> pose) const;
+  /// The same with many threads. Adds the columns to their hashes, but xyz where there is none.
+  /// first: a multiple of kEncodedRows.
+  void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
+                       std::span<double> distance, std::span<std::uint32_t> pose,
+                       std::span<Xxh64Stream> hashes) const;
 
   /// Rows of the profile: header().poses, or 0 where the header has none.
   std::uint64_t profile_rows() const;

@@ -83,6 +83,12 @@ class ResultTable {
     });
   }
 
+  /// Of the chunks of all rows.
+  std::uint64_t bytes() const {
+    std::size_t i = 0;
+    return ((present_[i++] ? stored_bytes<Values>(promised_) : 0) + ...);
+  }
+
   Rows new_rows() const { return {promised_, present_}; }
 
   /// All rows but a table's last come kEncodedRows at a time, sealed, in order.

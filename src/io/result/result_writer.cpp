@@ -7,6 +7,7 @@
 #include "io/result/result_header.hpp"
 #include "io/result/result_names.hpp"
 #include "io/result/result_table.hpp"
+#include "io/system/file.hpp"
 
 namespace clearway {
 namespace {
@@ -29,6 +30,7 @@ struct ResultWriter::State {
         std::uint64_t clearance_rows)
       : name(path.string()),
         file(hdf5::create_file(path)),
+        output(File::open_for_writing(path)),
         collisions(std::in_place, file, names::kGroup,
                    CollisionTable::Names{names::kSource, names::kXyz,
                                          header.first_pose ? names::kFirstPose : nullptr},
@@ -40,6 +42,17 @@ struct ResultWriter::State {
       profile.emplace(file, names::kProfileGroup, kProfileColumns, header.poses);
     }
     write_result_header(file, header);
+    output.reserve_ahead(collisions->bytes() + (clearances ? clearances->bytes() : 0) +
+                         (profile ? profile->bytes() : 0));
+  }
+
+  /// What was written goes to the disk while the rest is computed.
+  void written() {
+    constexpr std::uint64_t kAtOnce = std::uint64_t{32} << 20;
+    const std::uint64_t end = output.size_bytes();
+    if (end < synced + kAtOnce) return;
+    output.begin_sync(synced, end - synced);
+    synced = end;
   }
 
   /// Closes a table whose rows the next one's follow.
@@ -52,6 +65,8 @@ struct ResultWriter::State {
 
   std::string name;
   hdf5::Id file;
+  File output;               ///< the same file
+  std::uint64_t synced = 0;  ///< bytes of it that are on their way to the disk
   std::optional<CollisionTable> collisions;
   std::optional<ClearanceTable> clearances;
   std::optional<ProfileTable> profile;
@@ -105,12 +120,14 @@ void ResultWriter::hash(const EncodedClearances& rows) { state_->clearances->has
 
 void ResultWriter::write(EncodedCollisions& rows) {
   hdf5::naming(state_->name, [&] { state_->collisions->write(rows); });
+  state_->written();
 }
 
 void ResultWriter::write(EncodedClearances& rows) {
   State& s = *state_;
   s.complete(s.collisions);
   hdf5::naming(s.name, [&] { s.clearances->write(rows); });
+  s.written();
 }
 
 void ResultWriter::finish() {
