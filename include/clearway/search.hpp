@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/found_place.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/store.hpp"
@@ -81,6 +82,10 @@ struct SearchReport {
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
   std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
+  /// Where the query asks for it, and not of a result that was there already: the point with the
+  /// smallest first pose, the least clearance and the least distance of the profile, with its
+  /// first pose. Of several points the smallest source.
+  std::optional<FoundPlace> first_place, least_clearance, least_profile;
   std::vector<Message> warnings;
 
   Engine engine = Engine::kAuto;  ///< that searched

@@ -220,8 +220,8 @@ class Search {
     try {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
-      write_result(store_, found.result, header_, pending_.partial(), found.write_bytes, progress_,
-                   chainage);
+      report_written(write_result(store_, found.result, header_, pending_.partial(),
+                                  found.write_bytes, progress_, chainage, options_.threads));
       pending_.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);
@@ -230,10 +230,16 @@ class Search {
     const StoreReader::Touched touched = store_.touched();
     report_.cells_read = touched.cells;
     report_.bytes_read = touched.bytes;
-    report_.colliding_points = found.result.hits.count();
-    report_.clearance_points = found.result.clearances.count();
     report_profile(found.result.profile);
     report_.seconds.write = write.seconds();
+  }
+
+  void report_written(const WrittenResult& written) {
+    report_.colliding_points = written.collisions;
+    report_.clearance_points = written.clearances;
+    report_.first_place = written.first_place;
+    report_.least_clearance = written.least_clearance;
+    report_.least_profile = written.least_profile;
   }
 
   void report_profile(const ProfileSet& profile) {

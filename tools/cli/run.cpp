@@ -183,13 +183,9 @@ std::string unit_of(const Store& store) {
   return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
 }
 
-Verdict read_verdict(const std::filesystem::path& output, const std::vector<Pose>& poses) {
-  try {
-    return verdict_of(ResultReader(output), poses);
-  } catch (const Error& error) {
-    throw ResourceError("the result was written, but it cannot be read back: " +
-                        std::string(error.what()));
-  }
+Verdict find_verdict(const SearchReport& report, const Query& query, const RunOptions& options) {
+  if (report.was_finished) return verdict_of(ResultReader(options.output), query.poses);
+  return verdict_of(report, query, options.search.float_precision);
 }
 
 /// Without --json the result itself is the answer: that nobody reads the sentence is no failure.
@@ -229,7 +225,7 @@ bool run(RunOptions& options) {
   program.total_seconds = total.seconds();
   log_report(report, options, unit_of(store), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
-  answer.verdict = read_verdict(options.output, query.poses);
+  answer.verdict = find_verdict(report, query, options);
   const std::string sentence =
       verdict_text(answer.verdict, answer.labels, unit_of(store), caveat(report));
   if (options.json) {

@@ -19,6 +19,8 @@ class File {
   static File open_for_writing(const std::filesystem::path& path);
   /// Creates the file or empties an existing one.
   static File create(const std::filesystem::path& path);
+  /// Opens an existing one, whose bytes stay.
+  static File open_for_writing(const std::filesystem::path& path);
   /// A file without a name in `folder`, gone when closed or when the process dies.
   static File create_temporary(const std::filesystem::path& folder);
   /// Takes over an open descriptor, for example standard input; `name` is for messages.
@@ -48,6 +50,10 @@ class File {
   void rewind() const;
   /// Reserves disk space; throws when there is not enough.
   void reserve(std::uint64_t bytes) const;
+  /// The same beyond the end of the file, whose length stays; nothing where the file system cannot.
+  void reserve_ahead(std::uint64_t bytes) const;
+  /// Asks the system to write a range to the disk, as sync() will. Does not wait for it.
+  void begin_sync(std::uint64_t offset, std::uint64_t bytes) const;
   void sync() const;
 
  private:
