@@ -12,7 +12,7 @@
 
 namespace clearway {
 
-enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: sweep
+enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: by estimate
 enum class Device { kAuto, kCpu, kCuda };             ///< kAuto: a GPU where there is one with room
 
 const char* name_of(Engine engine);  ///< "auto", "sweep", "grid" or "kdtree"
@@ -68,6 +68,11 @@ struct LeastDistance {
   std::uint64_t source = 0;  ///< of the point, of several the smallest
 };
 
+/// Of the whole search on the CPU, without reading and writing files, seconds.
+struct EngineEstimate {
+  double sweep_seconds = 0, kdtree_seconds = 0;
+};
+
 /// What was found, and how.
 struct SearchReport {
   bool was_finished = false;  ///< the result was there already: nothing was searched
@@ -78,7 +83,8 @@ struct SearchReport {
   std::optional<LeastDistance> least;  ///< of the whole profile, where a pose is close enough
   std::vector<Message> warnings;
 
-  Engine engine = Engine::kAuto;  ///< that searched
+  Engine engine = Engine::kAuto;                  ///< that searched
+  std::optional<EngineEstimate> engine_estimate;  ///< where it chose the engine
   Device device = Device::kCpu;
   std::string device_name = "the CPU";  ///< for people
   std::uint64_t searches = 0;           ///< pairs of pose and model point

@@ -15,6 +15,7 @@
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
+#include "search/choice/choose_engine.hpp"
 #include "search/devices.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/cuda_kind.hpp"
@@ -42,7 +43,6 @@ class Search {
         journal_(pending_, output, options_, log_),
         header_(header()) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
-    options_.engine = chosen_engine(options_);
   }
 
   SearchReport run() {
@@ -122,6 +122,8 @@ class Search {
     const DeviceChoice device = choose_device(options_, log_);
     if (options_.threads == 0) options_.threads = tbb::this_task_arena::max_concurrency();
     check_threads(options_.threads);
+    choose_engine(store_, query_, journal_.earlier_engine(), device.is_cuda(), options_, report_,
+                  log_);
     report_.engine = options_.engine;
     report_.searches = report_.poses * report_.model_points;
     report_.seconds.context = device.context_seconds;
