@@ -68,7 +68,7 @@ struct LeastDistance {
   std::uint64_t source = 0;  ///< of the point, of several the smallest
 };
 
-/// Of the whole search on the CPU, without reading and writing files, seconds.
+/// Of the whole command on the CPU, seconds.
 struct EngineEstimate {
   double sweep_seconds = 0, kdtree_seconds = 0;
 };
