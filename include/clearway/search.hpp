@@ -14,7 +14,7 @@
 
 namespace clearway {
 
-enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: sweep
+enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: by estimate
 enum class Device { kAuto, kCpu, kCuda };             ///< kAuto: a GPU where there is one with room
 
 const char* name_of(Engine engine);  ///< "auto", "sweep", "grid" or "kdtree"
@@ -75,6 +75,11 @@ struct DeviceEstimate {
   double cpu = 0, cuda = 0;
 };
 
+/// Of the whole command on the CPU, seconds.
+struct EngineEstimate {
+  double sweep_seconds = 0, kdtree_seconds = 0;
+};
+
 /// What was found, and how.
 struct SearchReport {
   bool was_finished = false;  ///< the result was there already: nothing was searched
@@ -88,7 +93,8 @@ struct SearchReport {
   std::optional<FoundPlace> first_place, least_clearance, least_profile;
   std::vector<Message> warnings;
 
-  Engine engine = Engine::kAuto;  ///< that searched
+  Engine engine = Engine::kAuto;                  ///< that searched
+  std::optional<EngineEstimate> engine_estimate;  ///< where it chose the engine
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
   std::string device_name = "the CPU";     ///< for people

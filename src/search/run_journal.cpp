@@ -164,6 +164,14 @@ Device RunJournal::earlier_device() const {
                                                                           : Device::kCpu;
 }
 
+Engine RunJournal::earlier_engine() const {
+  if (!read_) return Engine::kAuto;
+  for (const Engine engine : {Engine::kSweep, Engine::kGrid, Engine::kKdtree}) {
+    if (value_of(*read_->identity(), "engine") == name_of(engine)) return engine;
+  }
+  return Engine::kAuto;
+}
+
 void RunJournal::remove_after_publication() {
   if (!results_->is_in_place()) return;
   try {

@@ -17,6 +17,7 @@
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
+#include "search/choice/choose_engine.hpp"
 #include "search/choice/device_estimate.hpp"
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
@@ -49,7 +50,6 @@ class Search {
         journal_(pending_, output, options_, log_),
         header_(header()) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
-    options_.engine = chosen_engine(options_);
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
@@ -132,6 +132,7 @@ class Search {
     const bool gpu = gpu_pays() && may_take_gpus(options_);
     check_threads(options_.threads);
     if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
+    choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
     report_.engine = options_.engine;
     report_.searches = report_.poses * report_.model_points;
     Found found = options_.engine == Engine::kKdtree
@@ -151,8 +152,8 @@ class Search {
         estimate_devices(workload_of(store_, query_), query_, options_.engine, options_.threads);
     const auto [cpu, cuda] = *report_.estimate;
     if (cpu > cuda) return true;
-    log_.note("the CPU is taken: about " + format_brief(cpu) + " s there, " + format_brief(cuda) +
-              " s with a GPU's start");
+    log_.note("the CPU is taken: by estimate it needs " + format_brief(cpu) +
+              " s, a GPU with its start " + format_brief(cuda) + " s");
     return false;
 #else
     return true;  // what is asked for in vain is refused later

@@ -74,6 +74,13 @@ nlohmann::ordered_json tolerance_of(const SearchReport& report, double metres) {
           {"settled_by_bounds", spared.resolved_by_bounds}};
 }
 
+/// Of both engines, where it chose one of them; otherwise null.
+nlohmann::ordered_json estimate_of(const SearchReport& report) {
+  if (!report.engine_estimate) return nullptr;
+  return {{"sweep_seconds", report.engine_estimate->sweep_seconds},
+          {"kdtree_seconds", report.engine_estimate->kdtree_seconds}};
+}
+
 /// Whether a value is known of this run; otherwise null.
 template <typename Value>
 nlohmann::ordered_json known(bool is_known, const Value& value) {
@@ -103,6 +110,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["profile_poses"] = report.profile_poses;
   add_verdict(answer.verdict, answer.labels, out);
   out["engine"] = known(searched, name_of(report.engine));
+  out["engine_estimate"] = estimate_of(report);
   out["device"] = known(searched, name_of(report.device));
   out["device_estimate"] = device_estimate_of(report);
   out["searches"] = known(searched, report.searches);

@@ -45,14 +45,11 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
   if (!by_need_) make_all(threads);
 }
 
-double ModelField::usual_voxel(double spacing, double radius) {
-  return std::clamp(kVoxelSpacings * spacing, radius / 2, 2 * radius);
-}
-
 void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
   const Box& box = tree_.box();
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
-  const double wanted = usual_voxel(tree_.spacing(), radius) / options.fineness;
+  const double wanted =
+      std::clamp(kVoxelSpacings * tree_.spacing(), radius / 2, 2 * radius) / options.fineness;
   // A field much finer than the model's points, or than their rounding, serves nobody.
   const double least = 1e-7 * (length(extent) + length(box.hi) + length(box.lo)) + 1e-100;
   voxel_ = options.voxel > 0 ? options.voxel : std::max(wanted, least);

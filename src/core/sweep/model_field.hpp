@@ -30,9 +30,6 @@ class ModelField {
   /// radius: the band around the model in which the descent ends. Uses OpenMP with `threads`.
   ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options, int threads);
 
-  /// The voxel that is chosen with a fineness of 1, metres.
-  static double usual_voxel(double spacing, double radius);
-
   using Bounds = ModelFieldRef::Bounds;
   static constexpr std::uint32_t kNone = ModelFieldRef::kNone;
 

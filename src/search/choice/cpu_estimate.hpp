@@ -4,9 +4,9 @@
 
 namespace clearway {
 
-/// Wall clock of answering on the CPU, seconds: from the query to what was found, without reading
-/// and writing files. An estimate for choosing, never for answers. docs/design/choice.md says how
-/// good it is, and how its constants were measured.
+/// Wall clock of the whole command on the CPU, seconds: with reading model and poses and writing a
+/// small result. An estimate for choosing, never for answers. docs/design/choice.md says how good
+/// it is, and how its constants were measured.
 struct CpuEstimate {
   double sweep = 0;
   double kdtree = 0;

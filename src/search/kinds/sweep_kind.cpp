@@ -1,11 +1,11 @@
 #include "search/kinds/sweep_kind.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/sweep/tolerance.hpp"
 #include "core/util/format.hpp"
 #include "cpu/sweep_engine.hpp"
-#include "search/choice/field_fineness.hpp"
 
 namespace clearway {
 namespace {
@@ -19,6 +19,11 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
 /// Of the field on the CPU: at every pose a profile looks at all points near the model, and the
 /// field decides which of them need a search of it.
 constexpr double kProfileFineness = 2;
+
+/// From so many poses on the field is as fine as it pays for many (docs/design/sweep.md,
+/// "Fineness").
+constexpr double kPosesOfFullFineness = 1000;
+constexpr double kLeastFineness = 0.25;
 
 }  // namespace
 
@@ -34,7 +39,7 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
   field_.reset();
   field_.emplace(trees.model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
-                                   .fineness = fineness_for(trees.model),
+                                   .fineness = fineness_for_query(),
                                    .reach = std::max(query_.clearance, query_.profile),
                                    .most_bytes = most_bytes,
                                    .by_need = !needs_.on_gpu},
@@ -42,11 +47,12 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
   return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
 }
 
-/// Coarser for a small question. Not with a tolerance, whose result depends on the field; and other
-/// modes ask more of it.
-double SweepKind::fineness_for(const ModelTree& model) const {
+/// Coarser for few poses, which ask for few exact tests. Not with a tolerance, whose result depends
+/// on the field; and other modes ask more of it.
+double SweepKind::fineness_for_query() const {
   if (query_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
-  return fineness_ * field_fineness(workload_of(store_, query_), model.spacing());
+  const double poses = static_cast<double>(query_.poses.size());
+  return fineness_ * std::clamp(std::cbrt(poses / kPosesOfFullFineness), kLeastFineness, 1.0);
 }
 
 void SweepKind::report_index(SearchReport& report, const MessageLog& log) const {

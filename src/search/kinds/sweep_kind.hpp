@@ -38,7 +38,7 @@ class SweepKind : public PageEngineKind {
   std::optional<SweepFilter> filter_;
 
  private:
-  double fineness_for(const ModelTree& model) const;
+  double fineness_for_query() const;
 
   double fineness_;
 };
