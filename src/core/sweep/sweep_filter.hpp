@@ -10,6 +10,7 @@
 #include "core/page/pose_reach.hpp"
 #include "core/sweep/model_field.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "core/trajectory/motion_chords.hpp"
 #include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
@@ -27,13 +28,11 @@ class SweepFilter final : public PoseReach {
   const MotionTree& motion() const override { return motion_; }
   const ModelTree& model() const { return model_; }
 
-  /// The first pose equal to `pose` without another in between. Only with a clearance.
-  std::uint32_t first_equal_pose(std::uint32_t pose) const { return first_equal_pose_[pose]; }
-
   /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
   /// clearance be the nearest to one, as fine as the box is small; replaces `out`. In the order of
-  /// the poses when `nodes` are.
-  void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
+  /// the poses when `nodes` are. True, and only some of them, where every point of the box
+  /// collides and nothing else is asked.
+  bool narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
 
   /// The same for the plan: with a profile also those that may be within its distance.
@@ -51,9 +50,14 @@ class SweepFilter final : public PoseReach {
                            SweepStatistics& statistics) const;
 
  private:
-  void narrow(const Box& box, std::span<const std::uint32_t> nodes, double at_least,
+  struct Limits {
+    double distance;  ///< nothing beyond matters
+    bool accept;      ///< boxes as a whole
+  };
+
+  bool narrow(const Box& box, std::span<const std::uint32_t> nodes, Limits limits,
               std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
-  void narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t node,
+  bool narrow_node(const PointBox& points, const Limits& limits, std::uint32_t node,
                    std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
   SweepRef::Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                          double& squared_lower) const;
@@ -65,7 +69,7 @@ class SweepFilter final : public PoseReach {
   const MotionTree& motion_;
   const ModelTree& model_;
   SweepRef ref_;
-  std::vector<std::uint32_t> first_equal_pose_;
+  MotionChords chords_;  ///< with a clearance
 };
 
 }  // namespace clearway

@@ -34,6 +34,7 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
   field_.emplace(trees.model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
                                    .fineness = fineness_,
+                                   .cheaply_finer = !(query_.tolerance > 0),
                                    .reach = std::max(query_.clearance, query_.profile),
                                    .most_bytes = most_bytes},
                  options_.threads);
