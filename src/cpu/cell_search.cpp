@@ -32,8 +32,8 @@ SweepStatistics CellSearch::take_statistics() { return std::exchange(statistics_
 std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Query& query,
                                      std::uint64_t most_poses) {
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
-  // A clearance search notes a bound a node, in a list that may have grown to twice its need.
-  const std::uint64_t of_clearance = query.clearance > 0 ? 48 * most_poses + (1U << 15) : 0;
+  // A list for clearances may have grown to twice its need.
+  const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
   return sizeof(CellSearch) +
          depths * (sizeof(decltype(lists_)::value_type) + most_poses * sizeof(std::uint32_t)) +
          of_clearance;

@@ -19,7 +19,11 @@ Clearance ClearanceSearch::nearest(const Vec3& e, std::span<const std::uint32_t>
   // Pose 0, so that a tie with the limit is no improvement.
   PointClearance search(sweep_, e, {limit_, 0}, statistics);
   search.offer(guess_pose_, guess_);
-  for (const std::uint32_t node : nodes) search.search(node);
+  while (!nodes.empty()) {
+    const auto part = nodes.first(std::min<std::size_t>(nodes.size(), PointClearance::kMostNodes));
+    search.search(part.data(), static_cast<std::uint32_t>(part.size()));
+    nodes = nodes.subspan(part.size());
+  }
   if (!(search.best().squared < limit_)) return Clearance{};
   guess_pose_ = search.best().pose;
   guess_ = search.model_point();

@@ -5,6 +5,7 @@
 
 #include "core/query/clearance_set.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "core/util/bit_reversal_order.hpp"
 
 namespace clearway {
 
@@ -66,25 +67,57 @@ class PointClearance {
     set_best(squared, pose);
   }
 
-  /// Whether a pose of the node may still have the least d2.
-  CLEARWAY_HD bool look(std::uint32_t at) {
+  /// Every pose of some nodes, at most kMostNodes. First a look at all, far apart ones first, for a
+  /// best that is close from the start; then the one that may be nearest comes first.
+  CLEARWAY_HD void search(const std::uint32_t* nodes, std::uint32_t count) {
+    double squared_lower[kMostNodes];
+    BitReversalOrder(count).for_each([&](std::uint32_t i) {
+      squared_lower[i] = look(nodes[i]);
+      return true;
+    });
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = 1; i < count; ++i) {
+      if (squared_lower[i] < squared_lower[nearest]) nearest = i;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t next = i == 0 ? nearest : i == nearest ? 0 : i;
+      search(nodes[next], squared_lower[next]);
+    }
+  }
+
+  static constexpr std::uint32_t kMostNodes = BitReversalOrder::kMost;
+
+ private:
+  CLEARWAY_HD std::uint32_t size_of(std::uint32_t at) const {
+    return 2 * sweep_.motion.nodes[at].count - 1;
+  }
+
+  /// What the square of the distance is at least, pulled back by the middle pose of the node.
+  CLEARWAY_HD double look(std::uint32_t at) {
     ++statistics_.point_tests;
     const MotionNode& node = sweep_.motion.nodes[at];
     const InversePose& back = sweep_.motion.inverse_poses[node.mid];
     const ModelFieldRef::Bounds bounds = sweep_.field.bounds(back.apply(e_));
-    if (farther(back.least, bounds.squared_lower, reach_ + node.delta)) return false;
-    if (bounds.near != ModelFieldRef::kNone) offer(node.mid, sweep_.model.points[bounds.near]);
-    return true;
+    if (bounds.near != ModelFieldRef::kNone && !farther(back.least, bounds.squared_lower, reach_)) {
+      offer(node.mid, sweep_.model.points[bounds.near]);
+    }
+    return bounds.squared_lower;
   }
 
-  /// Every pose of the subtree. In preorder the subtree of a range of n poses is a run of 2 n - 1
-  /// nodes, so that no stack is needed.
-  CLEARWAY_HD void search(std::uint32_t top) {
+  CLEARWAY_HD bool is_given_up(std::uint32_t at, double squared_lower) const {
+    const MotionNode& node = sweep_.motion.nodes[at];
+    return farther(sweep_.motion.inverse_poses[node.mid].least, squared_lower, reach_ + node.delta);
+  }
+
+  /// In preorder the subtree of a range of n poses is a run of 2 n - 1 nodes, so that no stack is
+  /// needed.
+  CLEARWAY_HD void search(std::uint32_t top, double squared_lower) {
     const std::uint32_t end = top + size_of(top);
     for (std::uint32_t at = top; at < end;) {
-      if (!look(at)) {
+      if (at != top) squared_lower = look(at);
+      if (is_given_up(at, squared_lower)) {
         at += size_of(at);
-      } else if (sweep_.motion.chords[at].is_straight()) {
+      } else if (is_straight(sweep_.motion.chords[at])) {
         search_model(at);
         at += size_of(at);
       } else {
@@ -93,9 +126,9 @@ class PointClearance {
     }
   }
 
- private:
-  CLEARWAY_HD std::uint32_t size_of(std::uint32_t at) const {
-    return 2 * sweep_.motion.nodes[at].count - 1;
+  /// Whether what its chord is wrong leaves few model points open.
+  CLEARWAY_HD bool is_straight(const MotionChord& chord) const {
+    return chord.is_one_place() || static_cast<double>(chord.error) * reach_ <= sweep_.open_area;
   }
 
   /// The square of how far from its chord a model point can lie that is the nearest at a pose of
@@ -110,13 +143,16 @@ class PointClearance {
   /// One search of the model for all poses of a straight node.
   CLEARWAY_HD void search_model(std::uint32_t at) {
     ++statistics_.exact_tests;
-    const MotionNode& node = sweep_.motion.nodes[at];
     const MotionChord& straight = sweep_.motion.chords[at];
-    const PointChord chord(sweep_.motion, node, e_);
+    const PointChord chord(sweep_.motion, sweep_.motion.nodes[at], e_);
+    double squared = squared_ball(straight);
     sweep_.model.visit_nearest_first(
-        chord.box(), [&] { return squared_ball(straight); },
+        chord.box(), [&] { return squared; },
         [&](const Vec3& m) { return chord.squared_distance_to(m); },
-        [&](const Vec3& m) { search_poses(at, m, chord); });
+        [&](const Vec3& m) {
+          search_poses(at, m, chord);
+          squared = squared_ball(straight);
+        });
   }
 
   /// One model point against the poses of a straight node.

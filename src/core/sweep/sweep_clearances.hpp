@@ -35,7 +35,7 @@ class SweepClearances {
       // Pose 0, so that a tie with the limit is no improvement.
       const Clearance best = answer.squared < limit ? answer : Clearance{limit, 0};
       PointClearance search(job_.sweep, job_.point(cell_, begin + lane), best, statistics_[lane]);
-      search_all(search, subtrees);
+      search.search(subtrees.nodes, subtrees.count);
       if (!(search.best().squared < limit)) return false;
       answer = search.best();
       return answer.squared < touching;
@@ -47,16 +47,6 @@ class SweepClearances {
   }
 
  private:
-  /// First a look at the tops, far apart ones first, for a best that is close from the start.
-  CLEARWAY_HD static void search_all(PointClearance& search, const SweepSubtrees& subtrees) {
-    std::uint64_t open = 0;  // as bits
-    BitReversalOrder(subtrees.count).for_each([&](std::uint32_t i) {
-      if (search.look(subtrees.nodes[i])) open |= std::uint64_t{1} << i;
-      return true;
-    });
-    for (; open != 0; open &= open - 1) search.search(subtrees.nodes[lowest_bit(open)]);
-  }
-
   const SweepPage& job_;
   std::uint32_t block_;
   std::uint32_t first_;  ///< point of the block

@@ -21,17 +21,17 @@ double rounding_of(const Query& query, const MotionTree& motion, const ModelFiel
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
 
-/// A chord leaves open what lies within its error of the nearest: on a surface at the clearance
-/// about as much as one model point's own share.
-double most_chord_error(double spacing, double clearance) {
-  const double k = getenv("CE") ? atof(getenv("CE")) : 1;
-  return k * spacing * std::min(1.0, spacing / clearance);
-}
+/// No chord is of use that is wrong by more than this share of the spacing of the model's points.
+constexpr double kMostChordError = 0.125;
+
+/// At a distance d from a surface, a chord that is wrong by x leaves the model points of a strip of
+/// width sqrt(8 d x) open, so d x is kept below this many squared spacings (measured).
+constexpr double kOpenArea = 4;
 
 }  // namespace
 
 SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
-                         const ModelField& field, const PackedCloud& cloud)
+                         const ModelField& field, const PackedCloud& cloud, int threads)
     : query_(query),
       motion_(motion),
       model_(model),
@@ -42,12 +42,13 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
            .resolved_from = query.radius,
            .clearance = query.clearance,
            .profile = query.profile,
+           .open_area = kOpenArea * model.spacing() * model.spacing(),
            .rounding = rounding_of(query, motion, field, cloud),
            .first_pose = query.first_pose,
            .between_poses = query.between_poses} {
   if (!(query.clearance > 0)) return;
   chords_ = MotionChords(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
-                         most_chord_error(model.spacing(), query.clearance));
+                         kMostChordError * model.spacing(), threads);
   ref_.motion.chords = chords_.data();
 }
 

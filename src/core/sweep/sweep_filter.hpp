@@ -20,13 +20,15 @@ namespace clearway {
 class SweepFilter final : public PoseReach {
  public:
   /// All arguments outlive it. cloud: for the largest coordinates, which the rounding bound needs.
+  /// threads: to build with.
   SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
-              const ModelField& field, const PackedCloud& cloud);
+              const ModelField& field, const PackedCloud& cloud, int threads = 1);
 
   const Query& query() const { return query_; }
   const SweepRef& ref() const { return ref_; }
   const MotionTree& motion() const override { return motion_; }
   const ModelTree& model() const { return model_; }
+  std::uint64_t allocated_bytes() const { return chords_.allocated_bytes(); }
 
   /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
   /// clearance be the nearest to one, as fine as the box is small; replaces `out`. In the order of

@@ -53,6 +53,7 @@ struct SweepRef {
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
   double clearance;   ///< 0: not asked for
   double profile;     ///< likewise
+  double open_area;   ///< square metres: how straight a chord must be, times the distance
   double rounding;    ///< metres, of a test of one point at one pose
   bool first_pose;
   bool between_poses;

@@ -69,7 +69,7 @@ float rounded_up(double value) {
 }  // namespace
 
 MotionChords::MotionChords(const MotionTree& motion, const Box& model, double reach,
-                           double most_error)
+                           double most_error, int threads)
     : chords_(motion.nodes().size()) {
   const std::span<const MotionNode> nodes = motion.nodes();
   const std::span<const Pose> poses = motion.poses();
@@ -87,7 +87,7 @@ MotionChords::MotionChords(const MotionTree& motion, const Box& model, double re
     chord = {equal ? MotionChord::kEqual : MotionChord::kNone,
              std::min(earlier.least, later.least)};
   }
-#pragma omp parallel for schedule(dynamic, 64)
+#pragma omp parallel for schedule(dynamic, 64) num_threads(threads)
   for (std::size_t at = 0; at < nodes.size(); ++at) {
     const MotionNode& node = nodes[at];
     MotionChord& chord = chords_[at];

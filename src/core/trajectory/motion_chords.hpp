@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/geometry/box.hpp"
@@ -10,13 +11,16 @@ namespace clearway {
 /// How straight the poses of every node of a motion tree move, seen from the model.
 class MotionChords {
  public:
-  /// For points that are at most `reach` from the model, after its poses' rounding. Nodes whose
-  /// error would exceed `most_error` metres have none.
-  MotionChords(const MotionTree& motion, const Box& model, double reach, double most_error);
+  /// For points that are at most `reach` metres from the model, the rounding of a test included.
+  /// Nodes whose error would exceed `most_error` metres have none.
+  MotionChords(const MotionTree& motion, const Box& model, double reach, double most_error,
+               int threads);
   MotionChords() = default;
 
   /// A node, in the order of the tree.
   const MotionChord* data() const { return chords_.data(); }
+
+  std::uint64_t allocated_bytes() const { return chords_.capacity() * sizeof(MotionChord); }
 
  private:
   std::vector<MotionChord> chords_;

@@ -38,7 +38,7 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
                                    .reach = std::max(query_.clearance, query_.profile),
                                    .most_bytes = most_bytes},
                  options_.threads);
-  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
+  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_, options_.threads);
 }
 
 void SweepKind::report_index(SearchReport& report, const MessageLog& log) const {
