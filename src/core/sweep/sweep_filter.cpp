@@ -21,9 +21,6 @@ double rounding_of(const Query& query, const MotionTree& motion, const ModelFiel
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
 
-/// No chord is of use that is wrong by more than this share of the spacing of the model's points.
-constexpr double kMostChordError = 0.125;
-
 /// At a distance d from a surface, a chord that is wrong by x leaves the model points of a strip of
 /// width sqrt(8 d x) open, so d x is kept below this many squared spacings (measured).
 constexpr double kOpenArea = 4;
@@ -48,7 +45,7 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
            .between_poses = query.between_poses} {
   if (!(query.clearance > 0)) return;
   chords_ = MotionChords(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
-                         kMostChordError * model.spacing(), threads);
+                         model.spacing(), threads);
   ref_.motion.chords = chords_.data();
 }
 

@@ -11,6 +11,9 @@ namespace {
 
 /// Longer ranges are not looked at as a whole: what a chord saves grows no more.
 constexpr std::uint32_t kMostPoses = 1024;
+/// No chord is of use that is wrong by more than this share of the spacing of the model's points,
+/// or that has gaps of about twice this many spacings between its poses.
+constexpr double kMostError = 0.125, kMostGap = 1;
 
 /// The box of what may be near the model at a pose, in the model's frame.
 struct Region {
@@ -68,8 +71,8 @@ float rounded_up(double value) {
 
 }  // namespace
 
-MotionChords::MotionChords(const MotionTree& motion, const Box& model, double reach,
-                           double most_error, int threads)
+MotionChords::MotionChords(const MotionTree& motion, const Box& model, double reach, double spacing,
+                           int threads)
     : chords_(motion.nodes().size()) {
   const std::span<const MotionNode> nodes = motion.nodes();
   const std::span<const Pose> poses = motion.poses();
@@ -92,8 +95,10 @@ MotionChords::MotionChords(const MotionTree& motion, const Box& model, double re
     const MotionNode& node = nodes[at];
     MotionChord& chord = chords_[at];
     if (node.count > kMostPoses || chord.is_one_place()) continue;
+    if (node.delta > kMostGap * spacing * node.count) continue;
     const Region region = region_of(model, reach / static_cast<double>(chord.least) * kRoundedUp);
     const std::uint32_t last = node.first + node.count - 1;
+    const double most_error = kMostError * spacing;
     double error = 0;
     for (std::uint32_t i = node.first + 1; i < last && error <= most_error; ++i) {
       const double here = distance_from_chord(motion.inverse_pose(node.first),

@@ -12,8 +12,8 @@ namespace clearway {
 class MotionChords {
  public:
   /// For points that are at most `reach` metres from the model, the rounding of a test included.
-  /// Nodes whose error would exceed `most_error` metres have none.
-  MotionChords(const MotionTree& motion, const Box& model, double reach, double most_error,
+  /// spacing: of the model's points, metres. Nodes whose chord is of no use beside it have none.
+  MotionChords(const MotionTree& motion, const Box& model, double reach, double spacing,
                int threads);
   MotionChords() = default;
 
