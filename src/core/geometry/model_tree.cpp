@@ -6,19 +6,6 @@
 #include "core/geometry/point_box.hpp"
 
 namespace clearway {
-namespace {
-
-/// Between the nearest points of two boxes.
-double least_squared_distance(const Box& a, const Box& b) {
-  double d[3];
-  for (int k = 0; k < 3; ++k) {
-    d[k] = std::max({b.lo[k] - a.hi[k], a.lo[k] - b.hi[k], 0.0});
-  }
-  return squared_length(d[0], d[1], d[2]);
-}
-
-}  // namespace
-
 ModelTree::ModelTree(std::span<const Vec3> model, int threads)
     : points_(model.begin(), model.end()) {
   if (points_.empty()) return;
@@ -81,7 +68,7 @@ bool ModelTree::within(std::uint32_t begin, std::uint32_t end, std::size_t node,
   if (begin == end || least_squared_distance(boxes_[node], box) > squared_radius) return true;
   if (end - begin <= kLeafPoints) {
     for (std::uint32_t i = begin; i < end; ++i) {
-      const bool outside = clearway::least_squared_distance(box, points_[i]) > squared_radius;
+      const bool outside = least_squared_distance(box, points_[i]) > squared_radius;
       if (!outside) out.push_back(points_[i]);
     }
     return out.size() <= most;

@@ -18,6 +18,9 @@ constexpr double kMarginSteps = 3;
 /// twice the radius.
 constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
+/// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
+/// the model's points are worth.
+constexpr double kCheapNodes = 1 << 17;
 
 /// For a reach the coarse lattice is wider, up to this many nodes. Coarse bounds are close from
 /// kCloseSteps coarse steps on: at a distance d they miss at most 3/8 step^2 / d.
@@ -48,8 +51,16 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
 void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
   const Box& box = tree_.box();
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
-  const double wanted =
-      std::clamp(kVoxelSpacings * tree_.spacing(), radius / 2, 2 * radius) / options.fineness;
+  const double of_points = kVoxelSpacings * tree_.spacing();
+  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
+  const auto nodes_of = [&](double voxel) {
+    const double around = 2 * radius + 4 * voxel;
+    return (extent.x + around) * (extent.y + around) * (extent.z + around) / std::pow(voxel, 3);
+  };
+  while (options.cheaply_finer && chosen / 2 >= of_points && nodes_of(chosen / 2) <= kCheapNodes) {
+    chosen /= 2;
+  }
+  const double wanted = chosen / options.fineness;
   // A field much finer than the model's points, or than their rounding, serves nobody.
   const double least = 1e-7 * (length(extent) + length(box.hi) + length(box.lo)) + 1e-100;
   voxel_ = options.voxel > 0 ? options.voxel : std::max(wanted, least);

@@ -12,7 +12,8 @@ namespace clearway {
 struct ModelFieldOptions {
   double voxel = 0;     ///< metres; 0: chosen from the radius. Doubled until it fits `most_bytes`
   double fineness = 1;  ///< of the voxel that is chosen: 2 makes it half as large
-  double reach = 0;     ///< metres: good bounds and near points out to here; 0: to the radius only
+  bool cheaply_finer = false;  ///< a smaller voxel where it costs next to nothing
+  double reach = 0;  ///< metres: good bounds and near points out to here; 0: to the radius only
   std::uint64_t most_bytes = std::uint64_t{64} << 20;
   bool by_need = false;  ///< bricks are made when they are first asked for; on the host only
 };

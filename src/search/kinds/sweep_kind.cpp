@@ -40,11 +40,12 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
   field_.emplace(trees.model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
                                    .fineness = fineness_for_query(),
+                                   .cheaply_finer = !(query_.tolerance > 0),
                                    .reach = std::max(query_.clearance, query_.profile),
                                    .most_bytes = most_bytes,
                                    .by_need = !needs_.on_gpu},
                  options_.threads);
-  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
+  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_, options_.threads);
 }
 
 /// Coarser for few poses, which ask for few exact tests. Not with a tolerance, whose result depends
