@@ -59,10 +59,6 @@ File File::create(const std::filesystem::path& path) {
   return {checked_open(path, O_RDWR | O_CREAT | O_TRUNC | O_NOFOLLOW, "create"), path.string()};
 }
 
-File File::open_for_writing(const std::filesystem::path& path) {
-  return {checked_open(path, O_RDWR | O_NOFOLLOW, "open"), path.string()};
-}
-
 File File::create_temporary(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor >= 0) return {descriptor, folder.string() + " (temporary file)"};

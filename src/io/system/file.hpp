@@ -19,8 +19,6 @@ class File {
   static File open_for_writing(const std::filesystem::path& path);
   /// Creates the file or empties an existing one.
   static File create(const std::filesystem::path& path);
-  /// Opens an existing one, whose bytes stay.
-  static File open_for_writing(const std::filesystem::path& path);
   /// A file without a name in `folder`, gone when closed or when the process dies.
   static File create_temporary(const std::filesystem::path& folder);
   /// Takes over an open descriptor, for example standard input; `name` is for messages.
