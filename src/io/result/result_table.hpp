@@ -85,8 +85,10 @@ class ResultTable {
 
   /// Of the chunks of all rows.
   std::uint64_t bytes() const {
+    std::uint64_t total = 0;
     std::size_t i = 0;
-    return ((present_[i++] ? stored_bytes<Values>(promised_) : 0) + ...);
+    ((total += present_[i++] ? stored_bytes<Values>(promised_) : 0), ...);
+    return total;
   }
 
   Rows new_rows() const { return {promised_, present_}; }

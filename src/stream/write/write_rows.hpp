@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "clearway/found_place.hpp"
 #include "core/util/progress.hpp"
@@ -18,8 +19,10 @@ namespace clearway {
 /// Encoded rows, and of their points the one that matters most, where that is asked for.
 template <typename Encoded>
 struct WritePiece {
+  explicit WritePiece(Encoded encoded) : rows(std::move(encoded)) {}
+
   Encoded rows;
-  std::optional<FoundPlace> place{};
+  std::optional<FoundPlace> place;
 };
 
 /// Encodes rows, kEncodedRows at a time, on many threads, and hashes and writes them in order.

@@ -17,7 +17,7 @@ std::vector<std::uint32_t> values_of(const std::string& kind, std::size_t count)
   std::vector<std::uint32_t> values(count);
   std::mt19937 random(7);
   for (std::size_t i = 0; i < count; ++i) {
-    if (kind == "random") values[i] = random();
+    if (kind == "random") values[i] = static_cast<std::uint32_t>(random());
     if (kind == "all bits") values[i] = 0xffffffff;
     if (kind == "one bit") values[i] = i == count / 2 ? 1 : 0;
     if (kind == "sum of 65535") values[i] = i == 0 ? 0xfffe0001 : 0;

@@ -226,6 +226,7 @@ def main():
                     continue
                 torment_writing(name, lambda more, to: scene.run_command(options + more, to),
                                 work / "reference.h5", output, arguments.kills, draw)
+                (work / "reference.h5").unlink()
             return
         for name, options in cases.items():
             if arguments.only not in name:
