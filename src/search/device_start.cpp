@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/util/stopwatch.hpp"
+#include "io/store/store_reader.hpp"
 #include "search/check_query.hpp"
 #include "search/choice/device_estimate.hpp"
 #include "search/devices.hpp"
@@ -45,7 +46,7 @@ std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options, c
   if (fallback_allowed(options)) {
     const int threads =
         options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
-    if (store == nullptr || store->point_count() < surely_many_points(threads)) return nullptr;
+    if (store == nullptr || store->reader().point_count() < surely_many_points(threads)) return nullptr;
   }
   return std::make_shared<const DeviceStart>(options);
 }
