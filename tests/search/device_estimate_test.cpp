@@ -9,7 +9,6 @@ namespace {
 
 Workload work_of(double reached_points) {
   Workload work;
-  work.points = 2 * reached_points;
   work.reached_points = reached_points;
   work.model_points = 50'000;
   work.poses = 10'000;

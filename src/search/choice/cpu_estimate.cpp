@@ -6,8 +6,7 @@
 namespace clearway {
 namespace {
 
-// Measured: least squares of the logarithms of the whole command's CPU seconds, over every second
-// question of `clearway-bench choice` (docs/design/choice.md).
+// Measured by `clearway-bench choice`; docs/design/choice.md has the data and the fits.
 
 double sweep_seconds(const Workload& work, int threads) {
   const double alone = 0.064 + 7.02e-7 * work.model_points + 3.0e-6 * work.poses;
@@ -17,21 +16,19 @@ double sweep_seconds(const Workload& work, int threads) {
   return alone + search / threads;
 }
 
-double kdtree_seconds(const Workload& work, int threads) {
-  const double alone = 0.003 + 4.93e-7 * work.model_points;
-  const double nearness = 9.42e-3 * std::pow(std::max(work.near_points, 1.0), -0.141) +
-                          2.61e-9 * std::pow(work.near_points, 1.5);
-  const double search = 8.18e-10 * work.points +
-                        std::pow(work.poses, 0.638) *
-                            std::pow(work.path_length + work.model_length, 0.0914) * nearness;
-  return alone + search / threads;
+/// Time of kdtree over that of sweep. Their own times follow from much that the two have in common;
+/// their ratio from little.
+double kdtree_ratio(const Workload& work) {
+  const double poses = std::log(work.poses), radius = std::log(work.radius);
+  return std::exp(-0.0158 + 0.0109 * poses * poses + 0.2487 * radius + 0.0441 * radius * radius);
 }
 
 }  // namespace
 
 CpuEstimate estimate_on_cpu(const Workload& work, int threads) {
   if (work.model_points == 0 || work.poses == 0) return {};
-  return {sweep_seconds(work, threads), kdtree_seconds(work, threads)};
+  const double sweep = sweep_seconds(work, threads);
+  return {sweep, sweep * kdtree_ratio(work)};
 }
 
 }  // namespace clearway

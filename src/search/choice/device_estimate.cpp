@@ -10,11 +10,11 @@ namespace {
 // Measured as docs/design/pipeline.md says ("Start and end of a GPU").
 
 /// What a GPU adds to a run, seconds: of its start and end, what nothing runs beside.
-constexpr double kStart = 0.4;
+constexpr double kStart = 0.5;
 /// Cores that search as fast as a GPU does.
 constexpr double kCores = 350;
 /// How much longer a search on the CPU takes with distances beyond the radius.
-constexpr double kDistances = 6;
+constexpr double kDistances = 11;
 /// Environment points that a core searches in a second.
 constexpr double kPointsPerCore = 13e6;
 

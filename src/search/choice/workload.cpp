@@ -108,27 +108,26 @@ double path_length_of(const std::vector<Pose>& poses) {
 
 Workload workload_of(const PackedCloud& cloud, const Query& query) {
   Workload work;
-  work.points = static_cast<double>(cloud.point_count());
   work.model_points = static_cast<double>(query.model.size());
   work.poses = static_cast<double>(query.poses.size());
   work.radius = std::max({query.radius, query.clearance, query.profile});
   if (query.model.empty() || query.poses.empty()) return work;
   const Box model = box_of(query.model);
+  double length = 2 * work.radius;
   for (int k = 0; k < 3; ++k) {
-    work.model_length = std::max(work.model_length, model.hi[k] - model.lo[k]);
+    length = std::max(length, model.hi[k] - model.lo[k] + 2 * work.radius);
   }
-  work.path_length = path_length_of(query.poses);
   const Box reach = widened(model, work.radius);
   const std::size_t samples = std::min(kSampledPoses, query.poses.size());
+  double near_points = 0;  // of a pose
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t pose = (2 * i + 1) * query.poses.size() / (2 * samples);
-    work.near_points +=
+    near_points +=
         NearPoints(cloud, reach, query.poses[pose]).count() / static_cast<double>(samples);
   }
   // A model that goes on by its length meets as many points again.
-  const double lengths = work.path_length / (work.model_length + 2 * work.radius);
-  const double places = std::min(work.poses, 1 + lengths);
-  work.reached_points = std::min(work.points, work.near_points * places);
+  const double places = std::min(work.poses, 1 + path_length_of(query.poses) / length);
+  work.reached_points = std::min(static_cast<double>(cloud.point_count()), near_points * places);
   return work;
 }
 

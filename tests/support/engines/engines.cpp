@@ -172,7 +172,6 @@ std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, c
   }
   CHECK(wrong == 0);
   CHECK(wrong_hits == 0);
-  CHECK(answer.clearances.count() == found);
   return found;
 }
 
