@@ -46,7 +46,8 @@ std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options, c
   if (fallback_allowed(options)) {
     const int threads =
         options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
-    if (store == nullptr || store->reader().point_count() < surely_many_points(threads)) return nullptr;
+    if (store == nullptr || store->reader().point_count() < surely_many_points(threads))
+      return nullptr;
   }
   return std::make_shared<const DeviceStart>(options);
 }

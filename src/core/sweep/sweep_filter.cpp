@@ -69,12 +69,11 @@ bool SweepFilter::narrow(const SweepRef& ref, const Box& box, std::span<const st
                          SweepStatistics& statistics) {
   out.clear();
   const PointBox points(box);
-  limits.distance =
-      std::max(limits.distance,
-               ref.clearance > 0
-                   ? ref.clearance_limit(points.centre, points.rho, nodes.data(),
-                                         static_cast<std::uint32_t>(nodes.size()), statistics)
-                   : ref.radius);
+  limits.distance = std::max(
+      limits.distance,
+      ref.clearance > 0 ? ref.clearance_limit(points.centre, points.rho, nodes.data(),
+                                              static_cast<std::uint32_t>(nodes.size()), statistics)
+                        : ref.radius);
   return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
     return narrow_node(ref, points, limits, node, out, statistics);
   });

