@@ -35,7 +35,7 @@ void ModelTree::build(int threads) {
   std::vector<Part> level{{0, size(), 0}}, next;
   while (!level.empty()) {
 #pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
-    for (std::size_t i = 0; i < level.size(); ++i) divide(level[i]);
+    for (const Part& part : level) divide(part);
     next.clear();
     for (const Part& part : level) {
       if (part.end - part.begin <= kLeafPoints) continue;

@@ -13,10 +13,10 @@ namespace clearway {
 /// of a node.
 struct PointChord {
   Vec3 first, way;
-  double per_squared;  ///< of the way's length, 0 where it is none
+  double per_squared = 0;  ///< of the way's length, 0 where it is none
 
   CLEARWAY_HD PointChord(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e)
-      : first(motion.inverse_poses[node.first].apply(e)), way{}, per_squared(0) {
+      : first(motion.inverse_poses[node.first].apply(e)), way{} {
     if (node.count == 1) return;
     const Vec3 last = motion.inverse_poses[node.first + node.count - 1].apply(e);
     way = {last.x - first.x, last.y - first.y, last.z - first.z};

@@ -87,8 +87,9 @@ MotionChords::MotionChords(const MotionTree& motion, const Box& model, double re
     const MotionChord &earlier = chords_[at + 1], &later = chords_[node.later];
     const bool equal = earlier.is_one_place() && later.is_one_place() &&
                        poses[node.first] == poses[nodes[node.later].first];
-    chord = {equal ? MotionChord::kEqual : MotionChord::kNone,
-             std::min(earlier.least, later.least)};
+    chord.error = MotionChord::kNone;
+    if (equal) chord.error = MotionChord::kEqual;
+    chord.least = std::min(earlier.least, later.least);
   }
 #pragma omp parallel for schedule(dynamic, 64) num_threads(threads)
   for (std::size_t at = 0; at < nodes.size(); ++at) {

@@ -76,8 +76,7 @@ void MotionTree::find_deltas(const Box& model, int threads) {
     node += whole ? 2 * nodes_[node].count - 1 : 1;
   }
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (std::size_t i = 0; i < subtrees.size(); ++i) {
-    const std::uint32_t first = subtrees[i];
+  for (const std::uint32_t first : subtrees) {
     for (std::uint32_t node = first + 2 * nodes_[first].count - 1; node-- > first;) {
       nodes_[node].delta = delta_of(node, model);
     }

@@ -35,6 +35,7 @@ bool contains(const Box& box, const Vec3& x) { return overlap(box, {x, x}); }
 /// Of a box that a pose moves.
 Box moved(const Pose& pose, const Box& box) {
   std::vector<Vec3> corners;
+  corners.reserve(8);
   for (int i = 0; i < 8; ++i) {
     corners.push_back(
         transform(pose, {(i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,

@@ -79,7 +79,10 @@ class PageEngineKind {
   virtual void report_search(const PageEngines& engines, SearchReport& report,
                              const MessageLog& log) const = 0;
   /// Takes the engines down, beside the caller where that takes long.
-  virtual EngineEnd end(PageEngines /*engines*/) const { return {}; }
+  virtual EngineEnd end([[maybe_unused]] PageEngines engines) const {
+    engines.clear();
+    return {};
+  }
 
  protected:
   PageEngineNeeds needs_;

@@ -52,7 +52,7 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
 /// on the field; and other modes ask more of it.
 double SweepKind::fineness_for_query() const {
   if (query_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
-  const double poses = static_cast<double>(query_.poses.size());
+  const auto poses = static_cast<double>(query_.poses.size());
   return fineness_ * std::clamp(std::cbrt(poses / kPosesOfFullFineness), kLeastFineness, 1.0);
 }
 
