@@ -3,12 +3,10 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
 
 #include "core/cloud/kd_order.hpp"
-#include "core/util/macros.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "io/convert/quantum_bounds.hpp"
 #include "io/convert/select_split.hpp"
 
 namespace clearway {
@@ -18,53 +16,7 @@ constexpr std::size_t kParallelFrom = 1 << 16;
 /// Points parted before the boxes of the two sides are brought up to date: they are in cache then.
 constexpr std::size_t kPartedAtOnce = 1024;
 
-constexpr std::size_t kLanes = 4;  // of a point; the fourth is the index, unused
-
-struct Bounds {
-  std::int32_t lo[kLanes];
-  std::int32_t hi[kLanes];
-};
-
-Bounds no_bounds() {
-  Bounds b;
-  std::fill_n(b.lo, kLanes, std::numeric_limits<std::int32_t>::max());
-  std::fill_n(b.hi, kLanes, std::numeric_limits<std::int32_t>::min());
-  return b;
-}
-
-/// Four points at a time, which fill the widest vectors.
-CLEARWAY_SIMD_CLONES
-void extend(Bounds& b, const BucketPoint* points, std::size_t n) {
-  static_assert(sizeof(BucketPoint) == kLanes * sizeof(std::int32_t));
-  constexpr std::size_t kAtOnce = 4;
-  std::int32_t lo[kAtOnce * kLanes];
-  std::int32_t hi[kAtOnce * kLanes];
-  for (std::size_t k = 0; k < kAtOnce * kLanes; ++k) {
-    lo[k] = b.lo[k % kLanes];
-    hi[k] = b.hi[k % kLanes];
-  }
-  std::size_t i = 0;
-  for (; i + kAtOnce <= n; i += kAtOnce) {
-    std::int32_t lanes[kAtOnce * kLanes];
-    std::memcpy(lanes, points + i, sizeof lanes);
-    for (std::size_t k = 0; k < kAtOnce * kLanes; ++k) {
-      lo[k] = lanes[k] < lo[k] ? lanes[k] : lo[k];
-      hi[k] = lanes[k] > hi[k] ? lanes[k] : hi[k];
-    }
-  }
-  for (std::size_t k = 0; k < kAtOnce * kLanes; ++k) {
-    b.lo[k % kLanes] = std::min(b.lo[k % kLanes], lo[k]);
-    b.hi[k % kLanes] = std::max(b.hi[k % kLanes], hi[k]);
-  }
-  for (; i < n; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      b.lo[k] = std::min(b.lo[k], points[i].q[k]);
-      b.hi[k] = std::max(b.hi[k], points[i].q[k]);
-    }
-  }
-}
-
-int longest_side(const Bounds& b, const double* scale) {
+int longest_side(const QuantumBounds& b, const double* scale) {
   const auto side = [&](int k) {
     return (static_cast<std::uint32_t>(b.hi[k]) - static_cast<std::uint32_t>(b.lo[k])) * scale[k];
   };
@@ -90,12 +42,12 @@ class Parting {
     } else {
       add<true>(points, n);
     }
-    extend(bounds_[0], to_ + left, left_ - left);
-    extend(bounds_[1], to_ + right, right_ - right);
+    bounds_[0].extend({to_ + left, left_ - left});
+    bounds_[1].extend({to_ + right, right_ - right});
   }
 
-  const Bounds& left_bounds() const { return bounds_[0]; }
-  const Bounds& right_bounds() const { return bounds_[1]; }
+  const QuantumBounds& left_bounds() const { return bounds_[0]; }
+  const QuantumBounds& right_bounds() const { return bounds_[1]; }
 
  private:
   /// Without a branch that depends on a point. One store: a store to both sides would write beyond
@@ -127,7 +79,7 @@ class Parting {
   std::size_t right_;
   int axis_;
   KdSplit split_;
-  Bounds bounds_[2] = {no_bounds(), no_bounds()};
+  QuantumBounds bounds_[2];
 };
 
 class BucketOrder {
@@ -138,7 +90,7 @@ class BucketOrder {
   /// Orders n points of `from` within `bounds`; the outcome goes to `result`, which is `from` or
   /// `other`.
   void order(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n,
-             const Bounds& bounds) const {
+             const QuantumBounds& bounds) const {
     if (n < kParallelFrom) {
       const auto running = clocks_.measure(Stage::kOrder);
       order_alone(from, other, result, n, bounds);
@@ -161,12 +113,12 @@ class BucketOrder {
 
   struct Parts {
     std::size_t left;
-    Bounds bounds[2];
+    QuantumBounds bounds[2];
   };
 
   /// On one thread.
   void order_alone(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n,
-                   const Bounds& bounds) const {
+                   const QuantumBounds& bounds) const {
     if (n <= kBlockPoints) {
       if (result != from) std::copy(from, from + n, result);
       return;
@@ -177,13 +129,14 @@ class BucketOrder {
   }
 
   Parts split_measured(const BucketPoint* from, BucketPoint* to, std::size_t n,
-                       const Bounds& bounds) const {
+                       const QuantumBounds& bounds) const {
     const auto running = clocks_.measure(Stage::kOrder);
     return split(from, to, n, bounds);
   }
 
   /// Parts n > kBlockPoints points.
-  Parts split(const BucketPoint* from, BucketPoint* to, std::size_t n, const Bounds& bounds) const {
+  Parts split(const BucketPoint* from, BucketPoint* to, std::size_t n,
+              const QuantumBounds& bounds) const {
     const std::size_t left = left_count(n, n > cell_points_ ? cell_points_ : kBlockPoints);
     const int axis = longest_side(bounds, scale_);
     const CoordinateRange range{bounds.lo[axis], bounds.hi[axis]};
@@ -203,10 +156,10 @@ class BucketOrder {
 
 void order_bucket(std::span<BucketPoint> points, std::span<BucketPoint> scratch,
                   std::uint32_t cell_points, const double (&scale)[3], StageClocks& clocks) {
-  Bounds bounds = no_bounds();
+  QuantumBounds bounds;
   {
     const auto running = clocks.measure(Stage::kOrder);
-    extend(bounds, points.data(), points.size());
+    bounds.extend(points);
   }
   BucketOrder(cell_points, scale, clocks)
       .order(points.data(), scratch.data(), points.data(), points.size(), bounds);

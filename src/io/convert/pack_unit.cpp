@@ -9,6 +9,7 @@
 #include "core/cloud/packed_chunk.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/convert/kd_partition.hpp"
+#include "io/convert/quantum_bounds.hpp"
 
 namespace clearway {
 namespace {
@@ -40,26 +41,28 @@ class Unit {
 };
 
 QuantumBox box_of(std::span<const BucketPoint> points) {
-  QuantumBox box{{points[0].q[0], points[0].q[1], points[0].q[2]},
-                 {points[0].q[0], points[0].q[1], points[0].q[2]}};
-  for (const BucketPoint& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p.q[k]);
-      box.hi[k] = std::max(box.hi[k], p.q[k]);
-    }
+  QuantumBounds bounds;
+  bounds.extend(points);
+  return {{bounds.lo[0], bounds.lo[1], bounds.lo[2]}, {bounds.hi[0], bounds.hi[1], bounds.hi[2]}};
+}
+
+void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
+  std::vector<QuantumBox> boxes;
+  boxes.reserve(divide_up(points.size(), kBlockPoints));
+  for (std::size_t first = 0; first < points.size(); first += kBlockPoints) {
+    boxes.push_back(
+        box_of(points.subspan(first, std::min<std::size_t>(kBlockPoints, points.size() - first))));
   }
-  return box;
+  QuantumBox all = boxes.front();
+  for (const QuantumBox& box : boxes) all = united(all, box);
+  cell.cell = {static_cast<std::uint32_t>(points.size()), all};
+  for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
 }
 
 PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
                      std::uint32_t cell_points) {
   PackedCell cell;
-  cell.cell = {static_cast<std::uint32_t>(points.size()), box_of(points)};
-  for (std::size_t first = 0; first < points.size(); first += kBlockPoints) {
-    const auto block =
-        points.subspan(first, std::min<std::size_t>(kBlockPoints, points.size() - first));
-    cell.blocks.push_back(encode_block_box(cell.cell.box, box_of(block)));
-  }
+  append_boxes(points, cell);
   std::vector<std::int32_t> values(cell_points);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[axis];
