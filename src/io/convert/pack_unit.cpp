@@ -14,30 +14,33 @@
 namespace clearway {
 namespace {
 
-/// The points of a unit: as loaded (in source order) and as they are put in order.
+/// The points of a unit: as loaded (in source order), and in order.
 class Unit {
  public:
-  Unit(Distribution& distribution, std::size_t unit, StageClocks& clocks) {
+  Unit(Distribution& distribution, std::size_t unit, UnitBuffers& buffers, StageClocks& clocks)
+      : buffers_(buffers) {
     const auto running = clocks.measure(Stage::kLoad);
     loaded_ = distribution.take(unit);
-    points_ = std::make_unique_for_overwrite<BucketPoint[]>(loaded_.count);
-    scratch_ = std::make_unique_for_overwrite<BucketPoint[]>(loaded_.count);
+    points_ = buffers.take();
     for (std::size_t i = 0; i < loaded_.count; ++i) {
       const auto& q = loaded_.points[i].q;
       points_[i] = {{q[0], q[1], q[2]}, static_cast<std::uint32_t>(i)};
     }
   }
 
+  ~Unit() { buffers_.give_back(std::move(points_)); }
+  Unit(const Unit&) = delete;
+  Unit& operator=(const Unit&) = delete;
+
   std::uint64_t source(const BucketPoint& p) const {
     return loaded_.points[p.index].source_index();
   }
   std::span<BucketPoint> points() { return {points_.get(), loaded_.count}; }
-  std::span<BucketPoint> scratch() { return {scratch_.get(), loaded_.count}; }
 
  private:
+  UnitBuffers& buffers_;
   UnitPoints loaded_;
-  std::unique_ptr<BucketPoint[]> points_;
-  std::unique_ptr<BucketPoint[]> scratch_;
+  UnitBuffers::Buffer points_;
 };
 
 QuantumBox box_of(std::span<const BucketPoint> points) {
@@ -123,19 +126,21 @@ struct OrderedUnit::State {
 
 OrderedUnit::OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
                          const Lattice& lattice, const Quantisation& quantisation,
-                         std::uint32_t cell_points, StageClocks& clocks)
-    : state_(new State{clocks, Unit(distribution, unit, clocks), cell_points, {}}) {
+                         std::uint32_t cell_points, UnitBuffers& buffers, StageClocks& clocks)
+    : state_(new State{clocks, {distribution, unit, buffers, clocks}, cell_points, {}}) {
   Unit& loaded = state_->unit;
+  UnitBuffers::Buffer scratch = buffers.take();
   for (const std::span<BucketPoint> bucket :
        UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
     const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
-    order_bucket(bucket, loaded.scratch().subspan(first, bucket.size()), cell_points,
-                 quantisation.scale, clocks);
+    order_bucket(bucket, {scratch.get() + first, bucket.size()}, cell_points, quantisation.scale,
+                 clocks);
     for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
       state_->cells.emplace_back(
           bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
     }
   }
+  buffers.give_back(std::move(scratch));
 }
 
 OrderedUnit::~OrderedUnit() = default;
