@@ -240,7 +240,7 @@ class Conversion {
       const auto running = clocks_.measure(Stage::kWrite);
       writer.finish(top);
     }
-    auto synced = std::async(std::launch::async, [this] {
+    auto synced = std::async(std::launch::async | std::launch::deferred, [this] {
       const auto running = clocks_.measure(Stage::kSync);
       output_.sync();
     });
