@@ -13,6 +13,7 @@ namespace {
 
 std::vector<BucketPoint> bucket_of(const std::vector<Quantum>& points) {
   std::vector<BucketPoint> bucket;
+  bucket.reserve(points.size());
   for (const Quantum& q : points) {
     bucket.push_back({{q[0], q[1], q[2]}, static_cast<std::uint32_t>(bucket.size())});
   }
@@ -23,6 +24,7 @@ std::vector<BucketPoint> bucket_of(const std::vector<Quantum>& points) {
 void check_split(const std::vector<BucketPoint>& points, std::size_t left, int axis) {
   CAPTURE(points.size(), left, axis);
   std::vector<std::int32_t> sorted;
+  sorted.reserve(points.size());
   for (const BucketPoint& p : points) sorted.push_back(p.q[axis]);
   std::sort(sorted.begin(), sorted.end());
   std::vector<BucketPoint> scratch(points.size());
