@@ -202,8 +202,10 @@ void LengthOptions::convert(double metres) const {
 double LengthOptions::convert_for(const std::string& result, const std::string& crs_wkt) const {
   const double metres = metres_of_crs(crs_wkt);
   if (crs_wkt.empty() && !with_unit_.empty()) {
-    spdlog::warn("{}: has no CRS, so its coordinates are taken for metres; where the scan is in "
-                 "feet, give lengths without a unit", result);
+    spdlog::warn(
+        "{}: has no CRS, so its coordinates are taken for metres; where the scan is in "
+        "feet, give lengths without a unit",
+        result);
   }
   convert(metres);
   return metres;
