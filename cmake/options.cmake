@@ -18,6 +18,8 @@ endif()
 # The predicate's rounding is part of the result: no translation unit may fuse it.
 add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
   $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
+# Nobody reads the floating-point exceptions, which keep gcc from comparing in vectors.
+add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-trapping-math>)
 set(warnings -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND warnings -Wno-restrict)  # gcc 12 warns of its own std::string (gcc bug 105651)

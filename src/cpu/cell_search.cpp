@@ -79,7 +79,7 @@ void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_
   if (clearance_search_) {
     joined_.assign(nodes.begin(), nodes.end());
     const auto joined_count = static_cast<std::uint32_t>(nodes.size());
-    joined_.resize(filter_.ref().motion.join_straight(joined_.data(), joined_count));
+    joined_.resize(filter_.ref().motion.join_smooth(joined_.data(), joined_count));
   }
   std::int32_t q[3][kBlockPoints];
   for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));

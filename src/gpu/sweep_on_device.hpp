@@ -29,10 +29,12 @@ SweepOnDevice put_on_device(const SweepRef& sweep, Arrays& arrays) {
   move(ref.field.nearest, fine);
   move(ref.model.points, ref.model.size);
   move(ref.model.boxes, ref.model.box_count);
+  move(ref.wide.nodes, ref.wide.node_count);
+  move(ref.wide.packets, ref.wide.packet_count);
   move(ref.motion.nodes, poses == 0 ? 0 : 2 * poses - 1);
   move(ref.motion.inverse_poses, poses);
   move(ref.motion.poses, poses);
-  move(ref.motion.chords, ref.motion.chords == nullptr ? 0 : 2 * poses - 1);
+  move(ref.motion.curves, ref.motion.curves == nullptr ? 0 : 2 * poses - 1);
   return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice::kTallies)};
 }
 

@@ -4,45 +4,11 @@
 #include <cstdint>
 
 #include "core/query/clearance_set.hpp"
+#include "core/sweep/point_curve.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "core/util/bit_reversal_order.hpp"
 
 namespace clearway {
-
-/// The chord that a point moves along, seen from the model, while the model moves through the poses
-/// of a node.
-struct PointChord {
-  Vec3 first, way;
-  double per_squared = 0;  ///< of the way's length, 0 where it is none
-
-  CLEARWAY_HD PointChord(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e)
-      : first(motion.inverse_poses[node.first].apply(e)), way{} {
-    if (node.count == 1) return;
-    const Vec3 last = motion.inverse_poses[node.first + node.count - 1].apply(e);
-    way = {last.x - first.x, last.y - first.y, last.z - first.z};
-    const double squared = squared_length(way.x, way.y, way.z);
-    if (squared > 1e-300) per_squared = 1 / squared;
-  }
-
-  CLEARWAY_HD Box box() const {
-    Box box{first, first};
-    for (int k = 0; k < 3; ++k) (way[k] < 0 ? box.lo : box.hi)[k] += way[k];
-    return box;
-  }
-
-  /// Of the place nearest to m, from 0 to 1.
-  CLEARWAY_HD double place(const Vec3& m) const {
-    const double along =
-        (way.x * (m.x - first.x) + way.y * (m.y - first.y) + way.z * (m.z - first.z)) * per_squared;
-    return along > 0 ? (along < 1 ? along : 1) : 0;
-  }
-
-  CLEARWAY_HD double squared_distance_to(const Vec3& m) const {
-    const double t = place(m);
-    return squared_length(m.x - first.x - t * way.x, m.y - first.y - t * way.y,
-                          m.z - first.z - t * way.z);
-  }
-};
 
 /// The exact clearance of one environment point: branch and bound over motion tree and model. What
 /// is given up is proven to have only computed d2 above the best so far, so that ties reach the
@@ -88,6 +54,9 @@ class PointClearance {
   static constexpr std::uint32_t kMostNodes = BitReversalOrder::kMost;
 
  private:
+  /// Poses; covers the rounding of a place.
+  static constexpr double kPlaceSlack = 1e-6;
+
   CLEARWAY_HD std::uint32_t size_of(std::uint32_t at) const {
     return 2 * sweep_.motion.nodes[at].count - 1;
   }
@@ -117,8 +86,7 @@ class PointClearance {
       if (at != top) squared_lower = look(at);
       if (is_given_up(at, squared_lower)) {
         at += size_of(at);
-      } else if (is_straight(sweep_.motion.chords[at])) {
-        search_model(at);
+      } else if (search_model(at)) {
         at += size_of(at);
       } else {
         ++at;
@@ -126,54 +94,66 @@ class PointClearance {
     }
   }
 
-  /// Whether what its chord is wrong leaves few model points open.
-  CLEARWAY_HD bool is_straight(const MotionChord& chord) const {
-    return chord.is_one_place() || static_cast<double>(chord.error) * reach_ <= sweep_.open_area;
+  /// Whether that leaves few model points open.
+  CLEARWAY_HD bool is_close_enough(double error) const {
+    return error * reach_ <= sweep_.open_area;
   }
 
-  /// The square of how far from its chord a model point can lie that is the nearest at a pose of
-  /// the node.
-  CLEARWAY_HD double squared_ball(const MotionChord& chord) const {
-    const double error = chord.is_one_place() ? 0 : static_cast<double>(chord.error);
-    const double ball =
-        ((reach_ + 2 * sweep_.rounding) / static_cast<double>(chord.least) + error) * kRoundedUp;
-    return ball * ball * kRoundedUp;
+  /// How far from a curve, which is wrong by at most `error`, a model point can lie that is the
+  /// nearest at one of its poses.
+  CLEARWAY_HD double ball(double least, double error) const {
+    return ((reach_ + 2 * sweep_.rounding) / least + error) * kRoundedUp;
   }
 
-  /// One search of the model for all poses of a straight node.
-  CLEARWAY_HD void search_model(std::uint32_t at) {
+  /// One search of the model for all poses of a node; false where its curve is not close enough.
+  CLEARWAY_HD bool search_model(std::uint32_t at) {
+    const MotionCurve& smooth = sweep_.motion.curves[at];
+    const MotionNode& node = sweep_.motion.nodes[at];
+    const bool one_place = smooth.is_one_place();
+    double error = one_place ? 0 : static_cast<double>(smooth.error);
+    if (!one_place && !is_close_enough(error)) return false;
+    const double least = static_cast<double>(smooth.least);
+    const PointCurve curve(sweep_.motion, node, e_, ball(least, error));
+    error += curve.beside();
+    if (!one_place && !is_close_enough(error)) return false;
     ++statistics_.exact_tests;
-    const MotionChord& straight = sweep_.motion.chords[at];
-    const PointChord chord(sweep_.motion, sweep_.motion.nodes[at], e_);
-    double squared = squared_ball(straight);
-    sweep_.model.visit_nearest_first(
-        chord.box(), [&] { return squared; },
-        [&](const Vec3& m) { return chord.squared_distance_to(m); },
+    double squared = squared_ball(least, error);
+    sweep_.wide.visit_nearest_first(
+        curve.box(), [&] { return squared; },
+        [&](const PointPacket& packet, double(&out)[PointPacket::kMost]) {
+          curve.to_points(packet, out);
+        },
         [&](const Vec3& m) {
-          search_poses(at, m, chord);
-          squared = squared_ball(straight);
+          if (one_place) {
+            offer(node.first, m);
+          } else {
+            search_poses(node, m, curve, least, error);
+          }
+          squared = squared_ball(least, error);
         });
+    return true;
   }
 
-  /// One model point against the poses of a straight node.
-  CLEARWAY_HD void search_poses(std::uint32_t top, const Vec3& m, const PointChord& chord) {
-    const MotionTreeRef& motion = sweep_.motion;
-    const MotionNode& node = motion.nodes[top];
-    if (node.count == 1 || motion.chords[top].is_one_place()) return offer(node.first, m);
-    const double guess = chord.place(m) * (node.count - 1) + 0.5;
-    offer(node.first + static_cast<std::uint32_t>(guess), m);
-    const std::uint32_t end = top + size_of(top);
-    for (std::uint32_t at = top + 1; at < end;) {
-      const MotionNode& part = motion.nodes[at];
-      if (part.count == 1 || motion.chords[at].is_one_place()) {
-        offer(part.first, m);
-        at += size_of(at);
-      } else if (PointChord(motion, part, e_).squared_distance_to(m) >
-                 squared_ball(motion.chords[at])) {
-        at += size_of(at);
-      } else {
-        ++at;
-      }
+  CLEARWAY_HD double squared_ball(double least, double error) const {
+    const double radius = ball(least, error);
+    return radius * radius * kRoundedUp;
+  }
+
+  /// One model point against the poses of a smooth node, the likely nearest first.
+  CLEARWAY_HD void search_poses(const MotionNode& node, const Vec3& m, const PointCurve& curve,
+                                double least, double error) {
+    const double last = node.count - 1;
+    PointCurve::Places places = curve.places(m, squared_ball(least, error));
+    if (places.low > places.high) return;
+    const auto nearest = static_cast<std::uint32_t>(places.nearest * last + 0.5);
+    offer(node.first + nearest, m);
+    places = curve.places(m, squared_ball(least, error));
+    const double low = places.low * last - kPlaceSlack, high = places.high * last + kPlaceSlack;
+    if (low > last || high < 0) return;
+    const std::uint32_t begin = low > 0 ? static_cast<std::uint32_t>(std::ceil(low)) : 0;
+    const std::uint32_t end = high < last ? static_cast<std::uint32_t>(high) + 1 : node.count;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (i != nearest) offer(node.first + i, m);
     }
   }
 

@@ -162,7 +162,7 @@ class SweepBlock {
       SweepHits<Warp>(job_, statistics_).search_half(first + i, {shared_.queue, queued_}, false);
     }
     Warp::each([&](std::uint32_t lane) {
-      if (lane == 0) shared_.joined = job_.sweep.motion.join_straight(shared_.queue, queued_);
+      if (lane == 0) shared_.joined = job_.sweep.motion.join_smooth(shared_.queue, queued_);
     });
     for (std::uint32_t i = 0; i < halves(); ++i) {
       SweepClearances<Warp>(job_, first + i, statistics_).search({shared_.queue, shared_.joined});

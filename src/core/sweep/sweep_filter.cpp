@@ -21,9 +21,9 @@ double rounding_of(const Query& query, const MotionTree& motion, const ModelFiel
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
 
-/// At a distance d from a surface, a chord that is wrong by x leaves the model points of a strip of
+/// At a distance d from a surface, a curve that is wrong by x leaves the model points of a strip of
 /// width sqrt(8 d x) open, so d x is kept below this many squared spacings (measured).
-constexpr double kOpenArea = 4;
+constexpr double kOpenArea = 1;
 
 }  // namespace
 
@@ -35,6 +35,7 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
       ref_{.motion = motion.ref(),
            .model = model.ref(),
            .field = field.ref(),
+           .wide = {},
            .radius = search_radius(query),
            .resolved_from = query.radius,
            .clearance = query.clearance,
@@ -44,9 +45,11 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
            .first_pose = query.first_pose,
            .between_poses = query.between_poses} {
   if (query.clearance > 0) {
-    chords_ = MotionChords(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
+    curves_ = MotionCurves(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
                            model.spacing(), threads);
-    ref_.motion.chords = chords_.data();
+    ref_.motion.curves = curves_.data();
+    wide_ = WideTree(model);
+    ref_.wide = wide_.ref();
   }
   for_plan_ = ref_;
   for_plan_.field = field.ref_as_made();

@@ -7,10 +7,11 @@
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/model_tree.hpp"
+#include "core/geometry/wide_tree.hpp"
 #include "core/page/pose_reach.hpp"
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_ref.hpp"
-#include "core/trajectory/motion_chords.hpp"
+#include "core/trajectory/motion_curves.hpp"
 #include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
@@ -28,7 +29,9 @@ class SweepFilter final : public PoseReach {
   const SweepRef& ref() const { return ref_; }
   const MotionTree& motion() const override { return motion_; }
   const ModelTree& model() const { return model_; }
-  std::uint64_t allocated_bytes() const { return chords_.allocated_bytes(); }
+  std::uint64_t allocated_bytes() const {
+    return curves_.allocated_bytes() + wide_.allocated_bytes();
+  }
 
   /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
   /// clearance be the nearest to one, as fine as the box is small; replaces `out`. In the order of
@@ -72,7 +75,8 @@ class SweepFilter final : public PoseReach {
   const MotionTree& motion_;
   const ModelTree& model_;
   SweepRef ref_;
-  MotionChords chords_;  ///< with a clearance
+  MotionCurves curves_;  ///< with a clearance
+  WideTree wide_;        ///< likewise
   SweepRef for_plan_;    ///< makes no bricks: cells are too large to need them
 };
 

@@ -4,6 +4,7 @@
 
 #include "core/geometry/model_tree_ref.hpp"
 #include "core/geometry/sweep_bounds.hpp"
+#include "core/geometry/wide_tree_ref.hpp"
 #include "core/sweep/field/model_field_ref.hpp"
 #include "core/sweep/swept_step.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
@@ -48,7 +49,8 @@ struct SweepRef {
   MotionTreeRef motion;
   ModelTreeRef model;
   ModelFieldRef field;
-  double radius;  ///< whatever is closer is a hit; with a tolerance search_radius()
+  WideTreeRef wide;  ///< the model's points again, with a clearance
+  double radius;     ///< whatever is closer is a hit; with a tolerance search_radius()
   double
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
   double clearance;   ///< 0: not asked for

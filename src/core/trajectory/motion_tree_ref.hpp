@@ -38,9 +38,9 @@ struct InversePose {
   }
 };
 
-/// How straight a node's poses move, seen from the model: what they pull back to lies near the
-/// chord between what its first and its last pose do.
-struct MotionChord {
+/// How smoothly a node's poses move, seen from the model: what pose number i of n pulls back to
+/// lies near the place i / (n - 1) of the MotionParabola.
+struct MotionCurve {
   static constexpr float kEqual = -1;  ///< error: all poses are equal
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
@@ -48,7 +48,24 @@ struct MotionChord {
   float least;  ///< at most the least singular value of any rotation
 
   CLEARWAY_HD bool is_one_place() const { return error < 0; }
-  CLEARWAY_HD bool is_straight() const { return error < kNone; }
+  CLEARWAY_HD bool is_smooth() const { return error < kNone; }
+};
+
+/// Runs through what the first, a middle and the last pose of a node pull a point back to, at the
+/// places 0, `middle_place` and 1.
+struct MotionParabola {
+  std::uint32_t first, middle, last;
+  double middle_place;
+
+  CLEARWAY_HD explicit MotionParabola(const MotionNode& node)
+      : first(node.first),
+        middle(node.first + (node.count - 1) / 2),
+        last(node.first + node.count - 1),
+        middle_place(static_cast<double>(middle - first) /
+                     (node.count > 1 ? static_cast<double>(node.count - 1) : 1.0)) {}
+
+  /// What t (1 - t) is at the middle; 0 where there is none.
+  CLEARWAY_HD double height() const { return middle_place * (1 - middle_place); }
 };
 
 /// A MotionTree where it lies, on the host or on a device. Does not own it.
@@ -57,23 +74,23 @@ struct MotionTreeRef {
   const InversePose* inverse_poses;  ///< a pose
   const Pose* poses;
   std::uint32_t pose_count;
-  const MotionChord* chords = nullptr;  ///< a node, or null where none are needed
+  const MotionCurve* curves = nullptr;  ///< a node, or null where none are needed
 
-  /// Replaces both halves of a straight node by it, again and again; nodes in the order of the
+  /// Replaces both halves of a smooth node by it, again and again; nodes in the order of the
   /// poses. How many are left.
-  CLEARWAY_HD std::uint32_t join_straight(std::uint32_t* list, std::uint32_t count) const {
+  CLEARWAY_HD std::uint32_t join_smooth(std::uint32_t* list, std::uint32_t count) const {
     std::uint32_t left = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       list[left++] = list[i];
-      while (left > 1 && is_straight_from(list[left - 2], list[left - 1])) --list[--left - 1];
+      while (left > 1 && are_halves_of_smooth(list[left - 2], list[left - 1])) --list[--left - 1];
     }
     return left;
   }
 
  private:
-  /// Whether the halves are those of a straight node, which is then earlier - 1.
-  CLEARWAY_HD bool is_straight_from(std::uint32_t earlier, std::uint32_t later) const {
-    return earlier > 0 && nodes[earlier - 1].later == later && chords[earlier - 1].is_straight();
+  /// Whether the halves are those of a smooth node, which is then earlier - 1.
+  CLEARWAY_HD bool are_halves_of_smooth(std::uint32_t earlier, std::uint32_t later) const {
+    return earlier > 0 && nodes[earlier - 1].later == later && curves[earlier - 1].is_smooth();
   }
 };
 

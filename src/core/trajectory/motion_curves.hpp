@@ -9,21 +9,21 @@
 namespace clearway {
 
 /// How straight the poses of every node of a motion tree move, seen from the model.
-class MotionChords {
+class MotionCurves {
  public:
   /// For points that are at most `reach` metres from the model, the rounding of a test included.
   /// spacing: of the model's points, metres. Nodes whose chord is of no use beside it have none.
-  MotionChords(const MotionTree& motion, const Box& model, double reach, double spacing,
+  MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing,
                int threads);
-  MotionChords() = default;
+  MotionCurves() = default;
 
   /// A node, in the order of the tree.
-  const MotionChord* data() const { return chords_.data(); }
+  const MotionCurve* data() const { return curves_.data(); }
 
-  std::uint64_t allocated_bytes() const { return chords_.capacity() * sizeof(MotionChord); }
+  std::uint64_t allocated_bytes() const { return curves_.capacity() * sizeof(MotionCurve); }
 
  private:
-  std::vector<MotionChord> chords_;
+  std::vector<MotionCurve> curves_;
 };
 
 }  // namespace clearway

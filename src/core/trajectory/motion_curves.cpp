@@ -1,4 +1,4 @@
-#include "core/trajectory/motion_chords.hpp"
+#include "core/trajectory/motion_curves.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,10 @@
 namespace clearway {
 namespace {
 
-/// Longer ranges are not looked at as a whole: what a chord saves grows no more.
-constexpr std::uint32_t kMostPoses = 1024;
-/// No chord is of use that is wrong by more than this share of the spacing of the model's points,
+/// Curves that move the model by more than this share of its size have boxes that are too wide for
+/// the distance to them to tell much (measured).
+constexpr double kMostMotion = 0.1;
+/// No curve is of use that is wrong by more than this share of the spacing of the model's points,
 /// or that has gaps of about twice this many spacings between its poses.
 constexpr double kMostError = 0.125, kMostGap = 1;
 
@@ -41,20 +42,24 @@ Vec3 seen_by(const InversePose& other, const Pose& pose, const Vec3& y) {
                                  turned.z + (pose.translation[2] - other.translation[2])});
 }
 
-/// How far any place that `pose` pulls back into the region is there from the chord between where
-/// `first` and `last` pull it back to: the place on the chord that is best for the centre serves
-/// all, and the difference is affine.
-double distance_from_chord(const InversePose& first, const InversePose& last, const Pose& pose,
-                           const Region& region) {
-  const Vec3& y = region.centre;
-  const Vec3 a = seen_by(first, pose, y), b = seen_by(last, pose, y);
-  const Vec3 v{b.x - a.x, b.y - a.y, b.z - a.z}, w{y.x - a.x, y.y - a.y, y.z - a.z};
-  const double squared = squared_length(v.x, v.y, v.z);
-  const double along = v.x * w.x + v.y * w.y + v.z * w.z;
-  const double t = squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
-  double distance = length({w.x - t * v.x, w.y - t * v.y, w.z - t * v.z});
-  double inverse[9];
-  for (int k = 0; k < 9; ++k) inverse[k] = (1 - t) * first.inverse[k] + t * last.inverse[k];
+/// How far any place that `pose`, at place t of the curve, pulls back into the region is there from
+/// the curve: that is affine in the place.
+double distance_from_curve(const MotionTree& motion, const MotionParabola& curve, double t,
+                           const Pose& pose, const Region& region) {
+  const double height = curve.height();
+  const double bend = height > 0 ? t * (1 - t) / height : 0;
+  const double share[3] = {1 - t - bend * (1 - curve.middle_place), bend,
+                           t - bend * curve.middle_place};
+  const std::uint32_t through[3] = {curve.first, curve.middle, curve.last};
+  Vec3 off = region.centre;
+  double inverse[9] = {};
+  for (int i = 0; i < 3; ++i) {
+    const InversePose& back = motion.inverse_pose(through[i]);
+    const Vec3 seen = seen_by(back, pose, region.centre);
+    for (int k = 0; k < 3; ++k) off[k] -= share[i] * seen[k];
+    for (int k = 0; k < 9; ++k) inverse[k] += share[i] * back.inverse[k];
+  }
+  double distance = length(off);
   for (int k = 0; k < 3; ++k) {
     const double* r = pose.rotation + k;
     const Vec3 column = product(inverse, {r[0], r[3], r[6]});
@@ -71,42 +76,43 @@ float rounded_up(double value) {
 
 }  // namespace
 
-MotionChords::MotionChords(const MotionTree& motion, const Box& model, double reach, double spacing,
+MotionCurves::MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing,
                            int threads)
-    : chords_(motion.nodes().size()) {
+    : curves_(motion.nodes().size()) {
   const std::span<const MotionNode> nodes = motion.nodes();
   const std::span<const Pose> poses = motion.poses();
   for (std::size_t at = nodes.size(); at-- > 0;) {
     const MotionNode& node = nodes[at];
-    MotionChord& chord = chords_[at];
+    MotionCurve& curve = curves_[at];
     if (node.count == 1) {
-      chord = {MotionChord::kEqual,
+      curve = {MotionCurve::kEqual,
                std::nextafterf(static_cast<float>(motion.inverse_pose(node.first).least), 0.0F)};
       continue;
     }
-    const MotionChord &earlier = chords_[at + 1], &later = chords_[node.later];
+    const MotionCurve &earlier = curves_[at + 1], &later = curves_[node.later];
     const bool equal = earlier.is_one_place() && later.is_one_place() &&
                        poses[node.first] == poses[nodes[node.later].first];
-    chord.error = MotionChord::kNone;
-    if (equal) chord.error = MotionChord::kEqual;
-    chord.least = std::min(earlier.least, later.least);
+    curve.error = MotionCurve::kNone;
+    if (equal) curve.error = MotionCurve::kEqual;
+    curve.least = std::min(earlier.least, later.least);
   }
+  const double most_motion = kMostMotion * 2 * half_diagonal(model);
 #pragma omp parallel for schedule(dynamic, 64) num_threads(threads)
   for (std::size_t at = 0; at < nodes.size(); ++at) {
     const MotionNode& node = nodes[at];
-    MotionChord& chord = chords_[at];
-    if (node.count > kMostPoses || chord.is_one_place()) continue;
+    MotionCurve& curve = curves_[at];
+    if (curve.is_one_place() || node.delta > most_motion) continue;
     if (node.delta > kMostGap * spacing * node.count) continue;
-    const Region region = region_of(model, reach / static_cast<double>(chord.least) * kRoundedUp);
-    const std::uint32_t last = node.first + node.count - 1;
+    const Region region = region_of(model, reach / static_cast<double>(curve.least) * kRoundedUp);
+    const MotionParabola parabola(node);
     const double most_error = kMostError * spacing;
     double error = 0;
-    for (std::uint32_t i = node.first + 1; i < last && error <= most_error; ++i) {
-      const double here = distance_from_chord(motion.inverse_pose(node.first),
-                                              motion.inverse_pose(last), poses[i], region);
+    for (std::uint32_t i = parabola.first + 1; i < parabola.last && error <= most_error; ++i) {
+      const double place = static_cast<double>(i - parabola.first) / (node.count - 1);
+      const double here = distance_from_curve(motion, parabola, place, poses[i], region);
       if (!(here <= error)) error = here;
     }
-    if (error <= most_error) chord.error = rounded_up(error);
+    if (error <= most_error) curve.error = rounded_up(error);
   }
 }
 
