@@ -22,7 +22,8 @@ class PointCurve {
     const MotionParabola through(node);
     start_ = motion.inverse_poses[through.middle].apply(e);
     if (node.count == 1) return;
-    const Vec3 first = motion.inverse_poses[through.first].apply(e);
+    const Vec3 first =
+        through.middle == through.first ? start_ : motion.inverse_poses[through.first].apply(e);
     const Vec3 last = motion.inverse_poses[through.last].apply(e);
     const Vec3 way = difference(last, first);
     const double height = through.height(), t = through.middle_place;
