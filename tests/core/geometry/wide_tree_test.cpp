@@ -1,0 +1,90 @@
+#include "core/geometry/wide_tree.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <random>
+#include <tuple>
+#include <vector>
+
+using namespace clearway;
+
+namespace {
+
+bool less(const Vec3& a, const Vec3& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+/// What a search from a box visits, in order of the coordinates.
+std::vector<Vec3> visited_from(const WideTree& tree, const Box& box, double squared_reach) {
+  std::vector<Vec3> visited;
+  tree.ref().visit_nearest_first(
+      box, [&] { return squared_reach; },
+      [&](const PointPacket& packet, double(&out)[PointPacket::kMost]) {
+        for (std::uint32_t i = 0; i < PointPacket::kMost; ++i) {
+          out[i] = least_squared_distance(box, packet.point(i));
+        }
+      },
+      [&](const Vec3& m) { visited.push_back(m); });
+  std::sort(visited.begin(), visited.end(), less);
+  return visited;
+}
+
+std::vector<Vec3> random_points(std::size_t count, const Vec3& centre, double size) {
+  std::mt19937_64 random(count);
+  std::uniform_real_distribution<double> unit(-size / 2, size / 2);
+  std::vector<Vec3> points(count);
+  for (Vec3& p : points) {
+    p = {centre.x + unit(random), centre.y + unit(random), centre.z + 0.1 * unit(random)};
+  }
+  return points;
+}
+
+/// A search visits each point within its reach as often as it is there, and no other.
+void check(const std::vector<Vec3>& points, const Vec3& centre, double size) {
+  const WideTree tree{ModelTree(points)};
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(-size, size);
+  for (int k = 0; k < 20; ++k) {
+    const Vec3 lo{centre.x + unit(random), centre.y + unit(random), centre.z + unit(random)};
+    const Box box{lo, {lo.x + size / 4, lo.y, lo.z + size / 100}};
+    const double reach = k % 3 == 0 ? 0 : 0.5 * size / (k % 5 + 1);
+    std::vector<Vec3> expected;
+    std::copy_if(points.begin(), points.end(), std::back_inserter(expected),
+                 [&](const Vec3& p) { return least_squared_distance(box, p) <= reach * reach; });
+    std::sort(expected.begin(), expected.end(), less);
+    CHECK(visited_from(tree, box, reach * reach) == expected);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a wide tree visits every point within reach once") {
+  const std::size_t count = GENERATE(1, 2, 7, 8, 9, 16, 17, 63, 64, 65, 511, 513, 4097, 20000);
+  check(random_points(count, {0, 0, 0}, 4), {0, 0, 0}, 4);
+}
+
+TEST_CASE("a wide tree far from the origin and of odd sizes") {
+  check(random_points(3000, {4.5e6, -5.2e6, 300}, 5), {4.5e6, -5.2e6, 300}, 5);
+  check(random_points(3000, {1e12, 0, -1e12}, 1), {1e12, 0, -1e12}, 1);
+  check(random_points(3000, {0, 0, 0}, 1e-30), {0, 0, 0}, 1e-30);
+  check(random_points(3000, {0, 0, 0}, 1e25), {0, 0, 0}, 1e25);
+}
+
+TEST_CASE("a wide tree of points at few places") {
+  std::vector<Vec3> points(500, {1, 2, 3});
+  points.resize(900, {1, 2.5, 3});
+  check(points, {1, 2, 3}, 2);
+  CHECK(visited_from(WideTree{ModelTree(points)}, {{1, 2, 3}, {1, 2, 3}}, 0).size() == 500);
+}
+
+TEST_CASE("a wide tree without points visits none and one without bounds visits all") {
+  CHECK(visited_from(WideTree{}, {{0, 0, 0}, {1, 1, 1}}, 1).empty());
+  const WideTree tree{ModelTree(random_points(100, {0, 0, 0}, 1))};
+  const double infinity = std::numeric_limits<double>::infinity();
+  CHECK(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, infinity).size() == 100);
+  CHECK(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, std::nan("")).size() == 100);
+  CHECK(visited_from(tree, {{1e30, 0, 0}, {1e30, 0, 0}}, 2e60).size() == 100);
+}
