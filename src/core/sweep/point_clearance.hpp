@@ -84,13 +84,8 @@ class PointClearance {
     const std::uint32_t end = top + size_of(top);
     for (std::uint32_t at = top; at < end;) {
       if (at != top) squared_lower = look(at);
-      if (is_given_up(at, squared_lower)) {
-        at += size_of(at);
-      } else if (search_model(at)) {
-        at += size_of(at);
-      } else {
-        ++at;
-      }
+      const bool done = is_given_up(at, squared_lower) || search_model(at);
+      at += done ? size_of(at) : 1;
     }
   }
 
@@ -112,7 +107,7 @@ class PointClearance {
     const bool one_place = smooth.is_one_place();
     double error = one_place ? 0 : static_cast<double>(smooth.error);
     if (!one_place && !is_close_enough(error)) return false;
-    const double least = static_cast<double>(smooth.least);
+    const auto least = static_cast<double>(smooth.least);
     const PointCurve curve(sweep_.motion, node, e_, ball(least, error));
     error += curve.beside();
     if (!one_place && !is_close_enough(error)) return false;
@@ -145,7 +140,8 @@ class PointClearance {
     const double last = node.count - 1;
     PointCurve::Places places = curve.places(m, squared_ball(least, error));
     if (places.low > places.high) return;
-    const auto nearest = static_cast<std::uint32_t>(places.nearest * last + 0.5);
+    const double guess = places.nearest * last + 0.5;
+    const auto nearest = static_cast<std::uint32_t>(guess);
     offer(node.first + nearest, m);
     places = curve.places(m, squared_ball(least, error));
     const double low = places.low * last - kPlaceSlack, high = places.high * last + kPlaceSlack;
