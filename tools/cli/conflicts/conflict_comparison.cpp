@@ -15,6 +15,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
 #include "findings/match_conflicts.hpp"
+#include "io/formats/wkt.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway::tool {

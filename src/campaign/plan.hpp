@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "campaign/campaign_file.hpp"
+
+namespace clearway::campaign {
+
+/// The command lines of one task, without the program's name; "out.h5" and so on are in its folder.
+using Command = std::vector<std::string>;
+
+/// What one process does: a run and its outputs.
+struct Task {
+  std::size_t number = 0;
+  std::string vehicle, route, environment, radius;
+  std::string unit;  ///< of lengths, for people: "m"
+  nlohmann::ordered_json question;
+  std::vector<std::string> outputs;  ///< names of the files beside the result
+  std::vector<Command> commands;     ///< the first one makes the result
+  std::string outputs_id;            ///< of how the outputs are made, whatever the limits
+
+  /// "truck/north/0.1": it and its folder below the campaign's.
+  std::string name() const { return vehicle + "/" + route + "/" + radius; }
+  std::filesystem::path folder() const { return std::filesystem::path("runs") / name(); }
+  std::string question_id() const;
+};
+
+inline constexpr const char* kResultName = "out.h5";
+inline constexpr const char* kReportName = "report.html";
+
+struct Plan {
+  std::string name;
+  std::vector<Task> tasks;
+};
+
+/// A run as it is to be asked.
+struct PlannedRun {
+  const Vehicle& vehicle;
+  const Route& route;
+  const Argument& radius;
+  const Entry& environment;
+  Arguments arguments;                                 ///< all of its command line
+  std::vector<std::pair<Command, Arguments>> outputs;  ///< the other command lines, for messages
+};
+
+/// What reading the inputs of a run tells.
+struct RunFacts {
+  nlohmann::ordered_json question;
+  std::string unit;
+};
+
+/// Vehicles, routes and radii in the order of the file, radii innermost. facts_of reads what a task
+/// would read, and refuses what that would refuse.
+Plan make_plan(const Campaign& campaign,
+               const std::function<RunFacts(const PlannedRun&)>& facts_of);
+
+}  // namespace clearway::campaign
