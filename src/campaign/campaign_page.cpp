@@ -7,6 +7,7 @@
 
 #include "campaign/campaign_style.hpp"
 #include "campaign/page_cell.hpp"
+#include "campaign/task_list.hpp"
 #include "core/util/format.hpp"
 #include "io/conflicts/json_text.hpp"
 
@@ -61,8 +62,8 @@ class CampaignPage {
     summary();
     const auto radii = names_in(plan_, &Task::radius);
     for (const std::string& radius : radii) table(radius);
-    list(CellKind::kFailed, "Failed");
-    list(CellKind::kUnfinished, "Not done");
+    failures();
+    unfinished();
     text_ += "</main>\n<script type=\"application/json\" id=\"facts\">" + facts_text() +
              "</script>\n</body>\n</html>\n";
     return std::move(text_);
@@ -92,7 +93,10 @@ class CampaignPage {
                "</b> <span class=\"sign\" aria-hidden=\"true\">" + look.sign + "</span> " +
                look.words + "</li>\n";
     }
-    text_ += "</ul>\n</section>\n";
+    text_ +=
+        "</ul>\n<p class=\"note\">A cell of the tables below gives the verdict and the least "
+        "distance "
+        "that is known. It links to the report of its run.</p>\n</section>\n";
   }
 
   std::string answer(std::size_t unknown) const {
@@ -156,21 +160,29 @@ class CampaignPage {
     text_ += link.empty() ? "</td>" : "</a></td>";
   }
 
-  void list(CellKind kind, const char* title) {
-    if (cells_of(looks_, kind) == 0) return;
+  void failures() {
+    if (cells_of(looks_, CellKind::kFailed) == 0) return;
     text_ +=
-        std::string("<section>\n<h2>") + title +
-        "</h2>\n<table class=\"list\">\n<thead><tr><th scope=\"col\">task</th><th scope=\"col\">"
-        "run</th><th scope=\"col\">what happened</th></tr></thead>\n<tbody>\n";
+        "<section>\n<h2>Failed</h2>\n<table class=\"list\">\n<thead><tr><th scope=\"col\">task</th>"
+        "<th scope=\"col\">run</th><th scope=\"col\">what happened</th></tr></thead>\n<tbody>\n";
     for (const Task& task : plan_.tasks) {
       const TaskLook& look = looks_[task.number];
-      if (kind_of(look) != kind) continue;
-      const std::string link = cell_link(task, look), name = html_text(task.name());
-      text_ += "<tr><td>" + std::to_string(task.number) + "</td><td>" +
-               (link.empty() ? name : "<a href=\"" + link + "\">" + name + "</a>") + "</td><td>" +
+      if (kind_of(look) != CellKind::kFailed) continue;
+      text_ += "<tr><td>" + std::to_string(task.number) + "</td><td><a href=\"" +
+               cell_link(task, look) + "\">" + html_text(task.name()) + "</a></td><td>" +
                html_text(cell_details(task, look)) + "</td></tr>\n";
     }
     text_ += "</tbody>\n</table>\n</section>\n";
+  }
+
+  void unfinished() {
+    TaskList tasks;
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      if (kind_of(looks_[i]) == CellKind::kUnfinished) tasks.push_back(i);
+    }
+    if (tasks.empty()) return;
+    text_ += "<section>\n<h2>Not done</h2>\n<p>Tasks " + task_list_text(tasks) +
+             ". <code>clearway campaign run DIR --all</code> goes on with them.</p>\n</section>\n";
   }
 
   /// Nothing in it ends the element that it stands in.

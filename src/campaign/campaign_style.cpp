@@ -30,6 +30,7 @@ h2 { font-size: 1.15rem; margin: 0 0 0.5rem; }
 .legend li, .matrix td { background: var(--back); color: var(--front);
   border: 1.5px solid var(--edge); }
 .legend .not_done, .matrix .not_done { border-style: dashed; }
+.note { margin: 0.5rem 0 0; color: var(--soft); font-size: 0.9rem; }
 .scroll { overflow: auto; max-height: 85vh; }
 table { border-collapse: separate; border-spacing: 3px; font-variant-numeric: tabular-nums; }
 .matrix th { background: #fff; text-align: left; padding: 0.25rem 0.6rem; font-weight: 600;

@@ -33,6 +33,7 @@ class RunCommands {
               const Argument& radius)
       : campaign_(campaign),
         vehicle_(vehicle),
+        route_(route),
         environment_(campaign.environments[route.environment]),
         model_(Arguments{file_argument(vehicle, "--model")} + vehicle.arguments),
         path_(Arguments{file_argument(route, "--trajectory")} + route.arguments),
@@ -47,10 +48,11 @@ class RunCommands {
     std::vector<std::pair<Command, Arguments>> out;
     if (!campaign_.conflict_formats.empty()) out.push_back(conflicts());
     if (campaign_.report) {
-      out.emplace_back(
-          Command{"report", kResultName, "--force", std::string("--output=") + kReportName},
-          Arguments{file_argument(environment_, "--env")} + model_ + path_ + vehicle_.axes +
-              campaign_.conflicts + campaign_.classes);
+      const std::string title = campaign_.name + ": " + vehicle_.name + " on " + route_.name;
+      out.emplace_back(Command{"report", kResultName, "--force",
+                               std::string("--output=") + kReportName, "--title=" + title},
+                       Arguments{file_argument(environment_, "--env")} + model_ + path_ +
+                           vehicle_.axes + campaign_.conflicts + campaign_.classes);
     }
     return out;
   }
@@ -79,6 +81,7 @@ class RunCommands {
 
   const Campaign& campaign_;
   const Vehicle& vehicle_;
+  const Route& route_;
   const Entry& environment_;
   Arguments model_, path_;
   const Argument& radius_;
@@ -95,9 +98,8 @@ Task make_task(const Campaign& campaign, const PlannedRun& run, const RunFacts& 
   task.question = facts.question;
   task.unit = facts.unit;
   auto made = nlohmann::ordered_json::array();
-  task.commands.push_back(
-      with_arguments({"run", "--resume", "--json", std::string("--output=") + kResultName},
-                     run.arguments, campaign.search_limits + campaign.limits));
+  task.commands.push_back(with_arguments(
+      {"run", "--resume", "--json", std::string("--output=") + kResultName}, run.arguments, {}));
   for (const auto& [command, arguments] : run.outputs) {
     made.push_back(with_arguments(command, arguments, {}));
     task.commands.push_back(with_arguments(command, arguments, campaign.limits));
@@ -118,8 +120,12 @@ Plan make_plan(const Campaign& campaign,
       const Entry& environment = campaign.environments[route.environment];
       for (std::size_t i = 0; i < campaign.radii.size(); ++i) {
         const RunCommands commands(campaign, vehicle, route, campaign.radii[i]);
-        const PlannedRun run{vehicle,     route,          campaign.radii[i],
-                             environment, commands.run(), commands.outputs()};
+        const PlannedRun run{vehicle,
+                             route,
+                             campaign.radii[i],
+                             environment,
+                             commands.run() + campaign.search_limits + campaign.limits,
+                             commands.outputs()};
         Task task = make_task(campaign, run, facts_of(run));
         task.number = plan.tasks.size();
         task.vehicle = vehicle.name;

@@ -126,9 +126,12 @@ void QuestionReader::check_outputs(const PlannedRun& run) {
     CLI::App program;
     add_conflicts(program);
     add_report(program);
-    for (CLI::App* one : program.get_subcommands({})) one->callback([] {});
+    for (CLI::App* one : program.get_subcommands({})) {
+      one->parse_complete_callback([] { throw CLI::Success(); });  // it is not to be run
+    }
     try {
       program.parse(reversed(command, arguments));
+    } catch (const CLI::Success&) {
     } catch (const CLI::ParseError& error) {
       refuse_argument(file_, arguments, error.what());
     }

@@ -43,7 +43,7 @@ def make_scene(work, vehicles, routes, slow=()):
     (work / "routes").mkdir()
     model = (work / "hall/model.ply").read_bytes()
     if slow:
-        scene(work / "large", 1000, 20000, 10)
+        scene(work / "large", 1000, 200000, 10)
     for i in range(vehicles):
         own = (work / "large/model.ply").read_bytes() if i in slow else model
         (work / f"vehicles/v{i:02}.ply").write_bytes(own)

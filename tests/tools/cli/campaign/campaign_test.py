@@ -191,12 +191,20 @@ def page(test):
     expect(facts["runs"][0]["colliding_points"] == points["colliding_points"], "points")
     for link in re.findall(r'href="([^"]*)"', text):
         expect((test.path / link).exists(), link + ": a link leads nowhere")
-    program("campaign", "plan", write_campaign(test.work), "-o", test.work / "new")
+    test.plan(path=test.work / "new", radii=[0.1], outputs={"report": True, "conflicts": ["bcf"]},
+              query={"first_pose": True, "clearance": 0.3}, classes=["5cm", 0.1, 0.3])
     program("campaign", "report", test.work / "new")
     text = (test.work / "new/index.html").read_text()
     expect("No conflict so far. 6 of 6 runs have no result." in text, "nothing is done")
     expect("<td class=\"clear\"" not in text, "a missing run is shown as clear")
     expect(outcome("campaign", "report", test.work / "new").returncode == 2, "a page is there")
+    expect(outcome("campaign", "run", test.work / "new", "--task", "1").returncode == 0, "task 1")
+    facts = json.loads(program("campaign", "report", test.work / "new", "--force", "--json"))
+    run = facts["runs"][1]
+    expect(run["page"] == "runs/v00/r01/0.1/report.html" and facts["not_done"] == 5, f"{facts}")
+    expect("Test: v00 on r01" in (test.work / "new" / run["page"]).read_text(), "its title")
+    expect((test.work / "new/runs/v00/r01/0.1/conflicts.bcf").exists(), "BCF")
+    expect(run["least"]["distance"] < 0.3, f"{run}")
 
 
 def misuse(test):

@@ -110,7 +110,7 @@ def attempt(path, watch, draw, usual, kills):
     """One call of the campaign, disturbed. Whether it ended by itself, and the SIGKILLs."""
     process = subprocess.Popen([PROGRAM, "campaign", "run", path, "--all", "--jobs", "2"],
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    struck = 0
+    struck, children = 0, []
     while process.poll() is None and struck < kills:
         time.sleep(draw.random() * usual / 8)
         if draw.random() < 0.2:

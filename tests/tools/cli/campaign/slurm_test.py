@@ -20,13 +20,12 @@ MAX_ARRAY = 20  # more tasks become two arrays
 
 
 def children_of(number):
-    """Processes that a process started, and theirs."""
+    """Processes that a process started."""
     found = pathlib.Path(f"/proc/{number}/task/{number}/children")
     try:
-        own = [int(word) for word in found.read_text().split()]
+        return [int(word) for word in found.read_text().split()]
     except FileNotFoundError:
         return []
-    return own + [below for one in own for below in children_of(one)]
 
 
 def command_line(number):
@@ -44,9 +43,23 @@ def task_process(folder, task):
         words = command_line(int(entry.name))
         if b"campaign" in words and str(folder).encode() in words and \
                 words[-3:-1] == [b"--task", str(task).encode()]:
-            if children_of(int(entry.name)):
-                return int(entry.name)
+            return int(entry.name)
     return None
+
+
+def held(folder, task):
+    """The process of a task, its command stopped so that it cannot end; None where it has."""
+    process = task_process(folder, task)
+    try:
+        os.kill(children_of(process)[0], signal.SIGSTOP)
+        return process
+    except (ProcessLookupError, IndexError, TypeError):
+        return None
+
+
+def has_pending(number, which):
+    text = pathlib.Path(f"/proc/{number}/status").read_text()
+    return int(text.split("ShdPnd:")[1].split()[0], 16) >> (which - 1) & 1
 
 
 class Campaign:
@@ -62,18 +75,24 @@ class Campaign:
                 self.disturbed.add(task)
 
     def kill(self, task):
-        process = task_process(self.path, task)
+        process = held(self.path, task)
         if process is None:
             return False
         os.kill(process, signal.SIGKILL)
         return True
 
     def stop(self, task):
-        process = task_process(self.path, task)
+        """As Slurm does 60 seconds before the end: to the script alone."""
+        process = held(self.path, task)
         if process is None:
             return False
-        # As Slurm does 60 seconds before the end: to the script alone.
+        command = children_of(process)[0]
         self.slurm.run("scancel", "--batch", "--signal=TERM", self.element(task))
+        last = time.monotonic() + 20
+        while not has_pending(command, signal.SIGTERM):
+            expect(time.monotonic() < last, "the script does not pass TERM on")
+            time.sleep(0.02)
+        os.kill(command, signal.SIGCONT)
         return True
 
     def element(self, task):
