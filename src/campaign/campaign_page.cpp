@@ -90,11 +90,11 @@ class CampaignPage {
       const CellLook& look = look_of(kind);
       text_ += std::string("<li class=\"") + look.name + "\"><b>" +
                format_count(cells_of(looks_, kind)) +
-               "</b> <span class=\"sign\" aria-hidden=\"true\">" + look.sign + "</span> " +
+               R"(</b> <span class="sign" aria-hidden="true">)" + look.sign + "</span> " +
                look.words + "</li>\n";
     }
     text_ +=
-        "</ul>\n<p class=\"note\">A cell of the tables below gives the verdict and the least "
+        "</ul>\n<p class='note'>A cell of the tables below gives the verdict and the least "
         "distance "
         "that is known. It links to the report of its run.</p>\n</section>\n";
   }
@@ -155,7 +155,7 @@ class CampaignPage {
              "\">";
     if (!link.empty()) text_ += "<a href=\"" + link + "\">";
     text_ += std::string("<span class=\"sign\" aria-hidden=\"true\">") + kind.sign +
-             "</span> <span class=\"word\">" + cell_word(look) + "</span>";
+             R"(</span> <span class="word">)" + cell_word(look) + "</span>";
     if (!distance.empty()) text_ += "<br><b>" + distance + "</b>";
     text_ += link.empty() ? "</td>" : "</a></td>";
   }

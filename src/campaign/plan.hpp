@@ -15,6 +15,7 @@ namespace clearway::campaign {
 using Command = std::vector<std::string>;
 
 /// What one process does: a run and its outputs.
+// NOLINTNEXTLINE(bugprone-exception-escape): of JSON that is moved
 struct Task {
   std::size_t number = 0;
   std::string vehicle, route, environment, radius;

@@ -69,16 +69,20 @@ void write_state(const std::filesystem::path& folder, const TaskState& state) {
                json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
-ordered_json task_facts(const std::string& run_json) {
-  const ordered_json run = ordered_json::parse(run_json);
-  ordered_json warnings = ordered_json::array();
-  for (const auto& warning : run.at("warnings")) warnings.push_back(warning.at("code"));
-  const ordered_json& profile = run.at("least_profile");
-  return {{"verdict", run.at("verdict")},
-          {"colliding_points", run.at("colliding_points")},
-          {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
-          {"first", place_of(run.at("first_place"))},
-          {"warnings", std::move(warnings)}};
+ordered_json task_facts(const std::filesystem::path& run_json) {
+  try {
+    const ordered_json run = ordered_json::parse(text_of_file(run_json));
+    ordered_json warnings = ordered_json::array();
+    for (const auto& warning : run.at("warnings")) warnings.push_back(warning.at("code"));
+    const ordered_json& profile = run.at("least_profile");
+    return {{"verdict", run.at("verdict")},
+            {"colliding_points", run.at("colliding_points")},
+            {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
+            {"first", place_of(run.at("first_place"))},
+            {"warnings", std::move(warnings)}};
+  } catch (const ordered_json::exception& error) {
+    throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());
+  }
 }
 
 }  // namespace clearway::campaign

@@ -12,6 +12,7 @@ namespace clearway::campaign {
 enum class Ending { kBegun, kDone, kInterrupted, kFailed };
 
 /// state.json in the folder of a run.
+// NOLINTNEXTLINE(bugprone-exception-escape): of JSON that is moved
 struct TaskState {
   Ending ending = Ending::kBegun;
   std::string question_id, outputs_id;  ///< of the plan that it was tried by
@@ -30,7 +31,7 @@ std::optional<TaskState> read_state(const std::filesystem::path& folder);
 void write_state(const std::filesystem::path& folder, const TaskState& state);
 
 /// Of what clearway run --json printed: verdict, colliding_points, least and its pose and chainage,
-/// first, and the codes of the warnings.
-nlohmann::ordered_json task_facts(const std::string& run_json);
+/// first, and the codes of the warnings. Throws ResourceError where the file is cut.
+nlohmann::ordered_json task_facts(const std::filesystem::path& run_json);
 
 }  // namespace clearway::campaign

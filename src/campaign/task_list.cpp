@@ -43,7 +43,7 @@ std::optional<TaskList> parse_task_list(const std::string& text) {
     begin = comma + 1;
   }
   std::ranges::sort(tasks);
-  tasks.erase(std::ranges::unique(tasks).begin(), tasks.end());
+  tasks.erase(std::unique(tasks.begin(), tasks.end()), tasks.end());
   return tasks;
 }
 

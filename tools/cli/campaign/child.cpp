@@ -45,6 +45,7 @@ int call_program(const ChildCommand& command) {
   std::vector<std::string> words{"clearway"};
   words.insert(words.end(), command.words.begin(), command.words.end());
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   return run_clearway(static_cast<int>(words.size()), pointers.data());

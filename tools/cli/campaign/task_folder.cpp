@@ -141,7 +141,7 @@ const campaign::TaskState& TaskFolder::end(int code) {
 /// The inputs may have changed since they were planned.
 void TaskFolder::judge_result() {
   if (campaign::answers(path_ / kResultName, task_.question)) {
-    state_.facts = campaign::task_facts(campaign::text_of_file(run_output()));
+    state_.facts = campaign::task_facts(run_output());
     return;
   }
   state_.ending = Ending::kFailed;
@@ -150,6 +150,8 @@ void TaskFolder::judge_result() {
 }
 
 std::string TaskFolder::last_error() const {
+  std::error_code unknown;
+  if (!fs::exists(log(), unknown)) return "";
   const std::string text = campaign::text_of_file(log());
   const std::string_view own = std::string_view(text).substr(std::min(log_begin_, text.size()));
   constexpr std::string_view kError = "error: ";

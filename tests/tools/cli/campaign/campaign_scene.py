@@ -2,10 +2,11 @@
 argument of the script."""
 
 import json
+import os
 import subprocess
 import sys
 
-PROGRAM = sys.argv[1]
+PROGRAM = os.path.abspath(sys.argv[1])
 
 
 def expect(condition, what):

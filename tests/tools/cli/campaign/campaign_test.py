@@ -6,13 +6,16 @@ campaign_test.py PROGRAM
 
 import fcntl
 import json
+import os
 import pathlib
 import re
+import signal
 import struct
+import subprocess
 import tempfile
 import time
 
-from campaign_scene import expect, make_scene, outcome, program, status, write_campaign
+from campaign_scene import PROGRAM, expect, make_scene, outcome, program, status, write_campaign
 
 OFD_SETLK, WRITE_LOCK, UNLOCK = 37, 1, 2  # of Linux
 
@@ -177,6 +180,46 @@ def failures(test):
     model.write_bytes(sound)
 
 
+def signals(test):
+    """TERM ends the tasks, and the campaign with 5; those that had not begun are missing."""
+    path = test.work / "stopped"
+    test.plan(path=path)
+    process = subprocess.Popen([PROGRAM, "campaign", "run", path, "--all"],
+                               stderr=subprocess.PIPE, text=True)
+    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    while not children.read_text() and process.poll() is None:
+        pass
+    process.send_signal(signal.SIGTERM)
+    said = process.communicate()[1]
+    expect(process.returncode == 5, f"exit code {process.returncode}: {said}")
+    look = status(path)
+    expect(look["running"] == 0 and look["failed"] == 0 and look["missing"] > 0, f"{look}")
+    done = outcome("campaign", "run", path, "--all")
+    expect(done.returncode == 0 and status(path)["done"] == 6, done.stderr)
+
+
+def crashes(test):
+    """A task that is killed is tried again, at most twice; one that crashes is not."""
+    for which, tries, code in [("KILL", 3, 4), ("SEGV", 1, 128 + signal.SIGSEGV)]:
+        path = test.work / which
+        test.plan(path=path)
+        process = subprocess.Popen([PROGRAM, "campaign", "run", path, "--all"],
+                                   stderr=subprocess.PIPE, text=True)
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        while process.poll() is None:
+            try:
+                for child in map(int, children.read_text().split()):
+                    os.kill(child, getattr(signal, "SIG" + which))
+            except (FileNotFoundError, ProcessLookupError):
+                pass
+        expect(process.returncode == code, f"{which}: exit code {process.returncode}")
+        failed = [one for one in status(path)["list"] if one["status"] == "failed"]
+        expect(failed and all(one["tries"] == tries and one["exit_code"] == code
+                              for one in failed), f"{which}: {failed}")
+        expect((program("campaign", "status", path, "--failed") == "") == (which == "KILL"),
+               "a crash is tried again")
+
+
 def page(test):
     expect(program("campaign", "report", test.path, "--date", "today", "--force") == "", "report")
     text = (test.path / "index.html").read_text()
@@ -228,7 +271,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         test = Test(pathlib.Path(folder))
         for check in [errors_name_the_key, plans_are_stable, tasks_are_idempotent, by_hand,
-                      one_at_a_time, new_plans_keep_results, failures, page, misuse]:
+                      one_at_a_time, new_plans_keep_results, failures, signals, crashes, page, misuse]:
             begin = time.monotonic()
             check(test)
             print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)
