@@ -27,6 +27,7 @@ struct ConflictOptions {
   std::uint64_t min_points = 10;  ///< groups of fewer are counted, not listed
   /// Metres along the path: longer groups are cut at multiples of it; 0: never.
   double split = 25;
+  double chainage_start = 0;  ///< metres: the chainage of the first pose; cuts stay where they are
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;  ///< of the model; not along one line
   /// Of the model's points, for results that do not hold it. Without any, sides are unknown.
   std::optional<Box> model_box = {};
@@ -51,7 +52,10 @@ struct Conflict {
   std::optional<double> encroachment = {};           ///< radius - least_distance
   std::optional<Vec3> nearest_point = {};  ///< where it is; not for results before version 3
   Side side = Side::kUnknown;  ///< of the nearest point, or else of the centroid at the first pose
-  std::uint64_t group = 0;     ///< smallest source of the whole group, before it was cut
+  /// Of the same place, metres from the pose's position: to the left along the model's own axis,
+  /// and up. The model's box is not needed. None where the pose's rotation cannot be inverted.
+  std::optional<double> lateral = {}, height = {};
+  std::uint64_t group = 0;  ///< smallest source of the whole group, before it was cut
 };
 
 struct Conflicts {

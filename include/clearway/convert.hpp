@@ -33,6 +33,12 @@ struct ConvertOptions {
   StopFlag stop = nullptr;
 };
 
+/// How long all threads together were busy with a stage of a conversion.
+struct StageSeconds {
+  std::string stage;
+  double seconds = 0;
+};
+
 struct ConvertReport {
   bool was_finished = false;  ///< the store was there already: nothing was converted
   std::uint64_t points = 0;   ///< stored
@@ -46,6 +52,7 @@ struct ConvertReport {
   std::uint64_t output_bytes = 0;
   /// Wall clock; count_seconds holds all before too.
   double count_seconds = 0, distribute_seconds = 0, partition_seconds = 0, confirm_seconds = 0;
+  std::vector<StageSeconds> busy_seconds = {};
   std::vector<Message> warnings = {};
 };
 

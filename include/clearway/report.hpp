@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,15 @@ namespace clearway {
 
 struct ReportOptions {
   std::string title = {};  ///< empty: made of the names below
+  /// For the head of the page, as they are; empty ones are left out.
+  std::string project = {}, client = {}, author = {};
   std::string date = {};  ///< as it is to stand on the page; nothing else in it depends on the time
   /// Names of the files for people; empty ones are left out.
   std::string result_name = {}, environment_name = {}, model_name = {}, trajectory_name = {};
+  /// What was left out of the model's file: points whose z is below it, and how many. For the page
+  /// to say; `model` is without them.
+  std::optional<double> model_above = {};
+  std::uint64_t model_left_out = 0;
   /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.
   /// The last is at least the radius, and none above it is beyond the clearance asked for. Empty:
   /// the radius, and the clearance where that is larger.

@@ -2,21 +2,25 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "clearway/found_place.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/store.hpp"
 
 namespace clearway {
 
-enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: sweep
+enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: by estimate
 enum class Device { kAuto, kCpu, kCuda };             ///< kAuto: a GPU where there is one with room
 
 const char* name_of(Engine engine);  ///< "auto", "sweep", "grid" or "kdtree"
 const char* name_of(Device device);  ///< "auto", "cpu" or "cuda"
+
+class DeviceStart;
 
 /// How a query is searched. Without a tolerance and with exact precision the result's bytes depend
 /// on none of it.
@@ -36,6 +40,9 @@ struct SearchOptions {
   /// Of reading model and trajectory, told already: the report holds them too, and strict counts
   /// them.
   std::vector<Message> input_warnings = {};
+  std::shared_ptr<const DeviceStart> started = nullptr;  ///< start_devices(), or done here
+  /// The process uses CUDA for nothing else: the GPUs' contexts end while the result is written.
+  bool end_gpus = false;
   double journal_interval_seconds = 5;  ///< between two syncs of the journal to the disk
   ProgressCallback progress = nullptr;
   MessageCallback message = nullptr;  ///< notes, and the warnings that the report holds
@@ -52,20 +59,25 @@ struct ToleranceReport {
 /// of that stage was busy.
 struct SearchSeconds {
   double total = 0;
-  double context = 0;  ///< of making the GPUs' contexts
-  double thin = 0;     ///< of choosing what a tolerance keeps
-  double field = 0;    ///< of making what the engine looks up: the model field, the grid's groups
+  double context = 0;       ///< of starting the GPUs, beside all that comes before the engine
+  double context_wait = 0;  ///< of it, what the search waited for
+  double thin = 0;          ///< of choosing what a tolerance keeps
+  double field = 0;  ///< of making what the engine looks up: the model field, the grid's groups
   double plan = 0;
   double engine = 0;  ///< of making the engine with its slots
   double search = 0, read = 0, upload = 0, compute = 0, collect = 0;
-  double write = 0;  ///< of the result
+  double write = 0;     ///< of the result; beside it the GPUs' memory is given back
+  double end_wait = 0;  ///< of that, what came after the writing
 };
 
-/// Where the model comes closest to the environment.
-struct LeastDistance {
-  double distance = 0;       ///< metres
-  std::uint32_t pose = 0;    ///< the first one that has it
-  std::uint64_t source = 0;  ///< of the point, of several the smallest
+/// Estimated seconds of answering, in which a GPU's start counts.
+struct DeviceEstimate {
+  double cpu = 0, cuda = 0;
+};
+
+/// Of the whole command on the CPU, seconds.
+struct EngineEstimate {
+  double sweep_seconds = 0, kdtree_seconds = 0;
 };
 
 /// What was found, and how.
@@ -75,13 +87,18 @@ struct SearchReport {
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
   std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
-  std::optional<LeastDistance> least;  ///< of the whole profile, where a pose is close enough
+  /// Where the query asks for it, and not of a result that was there already: the point with the
+  /// smallest first pose, the least clearance and the least distance of the profile, with its
+  /// first pose. Of several points the smallest source.
+  std::optional<FoundPlace> first_place, least_clearance, least_profile;
   std::vector<Message> warnings;
 
-  Engine engine = Engine::kAuto;  ///< that searched
+  Engine engine = Engine::kAuto;                  ///< that searched
+  std::optional<EngineEstimate> engine_estimate;  ///< where it chose the engine
   Device device = Device::kCpu;
-  std::string device_name = "the CPU";  ///< for people
-  std::uint64_t searches = 0;           ///< pairs of pose and model point
+  std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
+  std::string device_name = "the CPU";     ///< for people
+  std::uint64_t searches = 0;              ///< pairs of pose and model point
   std::optional<ToleranceReport> tolerance;
   double field_voxel = 0, grid_cell = 0;  ///< metres, of what the engine built; 0: nothing
   std::uint64_t cells_total = 0, cells_read = 0, bytes_read = 0;
@@ -102,6 +119,13 @@ struct SearchReport {
 /// there; Interrupted when asked to stop.
 SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
                     const SearchOptions& options = {});
+
+/// Begins to start the GPUs that a search with these options takes, and returns at once: for
+/// callers that read large inputs first. Goes into SearchOptions::started. Null where nothing is
+/// started: with device kAuto without the store, or where it has so few points that the CPU may be
+/// taken.
+std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options,
+                                                 const Store* store = nullptr);
 
 /// Throws what search() would throw before it looks at store, model and trajectory: for callers
 /// that read large inputs first. As search() does, it replaces a file OUTPUT.partial: see before

@@ -32,8 +32,8 @@ SweepStatistics CellSearch::take_statistics() { return std::exchange(statistics_
 std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Query& query,
                                      std::uint64_t most_poses) {
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
-  // A clearance search notes a bound a node, in a list that may have grown to twice its need.
-  const std::uint64_t of_clearance = query.clearance > 0 ? 48 * most_poses + (1U << 15) : 0;
+  // A list for clearances may have grown to twice its need.
+  const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
   return sizeof(CellSearch) +
          depths * (sizeof(decltype(lists_)::value_type) + most_poses * sizeof(std::uint32_t)) +
          of_clearance;
@@ -53,9 +53,10 @@ void CellSearch::search_blocks(std::uint32_t first, std::uint32_t count,
   std::vector<std::uint32_t> open = std::move(lists_[depth]);
   open.clear();
   open.reserve(poses_);  // disjoint nodes are no more than their poses
-  filter_.narrow(position_box(cloud_.quantisation(), box_of(first, count)), nodes, open,
-                 statistics_);
-  if (!open.empty()) {
+  if (filter_.narrow(position_box(cloud_.quantisation(), box_of(first, count)), nodes, open,
+                     statistics_)) {
+    for (std::uint32_t block = first; block < first + count; ++block) mark_all(block);
+  } else if (!open.empty()) {
     if (count == 1) {
       search_points(first, open);
     } else {
@@ -67,15 +68,25 @@ void CellSearch::search_blocks(std::uint32_t first, std::uint32_t count,
   lists_[depth] = std::move(open);
 }
 
+void CellSearch::mark_all(std::uint32_t block) {
+  const std::uint32_t count = std::min(kBlockPoints, cell_->count - block * kBlockPoints);
+  output_.hits[block] = ~std::uint64_t{0} >> (kBlockPoints - count);
+}
+
 void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_t> nodes) {
   const std::uint32_t begin = block * kBlockPoints;
   const std::uint32_t count = std::min(kBlockPoints, cell_->count - begin);
+  if (clearance_search_) {
+    joined_.assign(nodes.begin(), nodes.end());
+    const auto joined_count = static_cast<std::uint32_t>(nodes.size());
+    joined_.resize(filter_.ref().motion.join_straight(joined_.data(), joined_count));
+  }
   std::int32_t q[3][kBlockPoints];
   for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3 e = position(cloud_.quantisation(), q[0][i], q[1][i], q[2][i]);
     const bool hit = clearance_search_ && filter_.ref().hits_follow_from_clearance()
-                         ? search_clearance(e, begin + i, nodes)
+                         ? search_clearance(e, begin + i)
                          : search_hit(e, begin + i, nodes);
     output_.hits[block] |= std::uint64_t{hit} << i;
   }
@@ -95,15 +106,14 @@ bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
   }
   // No point is within a clearance of at most the radius that does not collide.
   if (clearance_search_ && (hit || query.clearance > query.radius)) {
-    search_clearance(e, index, nodes);
+    search_clearance(e, index);
   }
   return hit;
 }
 
 /// Whether its least d2 makes the point collide.
-bool CellSearch::search_clearance(const Vec3& e, std::uint32_t index,
-                                  std::span<const std::uint32_t> nodes) {
-  const Clearance clearance = clearance_search_->nearest(e, nodes, statistics_);
+bool CellSearch::search_clearance(const Vec3& e, std::uint32_t index) {
+  const Clearance clearance = clearance_search_->nearest(e, joined_, statistics_);
   output_.clearances[index] = clearance;
   const double radius = filter_.query().radius;
   return clearance.squared < rounded_product(radius, radius);

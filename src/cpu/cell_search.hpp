@@ -40,9 +40,10 @@ class CellSearch {
   QuantumBox box_of(std::uint32_t first, std::uint32_t count) const;
   void search_blocks(std::uint32_t first, std::uint32_t count, std::span<const std::uint32_t> nodes,
                      std::size_t depth);
+  void mark_all(std::uint32_t block);
   void search_points(std::uint32_t block, std::span<const std::uint32_t> nodes);
   bool search_hit(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes);
-  bool search_clearance(const Vec3& e, std::uint32_t index, std::span<const std::uint32_t> nodes);
+  bool search_clearance(const Vec3& e, std::uint32_t index);
 
   const PackedCloud& cloud_;
   const SweepFilter& filter_;
@@ -52,6 +53,7 @@ class CellSearch {
   Output output_;
   std::size_t poses_ = 0;                          ///< that the cell's nodes have together
   std::vector<std::vector<std::uint32_t>> lists_;  ///< of open motion nodes, one a depth
+  std::vector<std::uint32_t> joined_;              ///< motion nodes for clearances
   std::optional<ClearanceSearch> clearance_search_;
   SweepStatistics statistics_;
 };

@@ -12,6 +12,9 @@
 namespace clearway {
 namespace {
 
+/// Stretches are counted without rounding, on any path.
+constexpr double kLeastSplit = 1e-9;
+
 void check_options(const ConflictOptions& options) {
   if (!(options.gap > 0) || !std::isfinite(options.gap)) {
     throw UsageError("a gap of " + shown(options.gap) + " m; expected a finite length above 0");
@@ -19,6 +22,14 @@ void check_options(const ConflictOptions& options) {
   if (!(options.split >= 0) || !std::isfinite(options.split)) {
     throw UsageError("stretches of " + shown(options.split) +
                      " m; expected a finite length, or 0 for none");
+  }
+  if (options.split > 0 && options.split < kLeastSplit) {
+    throw UsageError("stretches of " + shown(options.split) + " m; expected " + shown(kLeastSplit) +
+                     " m or more, or 0 for none");
+  }
+  if (!std::isfinite(options.chainage_start)) {
+    throw UsageError("a chainage of " + shown(options.chainage_start) +
+                     " m at the first pose; expected a finite one");
   }
   if (along_one_line(options.forward, options.up)) {
     throw UsageError("forward and up lie along the same axis; expected two different axes");
@@ -40,8 +51,8 @@ void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
   const std::uint64_t hash = hash_of_trajectory(poses);
   if (poses.size() == header.poses && hash == header.trajectory_hash) return;
   refuse(result.name(),
-         "was searched along another trajectory: of " + format_count(header.poses) +
-             " poses with the hash " + hash_text(header.trajectory_hash) + ". The one given has " +
+         "was searched along another trajectory: of " + counted(header.poses, "pose") +
+             " with the hash " + hash_text(header.trajectory_hash) + ". The one given has " +
              format_count(poses.size()) + " with the hash " + hash_text(hash),
          Remedy::kSameTrajectory);
 }

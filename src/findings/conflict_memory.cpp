@@ -61,7 +61,7 @@ void ConflictMemory::check_parts(std::uint64_t cells, std::uint64_t parts) const
 void ConflictMemory::check(std::uint64_t needed, std::uint64_t enough) const {
   if (needed <= allowed_) return;
   throw ResourceError(format_size(allowed_) + " of memory is too little: the conflicts of " +
-                          format_count(points_) + " points need at least " + format_size(needed),
+                          counted(points_, "point") + " need at least " + format_size(needed),
                       Remedy::kMoreMemory, static_cast<double>(enough));
 }
 

@@ -14,7 +14,7 @@ std::vector<Message> conflict_warnings(const Conflicts& conflicts, const std::st
   if (!(length > 0 && length >= kMostOfThePath * conflicts.path_length)) return {};
   return {{Message::Severity::kWarning,
            "one-long-conflict",
-           "one group of " + format_count(conflicts.longest_group_points) + " points spans " +
+           "one group of " + counted(conflicts.longest_group_points, "point") + " spans " +
                format_brief(length) + " " + unit + " of " + format_brief(conflicts.path_length) +
                " " + unit + " of path, as wheels do that stand on the ground",
            {{"points", static_cast<double>(conflicts.longest_group_points)},

@@ -177,9 +177,16 @@ class ConflictSearch {
   }
 
   void complete(Conflict& conflict) const {
-    if (!model_box_) return;
+    conflict.chainage_from += options_.chainage_start;
+    conflict.chainage_to += options_.chainage_start;
     const Pose& pose = poses_[conflict.nearest_pose.value_or(conflict.first_pose)];
     const Vec3 place = conflict.nearest_point.value_or(conflict.centroid);
+    const Vec3 there = ahead_left_up(place, pose, options_.forward, options_.up);
+    if (std::isfinite(there.y) && std::isfinite(there.z)) {
+      conflict.lateral = there.y;
+      conflict.height = there.z;
+    }
+    if (!model_box_) return;
     conflict.side = side_of(place, pose, *model_box_, options_.forward, options_.up);
   }
 

@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 namespace clearway {
 namespace {
 
 struct Candidate {
-  double volume;
+  double volume;       ///< common to the grown boxes
+  double sides;        ///< where that is 0: of what the boxes themselves have in common, their sum
   std::uint32_t a, b;  ///< ids
 
   bool before(const Candidate& other) const {
-    return std::tuple(-volume, a, b) < std::tuple(-other.volume, other.a, other.b);
+    return std::tuple(-volume, -sides, a, b) <
+           std::tuple(-other.volume, -other.sides, other.a, other.b);
   }
 };
 
@@ -29,6 +32,18 @@ double common_volume(const Box& a, const Box& b) {
     volume *= side;
   }
   return volume;
+}
+
+/// Of boxes that touch: the sum of the sides that they share, 0 for a point. Beside large
+/// coordinates a small gap is rounded away, and flat boxes share no volume.
+std::optional<double> common_sides(const Box& a, const Box& b) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double side = std::min(a.hi[k], b.hi[k]) - std::max(a.lo[k], b.lo[k]);
+    if (!(side >= 0)) return std::nullopt;
+    sum += side;
+  }
+  return sum;
 }
 
 /// Of conflicts in the order of their boxes along x.
@@ -57,7 +72,8 @@ std::vector<Candidate> candidates(const Conflicts& a, const Conflicts& b, double
       const Box other = grown(in_b.box, gap);
       if (other.lo.x > box.hi.x) break;
       const double volume = common_volume(box, other);
-      if (volume > 0) out.push_back({volume, in_a.id, in_b.id});
+      const std::optional<double> sides = volume > 0 ? 0 : common_sides(in_a.box, in_b.box);
+      if (sides) out.push_back({volume, *sides, in_a.id, in_b.id});
     }
   }
   std::ranges::sort(out, [](const Candidate& x, const Candidate& y) { return x.before(y); });

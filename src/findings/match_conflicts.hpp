@@ -16,7 +16,8 @@ struct ConflictMatch {
 };
 
 /// Matches by place, one with one: two may match whose boxes, each grown by the gap on every side,
-/// overlap. Those that overlap most come first; of equal ones those of smaller ids.
+/// overlap, or that touch as they are. Those that overlap most come first; of equal ones those of
+/// smaller ids.
 ConflictMatch match_conflicts(const Conflicts& a, const Conflicts& b, double gap);
 
 }  // namespace clearway

@@ -66,6 +66,12 @@ const char* name_of(Side side) {
 
 bool along_one_line(Axis a, Axis b) { return line_of(a) == line_of(b); }
 
+Vec3 ahead_left_up(const Vec3& place, const Pose& pose, Axis forward, Axis up) {
+  const Vec3 there = in_model_frame(place, pose);
+  const Vec3 ahead = direction_of(forward), above = direction_of(up);
+  return {dot(there, ahead), dot(there, cross(above, ahead)), dot(there, above)};
+}
+
 Side side_of(const Vec3& place, const Pose& pose, const Box& model, Axis forward, Axis up) {
   const Vec3 there = in_model_frame(place, pose);
   const Vec3 ahead = direction_of(forward), above = direction_of(up);

@@ -10,6 +10,9 @@ namespace clearway {
 /// Whether two axes lie along one line.
 bool along_one_line(Axis a, Axis b);
 
+/// From the position of a pose to a place along the model's axes: ahead, to the left, up.
+Vec3 ahead_left_up(const Vec3& place, const Pose& pose, Axis forward, Axis up);
+
 /// Where a place lies, seen from the box of the model at a pose: the side of the box beyond which
 /// it is farthest; of a place inside the box the nearest side. Of equal ones the first of left,
 /// right, above, below, front, behind.

@@ -22,32 +22,41 @@ struct ResultRun {
 
 }  // namespace
 
-/// The page and what the host adds to it are one run of bytes, on the host and on the device.
-struct CudaPageEngine::Slot {
-  explicit Slot(const CudaSlotSize& size)
-      : host_upload(size.upload()),
-        host_result(size.result),
-        upload(size.upload()),
-        result(size.result),
-        work(size.work) {
+/// The memory of all slots: two allocations, for each takes its time. Results lie first.
+struct CudaPageEngine::SlotMemory {
+  SlotMemory(std::uint64_t slots, const CudaSlotSize& size)
+      : host(slots * size.pinned()), device(slots * size.device()) {
     // A Clearance has padding, which is copied too.
-    check_cuda(cudaMemset(result.data(), 0, result.bytes()));
+    if (slots * size.found() > 0) check_cuda(cudaMemset(device.data(), 0, slots * size.found()));
   }
 
-  std::uint64_t device_bytes() const { return upload.bytes() + result.bytes() + work.bytes(); }
-  std::uint64_t pinned_bytes() const { return host_upload.bytes() + host_result.bytes(); }
+  PinnedBuffer host;
+  DeviceBuffer device;
+};
 
-  PinnedBuffer host_upload, host_result;
-  DeviceBuffer upload, result, work;
+/// The page and what the host adds to it are one run of bytes, on the host and on the device.
+struct CudaPageEngine::Slot {
+  Slot(const SlotMemory& memory, const CudaSlotSize& size, std::uint64_t slots, std::uint64_t slot)
+      : host_result(memory.host.data() + slot * size.found()),
+        host_upload(memory.host.data() + slots * size.found() + slot * size.upload()),
+        result(memory.device.data() + slot * size.found()),
+        upload(memory.device.data() + slots * size.found() + slot * (size.device() - size.found())),
+        work(upload + size.upload()) {}
+
+  std::byte *host_result, *host_upload;
+  std::byte *result, *upload, *work;
   CudaStream stream;
   CudaEvent begun, uploaded, searched, finished;
   PageShape shape;
 };
 
 CudaPageEngine::CudaPageEngine(std::uint32_t slots, std::unique_ptr<CudaPageSearch> search)
-    : search_(std::move(search)) {
+    : search_(std::move(search)),
+      memory_(std::make_unique<SlotMemory>(slots, search_->slot_size())) {
   slots_.reserve(slots);
-  for (std::uint32_t i = 0; i < slots; ++i) slots_.emplace_back(search_->slot_size());
+  for (std::uint32_t i = 0; i < slots; ++i) {
+    slots_.emplace_back(*memory_, search_->slot_size(), slots, i);
+  }
   clock_ = std::make_unique<DeviceClock>();
   check_cuda(cudaDeviceSynchronize());  // the slots' streams do not wait for copies and memsets
 }
@@ -60,7 +69,7 @@ CudaPageEngine::~CudaPageEngine() {
 std::uint32_t CudaPageEngine::slots() const { return static_cast<std::uint32_t>(slots_.size()); }
 
 std::span<std::byte> CudaPageEngine::page(std::uint32_t slot) {
-  return {slots_[slot].host_upload.data(), search_->slot_size().page};
+  return {slots_[slot].host_upload, search_->slot_size().page};
 }
 
 void CudaPageEngine::start(std::uint32_t index, const PageShape& shape) {
@@ -68,7 +77,7 @@ void CudaPageEngine::start(std::uint32_t index, const PageShape& shape) {
   search_->use_device();
   Slot& slot = slots_[index];
   slot.shape = shape;
-  std::byte* page = slot.host_upload.data();
+  std::byte* page = slot.host_upload;
   const CudaPagePlan plan = search_->plan({page, shape}, page + shape.bytes());
   try {
     enqueue(slot, plan);
@@ -81,24 +90,24 @@ void CudaPageEngine::start(std::uint32_t index, const PageShape& shape) {
 void CudaPageEngine::enqueue(const Slot& slot, const CudaPagePlan& plan) const {
   const cudaStream_t stream = slot.stream.get();
   const ResultRun result(slot.shape, search_->parts());
-  assert(slot.shape.bytes() + plan.bytes <= slot.upload.bytes());
-  assert(result.run.bytes() <= slot.result.bytes());
+  assert(slot.shape.bytes() + plan.bytes <= search_->slot_size().upload());
+  assert(result.run.bytes() <= search_->slot_size().found());
   slot.begun.record(stream);
-  check_cuda(cudaMemcpyAsync(slot.upload.data(), slot.host_upload.data(),
-                             slot.shape.bytes() + plan.bytes, cudaMemcpyHostToDevice, stream));
+  check_cuda(cudaMemcpyAsync(slot.upload, slot.host_upload, slot.shape.bytes() + plan.bytes,
+                             cudaMemcpyHostToDevice, stream));
   slot.uploaded.record(stream);
-  search_->enqueue({.page = {slot.upload.data(), slot.shape},
-                    .plan = slot.upload.data() + slot.shape.bytes(),
+  search_->enqueue({.page = {slot.upload, slot.shape},
+                    .plan = slot.upload + slot.shape.bytes(),
                     .tasks = plan.tasks,
-                    .hits = result.arrays.hits.in(slot.result.data()).data(),
-                    .first_poses = result.arrays.first_poses.in(slot.result.data()).data(),
-                    .clearances = result.arrays.clearances.in(slot.result.data()).data(),
-                    .facts = result.arrays.facts.in(slot.result.data()),
-                    .fact_counts = result.arrays.fact_counts.in(slot.result.data()).data(),
-                    .work = slot.work.data(),
+                    .hits = result.arrays.hits.in(slot.result).data(),
+                    .first_poses = result.arrays.first_poses.in(slot.result).data(),
+                    .clearances = result.arrays.clearances.in(slot.result).data(),
+                    .facts = result.arrays.facts.in(slot.result),
+                    .fact_counts = result.arrays.fact_counts.in(slot.result).data(),
+                    .work = slot.work,
                     .stream = stream});
   slot.searched.record(stream);
-  check_cuda(cudaMemcpyAsync(slot.host_result.data(), slot.result.data(), result.run.bytes(),
+  check_cuda(cudaMemcpyAsync(slot.host_result, slot.result, result.run.bytes(),
                              cudaMemcpyDeviceToHost, stream));
   slot.finished.record(stream);
 }
@@ -108,11 +117,11 @@ PageResult CudaPageEngine::finish(std::uint32_t index) {
   const Slot& slot = slots_[index];
   slot.finished.synchronise();
   const ResultRun run(slot.shape, search_->parts());
-  const std::byte* found = slot.host_result.data();
+  const std::byte* found = slot.host_result;
   PageResult result = run.arrays.in(found, run.blocks);
   if (search_->parts().profile) {
     result.profile =
-        search_->profile(index, {slot.host_upload.data(), slot.shape}, run.arrays.facts.in(found),
+        search_->profile(index, {slot.host_upload, slot.shape}, run.arrays.facts.in(found),
                          run.arrays.fact_counts.in(found).front().facts);
   }
   result.upload = {clock_->time_of(slot.begun), clock_->time_of(slot.uploaded)};
@@ -121,15 +130,9 @@ PageResult CudaPageEngine::finish(std::uint32_t index) {
 }
 
 std::uint64_t CudaPageEngine::device_bytes() const {
-  std::uint64_t bytes = search_->device_bytes();
-  for (const Slot& slot : slots_) bytes += slot.device_bytes();
-  return bytes;
+  return search_->device_bytes() + memory_->device.bytes();
 }
 
-std::uint64_t CudaPageEngine::pinned_bytes() const {
-  std::uint64_t bytes = 0;
-  for (const Slot& slot : slots_) bytes += slot.pinned_bytes();
-  return bytes;
-}
+std::uint64_t CudaPageEngine::pinned_bytes() const { return memory_->host.bytes(); }
 
 }  // namespace clearway

@@ -36,11 +36,13 @@ class CudaPageEngine : public PageEngine {
   const CudaPageSearch& search() const { return *search_; }
 
  private:
+  struct SlotMemory;
   struct Slot;
 
   void enqueue(const Slot& slot, const CudaPagePlan& plan) const;
 
   std::unique_ptr<CudaPageSearch> search_;
+  std::unique_ptr<SlotMemory> memory_;
   std::vector<Slot> slots_;
   std::unique_ptr<DeviceClock> clock_;
 };

@@ -6,21 +6,29 @@
 #include <cstdint>
 
 #include "core/page/page_result_arrays.hpp"
+#include "core/util/array_run.hpp"
 #include "gpu/cuda_check.hpp"
 #include "gpu/device_arrays.hpp"
 
 namespace clearway {
 
-/// Bytes that a slot's largest page takes in each run of memory.
+/// Bytes that a slot's largest page takes in each run of memory. Slots lie one after the other in
+/// memory that an engine takes at once, so a run's begin is as aligned as an allocation.
 struct CudaSlotSize {
   std::uint64_t page;    ///< a multiple of kPageAlignment
   std::uint64_t plan;    ///< what the host adds to the page
   std::uint64_t result;  ///< PageResultArrays
   std::uint64_t work;    ///< on the device alone
 
-  std::uint64_t upload() const { return page + plan; }
-  std::uint64_t pinned() const { return upload() + result; }
-  std::uint64_t device() const { return pinned() + work; }
+  std::uint64_t upload() const { return whole(page + plan); }
+  std::uint64_t found() const { return whole(result); }
+  std::uint64_t pinned() const { return upload() + found(); }
+  std::uint64_t device() const { return pinned() + whole(work); }
+
+ private:
+  static constexpr std::uint64_t whole(std::uint64_t bytes) {
+    return divide_up(bytes, ArrayRun::kAlignment) * ArrayRun::kAlignment;
+  }
 };
 
 /// What the host added to a page.

@@ -1,6 +1,8 @@
 #include "gpu/devices.hpp"
 
 #include "gpu/cuda_check.hpp"
+#include "gpu/grid_kernels.hpp"
+#include "gpu/sweep_kernels.hpp"
 
 namespace clearway {
 
@@ -32,6 +34,17 @@ CudaDevice open_cuda_device(int index) {
     cudaGetLastError();  // or a check after a launch on another device finds it
     throw;
   }
+}
+
+void end_cuda_device(int index) noexcept {
+  if (cudaSetDevice(index) == cudaSuccess) cudaDeviceReset();
+}
+
+void start_cuda_device(int index, bool grid) noexcept {
+  if (cudaSetDevice(index) == cudaSuccess && cudaFree(nullptr) == cudaSuccess) {
+    grid ? load_grid_kernels() : load_sweep_kernels();
+  }
+  cudaGetLastError();
 }
 
 }  // namespace clearway

@@ -24,4 +24,11 @@ std::string cuda_device_name(int index);
 /// Makes the device's context, which takes a while, and asks what is free. Throws ResourceError.
 CudaDevice open_cuda_device(int index);
 
+/// Makes its context and loads the kernels of an engine, so that nothing waits for that later. It
+/// may run beside anything; what fails, fails again where the device is opened.
+void start_cuda_device(int index, bool grid) noexcept;
+
+/// Ends its context, and with it all that the process has there.
+void end_cuda_device(int index) noexcept;
+
 }  // namespace clearway

@@ -188,4 +188,11 @@ void search_grids(const GridSceneView& scene, const GridPageView& page, std::uin
   check_cuda(cudaGetLastError());
 }
 
+void load_grid_kernels() noexcept {
+  cudaFuncAttributes unused;
+  cudaFuncGetAttributes(&unused, make_keys_kernel);
+  cudaFuncGetAttributes(&unused, place_points_kernel);
+  cudaFuncGetAttributes(&unused, search_kernel);
+}
+
 }  // namespace clearway

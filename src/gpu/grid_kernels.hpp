@@ -31,4 +31,7 @@ void build_grids(const GridSceneView& scene, const GridPageView& page, const Gri
 void search_grids(const GridSceneView& scene, const GridPageView& page, std::uint64_t tasks,
                   std::uint64_t* next_task, GridStatistics* statistics, cudaStream_t stream);
 
+/// As load_sweep_kernels does: of this file, but for those that sort.
+void load_grid_kernels() noexcept;
+
 }  // namespace clearway

@@ -131,4 +131,14 @@ void search_profile(const SweepPage& page, const ProfileBests& bests, const Prof
   check_cuda(cudaGetLastError());
 }
 
+void load_sweep_kernels() noexcept {
+  cudaFuncAttributes unused;
+  cudaFuncGetAttributes(&unused, search_blocks_kernel<false>);
+  cudaFuncGetAttributes(&unused, search_blocks_kernel<true>);
+  cudaFuncGetAttributes(&unused, search_entries_kernel);
+  cudaFuncGetAttributes(&unused, search_walks_kernel);
+  cudaFuncGetAttributes(&unused, search_items_kernel);
+  cudaFuncGetAttributes(&unused, search_profile_kernel);
+}
+
 }  // namespace clearway

@@ -27,4 +27,8 @@ void search_sweep(const SweepPage& page, unsigned long long* tallies, unsigned r
 void search_profile(const SweepPage& page, const ProfileBests& bests, const ProfileList& list,
                     unsigned long long* tallies, unsigned resident_blocks, cudaStream_t stream);
 
+/// CUDA loads a kernel where it is first asked for: asks for all of this file. On the current
+/// device.
+void load_sweep_kernels() noexcept;
+
 }  // namespace clearway

@@ -32,6 +32,7 @@ SweepOnDevice put_on_device(const SweepRef& sweep, Arrays& arrays) {
   move(ref.motion.nodes, poses == 0 ? 0 : 2 * poses - 1);
   move(ref.motion.inverse_poses, poses);
   move(ref.motion.poses, poses);
+  move(ref.motion.chords, ref.motion.chords == nullptr ? 0 : 2 * poses - 1);
   return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice::kTallies)};
 }
 

@@ -39,9 +39,10 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.key("model").begin('{').field("name", options.model_name);
   json.field("points", header.model_points).field("hash", hash_text(header.model_hash));
   write_box(json, "box", facts.model_box);
-  json.end('}');
+  json.field("above", options.model_above).field("left_out", options.model_left_out).end('}');
   json.key("trajectory").begin('{').field("name", options.trajectory_name);
   json.field("poses", header.poses).field("hash", hash_text(header.trajectory_hash));
+  json.field("chainage_start", facts.options.conflicts.chainage_start);
   json.field("length", facts.path_length).end('}').end('}');
 }
 
@@ -84,7 +85,8 @@ void write_conflict(JsonText& json, const Conflict& conflict, const ShownPoints&
   } else {
     json.value(place->second);
   }
-  json.field("side", name_of(conflict.side)).end('}');
+  json.field("side", name_of(conflict.side)).field("lateral", conflict.lateral);
+  json.field("height", conflict.height).end('}');
 }
 
 std::vector<const Conflict*> listed_in_page(const Conflicts& conflicts) {
@@ -134,7 +136,8 @@ void write_least(JsonText& json, const ReportFacts& facts) {
   json.begin('{').field("distance", facts.least->distance);
   json.field("pose", std::uint64_t{facts.least->pose}).field("chainage", facts.least_chainage);
   json.field("source", facts.least->source).field("point", facts.least->xyz);
-  json.field("of", facts.least_of).end('}');
+  json.field("side", name_of(facts.least->side)).field("lateral", facts.least->lateral);
+  json.field("height", facts.least->height).field("of", facts.least_of).end('}');
 }
 
 void write_lattice(JsonText& json, const char* name, const PageLattice& lattice) {
@@ -182,7 +185,8 @@ const Conflict* worst_of(const Conflicts& conflicts) {
 std::string json_of(const ReportFacts& facts) {
   JsonText json;
   json.begin('{').field("clearway", CLEARWAY_VERSION).field("title", facts.title);
-  json.field("date", facts.options.date);
+  json.field("project", facts.options.project).field("client", facts.options.client);
+  json.field("author", facts.options.author).field("date", facts.options.date);
   json.field("verdict", facts.result.size() == 0 ? "clear" : "conflict");
   json.field("colliding_points", facts.result.size());
   json.field("unit", facts.store.length_unit());

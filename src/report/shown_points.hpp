@@ -19,6 +19,8 @@ struct LeastDistance {
   std::uint32_t pose = 0;
   std::uint64_t source = 0;
   std::optional<Vec3> xyz;
+  Side side = Side::kUnknown;  ///< of xyz at the pose, as of conflicts
+  std::optional<double> lateral = {}, height = {};
 };
 
 /// Points of the result for the page: colliding ones, and others closer than the last class.

@@ -10,6 +10,7 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
+#include "findings/side.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
@@ -163,10 +164,28 @@ class Report {
       const auto nearest = std::ranges::min_element(profile_.distance);
       if (nearest == profile_.distance.end() || !std::isfinite(*nearest)) return;
       const auto pose = static_cast<std::size_t>(nearest - profile_.distance.begin());
-      least_ = {*nearest, static_cast<std::uint32_t>(pose), profile_.source[pose],
-                profile_.xyz[pose]};
+      least_ = {*nearest,
+                static_cast<std::uint32_t>(pose),
+                profile_.source[pose],
+                profile_.xyz[pose],
+                {},
+                {},
+                {}};
       least_of_ = "profile";
     }
+    place_least();
+  }
+
+  /// Where the nearest point is, seen from the model.
+  void place_least() {
+    if (!least_->xyz) return;
+    const ConflictOptions& how = options_.conflicts;
+    const Pose& pose = poses_[least_->pose];
+    const Vec3 there = ahead_left_up(*least_->xyz, pose, how.forward, how.up);
+    if (!std::isfinite(there.y) || !std::isfinite(there.z)) return;
+    least_->side = side_of(*least_->xyz, pose, model_box_, how.forward, how.up);
+    least_->lateral = there.y;
+    least_->height = there.z;
   }
 
   std::vector<PageColumn> make_columns(const Conflicts& conflicts) {
@@ -191,26 +210,27 @@ class Report {
   }
 
   std::string facts(const Conflicts& conflicts) const {
-    return json_of({.result = result_,
-                    .store = store_,
-                    .options = options_,
-                    .title = title(),
-                    .model_box = model_box_,
-                    .classes = classes_,
-                    .path_length = chainage_.empty() ? 0 : chainage_.back(),
-                    .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
-                    .points = points_,
-                    .environment = environment_,
-                    .reach = path_.reach(),
-                    .dense_reach = path_.dense_reach(),
-                    .shown_poses = shown_.size(),
-                    .shown_model_points = shown_model_points_,
-                    .least = least_,
-                    .least_chainage = least_ ? chainage_[least_->pose] : 0,
-                    .least_of = least_of_,
-                    .lattice = lattice_,
-                    .environment_lattice = environment_lattice_,
-                    .model_lattice = model_lattice_});
+    return json_of(
+        {.result = result_,
+         .store = store_,
+         .options = options_,
+         .title = title(),
+         .model_box = model_box_,
+         .classes = classes_,
+         .path_length = chainage_.empty() ? 0 : chainage_.back(),
+         .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
+         .points = points_,
+         .environment = environment_,
+         .reach = path_.reach(),
+         .dense_reach = path_.dense_reach(),
+         .shown_poses = shown_.size(),
+         .shown_model_points = shown_model_points_,
+         .least = least_,
+         .least_chainage = least_ ? options_.conflicts.chainage_start + chainage_[least_->pose] : 0,
+         .least_of = least_of_,
+         .lattice = lattice_,
+         .environment_lattice = environment_lattice_,
+         .model_lattice = model_lattice_});
   }
 
   const Result& result_;

@@ -6,7 +6,6 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
-#include "core/util/stopwatch.hpp"
 #include "search/check_query.hpp"
 
 namespace clearway {
@@ -32,26 +31,28 @@ std::uint64_t wanted_bytes_of(const SearchOptions& options) {
   return options.device_memory_bytes > 0 ? options.device_memory_bytes : kUsualBytes;
 }
 
-std::vector<CudaDevice> open_named(const std::vector<int>& gpus) {
-  const int count = cuda_device_count();
-  std::vector<CudaDevice> devices;
-  for (const int gpu : gpus) {
-    if (gpu < 0 || gpu >= count) {
-      throw ResourceError("GPU " + std::to_string(gpu) + ": this machine has " +
-                          std::to_string(count) + " that CUDA can use, numbered from 0");
-    }
-    devices.push_back(open_cuda_device(gpu));
-  }
-  return devices;
-}
+int count_devices() { return cuda_device_count(); }
 
-DeviceChoice choose_cuda(const SearchOptions& options, const MessageLog& log) {
+void refuse_missing(const std::vector<int>& gpus) {
   if (const std::string why = why_no_cuda_device(); !why.empty()) {
     throw ResourceError("device cuda: " + why, Remedy::kCpuDevice);
   }
+  const int count = cuda_device_count();
+  for (const int gpu : gpus) {
+    if (gpu >= 0 && gpu < count) continue;
+    throw ResourceError("GPU " + std::to_string(gpu) + ": this machine has " +
+                        std::to_string(count) + " that CUDA can use, numbered from 0");
+  }
+}
+
+DeviceChoice choose_cuda(const SearchOptions& options, const MessageLog& log) {
   const std::uint64_t wanted = wanted_bytes_of(options);
-  if (!options.gpus.empty()) return choice_of(open_named(options.gpus), wanted);
-  return choice_of({one_with_room(cuda_device_count(), open_cuda_device, wanted, log)}, wanted);
+  std::vector<CudaDevice> devices;
+  for (const int gpu : options.gpus) devices.push_back(open_cuda_device(gpu));
+  if (devices.empty()) {
+    devices.push_back(one_with_room(cuda_device_count(), open_cuda_device, wanted, log));
+  }
+  return choice_of(devices, wanted);
 }
 
 DeviceChoice choose_automatically(const SearchOptions& options, const MessageLog& log) {
@@ -60,11 +61,15 @@ DeviceChoice choose_automatically(const SearchOptions& options, const MessageLog
 
 #else
 
-DeviceChoice choose_cuda(const SearchOptions&, const MessageLog&) {
+int count_devices() { return 0; }
+
+void refuse_missing(const std::vector<int>&) {
   throw ResourceError(
       "device cuda: this build has no CUDA engine (Clearway has one where it is built with nvcc)",
       Remedy::kCpuDevice);
 }
+
+DeviceChoice choose_cuda(const SearchOptions&, const MessageLog&) { return {}; }
 
 DeviceChoice choose_automatically(const SearchOptions&, const MessageLog&) { return {}; }
 
@@ -110,11 +115,7 @@ DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t w
   if (count == 0) return {};
   try {
     const CudaDevice device = one_with_room(count, open, wanted_bytes, log);
-    if (device.free_bytes >= kLeastRoom) {
-      DeviceChoice choice = choice_of({device}, wanted_bytes);
-      choice.fallback_allowed = true;
-      return choice;
-    }
+    if (device.free_bytes >= kLeastRoom) return choice_of({device}, wanted_bytes);
     log.note("the CPU is taken: " + name_of(device) + " has too little");
   } catch (const ResourceError& error) {
     log.note(std::string("the CPU is taken: ") + error.what());
@@ -122,13 +123,15 @@ DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t w
   return {};
 }
 
+bool may_take_gpus(const SearchOptions& options) {
+  if (chosen_engine(options) == Engine::kKdtree || options.device == Device::kCpu) return false;
+  if (fallback_allowed(options)) return count_devices() > 0;
+  refuse_missing(options.gpus);
+  return true;
+}
+
 DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log) {
-  if (chosen_engine(options) == Engine::kKdtree || options.device == Device::kCpu) return {};
-  const Stopwatch clock;
-  const bool cuda = options.device == Device::kCuda || !options.gpus.empty();
-  DeviceChoice choice = cuda ? choose_cuda(options, log) : choose_automatically(options, log);
-  if (choice.is_cuda()) choice.context_seconds = clock.seconds();
-  return choice;
+  return fallback_allowed(options) ? choose_automatically(options, log) : choose_cuda(options, log);
 }
 
 }  // namespace clearway

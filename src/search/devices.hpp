@@ -17,16 +17,24 @@ struct DeviceChoice {
   std::string name = "the CPU";    ///< for people
   std::uint64_t memory_bytes = 0;  ///< that may be taken on each GPU
   std::string short_device;        ///< the one with the least free, where that is the bound
-  double context_seconds = 0;      ///< wall clock of making the GPUs' contexts
-  bool fallback_allowed = false;   ///< to the CPU: nobody asked for a GPU
 
   bool is_cuda() const { return !gpus.empty(); }
 };
 
+/// Whether there are GPUs that options let a search take. No context is made. Throws UsageError
+/// where the engine has no such form, ResourceError, saying what to do, where CUDA is asked for and
+/// not there.
+bool may_take_gpus(const SearchOptions& options);
+
+/// Whether the CPU may be taken where a GPU fails: nobody asked for one.
+inline bool fallback_allowed(const SearchOptions& options) {
+  return options.device == Device::kAuto && options.gpus.empty();
+}
+
 /// Chooses by options.device and options.gpus: "auto" takes the first GPU with all the memory that
 /// is wanted free, or else the one with the most where that is enough, and the CPU otherwise;
-/// "cuda" all that are named, or the same one. Throws UsageError where the engine has no such form,
-/// ResourceError, saying what to do, where CUDA is asked for and not there.
+/// "cuda" all that are named, or the same one. Makes their contexts: a thread's current device is
+/// then the last of them. Throws ResourceError where CUDA is asked for and cannot be used.
 DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log);
 
 // What it goes by, without CUDA:

@@ -9,13 +9,28 @@
 
 namespace clearway {
 
+namespace {
+
+/// To the end of the run, but for what is found.
+std::uint64_t kept_by_kdtree(const StoreReader& store, const Query& query, int threads) {
+  return program_bytes(threads) + input_bytes(store, query) +
+         SearchJournal::most_bytes(store, query, threads);
+}
+
+}  // namespace
+
+std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
+                                  const SearchOptions& options) {
+  return kept_by_kdtree(store, query, options.threads) +
+         std::max(kdtree_memory_bytes(store, query, options.threads),
+                  search_result_bytes(store, query) + least_write_bytes());
+}
+
 Found search_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options,
                     SearchJournal& journal, Progress& progress, SearchReport& report) {
   const std::uint64_t result = search_result_bytes(store, query);
-  const std::uint64_t kept = program_bytes(options.threads) + input_bytes(store, query) +
-                             SearchJournal::most_bytes(store, query, options.threads);
-  report.needed_host_bytes = kept + std::max(kdtree_memory_bytes(store, query, options.threads),
-                                             result + least_write_bytes());
+  const std::uint64_t kept = kept_by_kdtree(store, query, options.threads);
+  report.needed_host_bytes = kdtree_needed_bytes(store, query, options);
   check_memory(report.needed_host_bytes, options.memory_bytes);
   const Stopwatch compute;
   HitSet hits =

@@ -50,7 +50,7 @@ PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query
       asked_(asked),
       memory_bytes_(memory_bytes),
       kind_(kind),
-      trees_(searched),
+      trees_(searched, kind.needs().threads - kind.needs().waiting_threads),
       building_bytes_(tree_building_bytes(asked)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
                   search_result_bytes(store, asked)) {}
@@ -98,13 +98,31 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   cells_ = plan(store_, reach);
   index_seconds_ += indexed;
   plan_seconds_ += clock.seconds() - indexed;
+  kind_.resolve_devices();
   const std::uint64_t planned = planned_bytes();
   const std::uint64_t most_poses = most_poses_of(trees_.motion, cells_);
   for (const SlotLayout& layout : layouts(kind_.needs(), smallest_page_bytes(store_, cells_))) {
-    if (fits(layout, planned, building, most_poses)) return true;
+    if (fits(layout, planned, building, most_poses)) {
+      fits(as_needed(layout), planned, building, most_poses);
+      return true;
+    }
     if (!any_layout && !kind_.needs().on_gpu) break;  // for a GPU fewer slots are cheaper
   }
   return false;
+}
+
+/// No more of it than the plan's pages fill; they stay the same.
+SlotLayout PageBudget::as_needed(const SlotLayout& layout) const {
+  const auto pages = paginate(store_, cells_, layout.page_bytes, layout.cells);
+  SlotLayout needed{.slots = 1, .page_bytes = 0, .cells = 1};
+  for (const PlannedPage& page : pages) {
+    needed.page_bytes = std::max(needed.page_bytes, page.shape.bytes());
+    needed.cells = std::max(needed.cells, page.shape.cells);
+  }
+  const std::uint64_t of_a_device = divide_up(pages.size(), kind_.needs().devices);
+  needed.slots = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(of_a_device, needed.slots, layout.slots));
+  return needed;
 }
 
 bool PageBudget::fits(const SlotLayout& layout, std::uint64_t planned, std::uint64_t building,

@@ -37,6 +37,7 @@ class PageBudget {
   std::uint64_t kept_bytes(const SlotLayout& layout) const;
   std::uint64_t planned_bytes() const;
   bool fits_with(const PageEngineKind::IndexSize& size, bool any_layout);
+  SlotLayout as_needed(const SlotLayout& layout) const;
   bool fits(const SlotLayout& layout, std::uint64_t planned, std::uint64_t building,
             std::uint64_t most_poses);
 

@@ -8,6 +8,7 @@
 #include "search/page_budget.hpp"
 #include "stream/paginate.hpp"
 #include "stream/run_pages.hpp"
+#include "stream/write_result.hpp"
 
 namespace clearway {
 namespace {
@@ -53,6 +54,18 @@ void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
   seconds.search = stages.total;
 }
 
+/// Where memory is scarce, writing waits for that of the engines.
+Found ended(const PageEngineKind& kind, PageEngines engines, Found found,
+            std::uint64_t pinned_bytes) {
+  found.engine_end = kind.end(std::move(engines));
+  if (found.write_bytes / 2 >= pinned_bytes + least_write_bytes()) {
+    found.write_bytes -= pinned_bytes;
+  } else {
+    found.engine_end.clear();
+  }
+  return found;
+}
+
 }  // namespace
 
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
@@ -66,7 +79,7 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
 
   throw_if_stopped(progress);
   const Stopwatch making;
-  const PageEngines engines = kind.make(budget.layout());
+  PageEngines engines = kind.make(budget.layout());
   report.seconds.engine = making.seconds();
   SearchJournal& journal = open_journal();
   std::vector<PlannedCell>& cells = budget.cells();
@@ -84,7 +97,8 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
                                   stages, &journal);
   report_stages(stages, report.seconds);
   kind.report_search(engines, report, log);
-  return {std::move(result), budget.write_bytes()};
+  return ended(kind, std::move(engines), {std::move(result), budget.write_bytes()},
+               report.pinned_bytes);
 }
 
 }  // namespace clearway

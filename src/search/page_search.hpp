@@ -11,10 +11,12 @@
 
 namespace clearway {
 
-/// What was found, and what of the memory is left to write it with.
+/// What was found, and what of the memory is left to write it with, beside an engine that is still
+/// being taken down.
 struct Found {
   SearchResult result;
   std::uint64_t write_bytes = 0;
+  EngineEnd engine_end = {};
 };
 
 /// Plans the query within options.memory_bytes, makes the engine and, with the journal that is then

@@ -12,10 +12,10 @@ namespace clearway {
 /// The trees over model and poses that every plan of a query starts from.
 struct QueryTrees {
   /// The query outlives it; clock: started now.
-  explicit QueryTrees(const Query& query, const Stopwatch& clock = {})
-      : model(query.model),
+  explicit QueryTrees(const Query& query, int threads = 1, const Stopwatch& clock = {})
+      : model(query.model, threads),
         model_seconds(clock.seconds()),
-        motion(query.poses, model.box(), query.between_poses),
+        motion(query.poses, model.box(), query.between_poses, threads),
         motion_seconds(clock.seconds() - model_seconds) {}
 
   std::uint64_t allocated_bytes() const {

@@ -20,8 +20,8 @@ std::string first_pose_text(const ResultHeader& header) {
 }
 
 std::string work_text(const JournalledWork& work) {
-  if (work.poses > 0) return format_count(work.poses) + " poses finished";
-  return format_count(work.cells) + " cells finished";
+  if (work.poses > 0) return counted(work.poses, "pose") + " finished";
+  return counted(work.cells, "cell") + " finished";
 }
 
 std::string value_of(const JournalIdentity& identity, const std::string& name) {
@@ -162,6 +162,14 @@ Device RunJournal::earlier_device() const {
   if (!read_) return Device::kAuto;
   return value_of(*read_->identity(), "device") == name_of(Device::kCuda) ? Device::kCuda
                                                                           : Device::kCpu;
+}
+
+Engine RunJournal::earlier_engine() const {
+  if (!read_) return Engine::kAuto;
+  for (const Engine engine : {Engine::kSweep, Engine::kGrid, Engine::kKdtree}) {
+    if (value_of(*read_->identity(), "engine") == name_of(engine)) return engine;
+  }
+  return Engine::kAuto;
 }
 
 void RunJournal::remove_after_publication() {

@@ -33,6 +33,7 @@ class RunJournal {
 
   /// As the run to resume was started with; kAuto where there is none.
   Device earlier_device() const;
+  Engine earlier_engine() const;
 
   /// The journal of this query, engine and device to keep the answer in. An earlier one is
   /// removed where options.overwrite or nothing is in it. Throws UsageError, naming what differs,

@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -9,12 +10,16 @@
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
+#include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
+#include "search/choice/choose_engine.hpp"
+#include "search/choice/device_estimate.hpp"
+#include "search/device_start.hpp"
 #include "search/devices.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/cuda_kind.hpp"
@@ -27,6 +32,9 @@
 
 namespace clearway {
 namespace {
+
+/// A GPU is not to be had, which has been told.
+struct NoGpu {};
 
 /// One call of search(), step by step.
 class Search {
@@ -42,7 +50,7 @@ class Search {
         journal_(pending_, output, options_, log_),
         header_(header()) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
-    options_.engine = chosen_engine(options_);
+    if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
   SearchReport run() {
@@ -52,7 +60,11 @@ class Search {
       report_finished();
     } else {
       resolve_device();
-      publish(find());
+      Found found = find();
+      publish(found);
+      const Stopwatch ending;
+      found.engine_end.clear();
+      report_.seconds.end_wait = ending.seconds();
     }
     report_.seconds.total = total_.seconds();
     return std::move(report_);
@@ -100,11 +112,8 @@ class Search {
     report_.colliding_points = result.collisions();
     report_.clearance_points = result.clearances();
     ProfileRowStream profile(result);
-    std::uint32_t pose = 0;
     for (ProfileRows rows; profile.read(rows);) {
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        report_pose(pose++, rows.distance[i], rows.source[i]);
-      }
+      for (const double distance : rows.distance) count_pose(distance);
     }
   }
 
@@ -119,50 +128,85 @@ class Search {
   }
 
   Found find() {
-    const DeviceChoice device = choose_device(options_, log_);
     if (options_.threads == 0) options_.threads = tbb::this_task_arena::max_concurrency();
+    const bool gpu = gpu_pays() && may_take_gpus(options_);
     check_threads(options_.threads);
+    if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
+    choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
     report_.engine = options_.engine;
     report_.searches = report_.poses * report_.model_points;
-    report_.seconds.context = device.context_seconds;
     Found found = options_.engine == Engine::kKdtree
                       ? search_kdtree(store_, query_, options_, open_journal(), progress_, report_)
-                      : find_on_pages(device);
+                      : find_on_pages(gpu);
     report_.resumed_cells = journal_.earlier().cells;
     report_.resumed_poses = journal_.earlier().poses;
     return found;
   }
 
-  /// A GPU that was not asked for and proves too small, or fails, before the journal is open gives
-  /// way to the CPU.
-  Found find_on_pages(const DeviceChoice& device) {
-    try {
-      return find_on(device);
-    } catch (const ResourceError& error) {
-      if (open_ != nullptr || !device.fallback_allowed) throw;
-      log_.note(std::string("the CPU is taken: ") + error.what());
-    }
-    return find_on({});
+  /// By estimate, where neither device was asked for.
+  bool gpu_pays() {
+#ifdef CLEARWAY_CUDA
+    const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
+    if (!fallback_allowed(options_) || other) return true;
+    report_.estimate =
+        estimate_devices(workload_of(store_, query_), query_, options_.engine, options_.threads);
+    const auto [cpu, cuda] = *report_.estimate;
+    if (cpu > cuda) return true;
+    log_.note("the CPU is taken: by estimate it needs " + format_brief(cpu) +
+              " s, a GPU with its start " + format_brief(cuda) + " s");
+    return false;
+#else
+    return true;  // what is asked for in vain is refused later
+#endif
   }
 
-  Found find_on(const DeviceChoice& device) {
-    report_.device = device.is_cuda() ? Device::kCuda : Device::kCpu;
-    report_.device_name = device.name;
-    if (!device.fallback_allowed) open_journal();  // what is refused is so before it is planned
+  /// A GPU that was not asked for and proves too small, or fails, before the journal is open gives
+  /// way to the CPU.
+  Found find_on_pages(bool gpu) {
+    if (!gpu) return find_on(Device::kCpu);
+    try {
+      return find_on(Device::kCuda);
+    } catch (const NoGpu&) {
+    } catch (const ResourceError& error) {
+      if (open_ != nullptr || !fallback_allowed(options_)) throw;
+      log_.note(std::string("the CPU is taken: ") + error.what());
+    }
+    return find_on(Device::kCpu);
+  }
+
+  Found find_on(Device device) {
+    report_.device = device;
+    report_.device_name = DeviceChoice().name;
+    // What is refused is so before it is planned.
+    if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
     const std::unique_ptr<PageEngineKind> kind = kind_on(device);
     return search_pages(
         store_, query_, options_.memory_bytes, *kind,
         [this]() -> SearchJournal& { return open_journal(); }, progress_, report_, log_);
   }
 
-  std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] const DeviceChoice& device) const {
+  std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] Device device) {
 #ifdef CLEARWAY_CUDA
-    if (device.is_cuda()) return cuda_kind(store_, query_, options_, device);
+    if (device == Device::kCuda) {
+      return cuda_kind(store_, query_, options_, [this] { return open_gpus(); });
+    }
 #endif
     if (options_.engine == Engine::kGrid) {
       return std::make_unique<CpuGridKind>(store_, query_, options_);
     }
     return std::make_unique<CpuSweepKind>(store_, query_, options_);
+  }
+
+  /// Where the search needs them: they have been starting meanwhile. Throws NoGpu.
+  DeviceChoice open_gpus() {
+    const Stopwatch waiting;
+    options_.started->wait();
+    DeviceChoice choice = choose_device(options_, log_);
+    report_.seconds.context_wait = waiting.seconds();
+    report_.seconds.context = std::max(options_.started->seconds(), waiting.seconds());
+    if (!choice.is_cuda()) throw NoGpu();
+    report_.device_name = choice.name;
+    return choice;
   }
 
   SearchJournal& open_journal() {
@@ -177,8 +221,8 @@ class Search {
     try {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
-      write_result(store_, found.result, header_, pending_.partial(), found.write_bytes, progress_,
-                   chainage);
+      report_written(write_result(store_, found.result, header_, pending_.partial(),
+                                  found.write_bytes, progress_, chainage, options_.threads));
       pending_.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);
@@ -187,24 +231,27 @@ class Search {
     const StoreReader::Touched touched = store_.touched();
     report_.cells_read = touched.cells;
     report_.bytes_read = touched.bytes;
-    report_.colliding_points = found.result.hits.count();
-    report_.clearance_points = found.result.clearances.count();
     report_profile(found.result.profile);
     report_.seconds.write = write.seconds();
   }
 
+  void report_written(const WrittenResult& written) {
+    report_.colliding_points = written.collisions;
+    report_.clearance_points = written.clearances;
+    report_.first_place = written.first_place;
+    report_.least_clearance = written.least_clearance;
+    report_.least_profile = written.least_profile;
+  }
+
   void report_profile(const ProfileSet& profile) {
     for (std::uint32_t pose = 0; pose < profile.poses(); ++pose) {
-      const ProfilePoint& point = profile.at(pose);
-      report_pose(pose, std::sqrt(point.squared), point.source);
+      count_pose(profile.at(pose).squared);
     }
   }
 
-  void report_pose(std::uint32_t pose, double distance, std::uint64_t source) {
-    if (std::isinf(distance)) return;
-    ++report_.profile_poses;
-    if (report_.least && report_.least->distance <= distance) return;
-    report_.least = {distance, pose, source};
+  /// distance: or its square.
+  void count_pose(double distance) {
+    if (!std::isinf(distance)) ++report_.profile_poses;
   }
 
   const Stopwatch total_;
@@ -221,32 +268,6 @@ class Search {
 };
 
 }  // namespace
-
-const char* name_of(Engine engine) {
-  switch (engine) {
-    case Engine::kSweep:
-      return "sweep";
-    case Engine::kGrid:
-      return "grid";
-    case Engine::kKdtree:
-      return "kdtree";
-    case Engine::kAuto:
-      break;
-  }
-  return "auto";
-}
-
-const char* name_of(Device device) {
-  switch (device) {
-    case Device::kCpu:
-      return "cpu";
-    case Device::kCuda:
-      return "cuda";
-    case Device::kAuto:
-      break;
-  }
-  return "auto";
-}
 
 void check_search(const QueryParameters& query, const std::filesystem::path& output,
                   const SearchOptions& options) {

@@ -1,9 +1,23 @@
 #pragma once
 
+#include <tbb/task_arena.h>
+
+#include "io/system/thread_limit.hpp"
+
 namespace clearway {
 
 /// Throws ResourceError where this process may not have that many threads. OpenMP would end the
 /// program instead.
 void check_threads(int threads);
+
+/// Calls body() where oneTBB has that many threads; 0: as many as there are cores. Throws as
+/// check_threads does.
+template <typename Body>
+auto in_threads(int threads, const Body& body) {
+  if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
+  check_threads(threads);
+  const ThreadLimit limit(threads);
+  return tbb::task_arena(threads).execute(body);
+}
 
 }  // namespace clearway

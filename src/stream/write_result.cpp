@@ -1,18 +1,22 @@
 #include "stream/write_result.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
-#include "core/cloud/kd_order.hpp"
-#include "stream/write_profile.hpp"
+#include "io/system/thread_limit.hpp"
+#include "stream/write/gather_rows.hpp"
+#include "stream/write/write_profile.hpp"
+#include "stream/write/write_rows.hpp"
 
 namespace clearway {
 namespace {
 
-struct Collision {
+struct CollisionRow {
   std::uint64_t source;
   std::int32_t q[3];
   std::uint32_t first_pose;
@@ -25,209 +29,262 @@ struct ClearanceRow {
   std::uint32_t pose;
 };
 
-/// Sorted and written in pieces of this many rows.
-constexpr std::size_t kRows = 1 << 16;
+/// Chunks that the file's writer holds back, and what the profile is written from.
+constexpr std::uint64_t kWriterBytes = std::uint64_t{12} << 20;
 
-/// What the file's writer and the pieces take at the most, bytes.
-constexpr std::uint64_t kBufferBytes = std::uint64_t{16} << 20;
+/// Of kEncodedRows rows.
+constexpr std::uint64_t kPieceBytes = std::uint64_t{3} << 20;
 
-/// A pass holds twice the rows that it gives.
-template <typename Row>
-std::size_t rows_of_pass(std::uint64_t memory_bytes) {
-  const std::uint64_t left = memory_bytes > kBufferBytes ? memory_bytes - kBufferBytes : 0;
-  return std::max<std::uint64_t>(kRows, left / (2 * sizeof(Row)));
-}
+/// With fewer rows a part might not fit beside what is left of the part before.
+constexpr std::size_t kLeastRows = kEncodedRows + SourceParts::kMostRows;
 
-/// Calls visit(entry, index in the cell) for every entry of a cell that is in the set.
-template <typename Set, typename Visit>
-void for_each_entry(const StoreReader& store, const Set& set, std::uint32_t cell, Visit visit) {
-  const std::uint64_t first_word = std::uint64_t{cell} * store.blocks_per_cell();
-  const auto blocks =
-      static_cast<std::uint32_t>(divide_up(store.cells()[cell].count, kBlockPoints));
-  for (std::uint32_t block = 0; block < blocks; ++block) {
-    for (std::uint64_t bits = set.word(first_word + block); bits != 0; bits &= bits - 1) {
-      const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
-      visit((first_word + block) * kBlockPoints + bit, block * kBlockPoints + bit);
-    }
-  }
-}
+/// What one thread gathers with.
+constexpr std::uint64_t kLeastThreadBytes = std::uint64_t{1} << 20;
 
-template <typename Set>
-bool has_entries(const StoreReader& store, const Set& set, std::uint32_t cell) {
-  const std::uint64_t first = std::uint64_t{cell} * store.blocks_per_cell();
-  for (std::uint64_t word = first; word < first + store.blocks_per_cell(); ++word) {
-    if (set.word(word) != 0) return true;
-  }
-  return false;
-}
-
-/// The rows with the smallest source indices >= `from`, at most `most` of them, sorted.
-template <typename Row>
-class RangePass {
- public:
-  /// No more than `count` rows are left.
-  RangePass(std::uint64_t from, std::size_t most, std::uint64_t count) : from_(from), most_(most) {
-    rows_.reserve(std::min<std::uint64_t>(2 * most, count));
-  }
-
-  /// rows_of(cell) gives what makes a row of (source, entry, index in the cell).
-  template <typename Set, typename RowsOf>
-  void add_cell(const StoreReader& store, const Set& set, std::uint32_t cell, RowsOf rows_of) {
-    const PackedChunk<std::uint64_t> sources = store.sources(cell);
-    if (sources.minimum() >= below_) return;
-    const auto row_of = rows_of(cell);
-    for_each_entry(store, set, cell, [&](std::uint64_t entry, std::uint32_t i) {
-      const std::uint64_t source = sources[i];
-      if (source < from_ || source >= below_) return;
-      rows_.push_back(row_of(source, entry, i));
-      if (rows_.size() >= 2 * most_) keep_smallest();
-    });
-  }
-
-  std::vector<Row> take() {
-    if (rows_.size() > most_) keep_smallest();
-    std::sort(rows_.begin(), rows_.end(), by_source);
-    return std::move(rows_);
-  }
-
- private:
-  static bool by_source(const Row& a, const Row& b) { return a.source < b.source; }
-
-  void keep_smallest() {
-    const auto end = rows_.begin() + static_cast<std::ptrdiff_t>(most_);
-    std::nth_element(rows_.begin(), end, rows_.end(), by_source);
-    below_ = end->source;
-    rows_.erase(end, rows_.end());
-  }
-
-  std::uint64_t from_;
-  std::uint64_t below_ = std::numeric_limits<std::uint64_t>::max();
-  std::size_t most_;
-  std::vector<Row> rows_;
+/// How a table is written in the memory that there is.
+struct WritePlan {
+  std::size_t rows;    ///< of a pass
+  std::size_t pieces;  ///< encoded ones under way
+  int threads;         ///< that gather
+  bool without_copy;   ///< while ordering
 };
 
-void append_rows(ResultWriter& writer, const std::vector<Collision>& rows,
-                 const Quantisation& quantisation, bool first_pose) {
-  std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;
-  std::vector<std::uint32_t> poses;
-  const std::size_t most = std::min(kRows, rows.size());
-  source.reserve(most);
-  xyz.reserve(most);
-  if (first_pose) poses.reserve(most);
-  for (std::size_t first = 0; first < rows.size(); first += kRows) {
-    source.clear();
-    xyz.clear();
-    poses.clear();
-    for (std::size_t i = first; i < std::min(rows.size(), first + kRows); ++i) {
-      const Collision& row = rows[i];
-      source.push_back(row.source);
-      xyz.push_back(position(quantisation, row.q[0], row.q[1], row.q[2]));
-      if (first_pose) poses.push_back(row.first_pose);
-    }
-    writer.append(source, xyz, poses);
+template <typename Row>
+WritePlan plan_of(const StoreReader& store, std::uint64_t memory_bytes) {
+  const int threads = tbb::this_task_arena::max_concurrency();
+  const std::uint64_t left = std::max(memory_bytes, least_write_bytes()) - kWriterBytes;
+  const std::uint64_t for_thread = CellRows::most_bytes(store) + 8 * SourceParts(store).count();
+  WritePlan plan{};
+  plan.pieces = std::clamp<std::uint64_t>(left / 4 / kPieceBytes, 1, 2 * threads);
+  plan.threads = static_cast<int>(std::clamp<std::uint64_t>(left / 8 / for_thread, 1, threads));
+  const std::uint64_t order_bytes = plan.threads * PartOrder<Row>::most_bytes();
+  plan.without_copy = order_bytes > left / 4;
+  const std::uint64_t used =
+      plan.pieces * kPieceBytes + plan.threads * for_thread + (plan.without_copy ? 0 : order_bytes);
+  plan.rows = std::max<std::uint64_t>(kLeastRows, (left - std::min(left, used)) / sizeof(Row));
+  return plan;
+}
+
+/// Visits the rows in short pieces, whose columns stay in a core's cache.
+template <typename Row, typename Visit>
+void for_each_strip(std::span<const Row> rows, Visit visit) {
+  constexpr std::size_t kStrip = 1 << 12;
+  for (std::size_t first = 0; first < rows.size(); first += kStrip) {
+    visit(rows.subspan(first, std::min(kStrip, rows.size() - first)));
   }
 }
 
-void append_rows(ResultWriter& writer, const std::vector<ClearanceRow>& rows,
-                 const Quantisation& quantisation) {
+template <typename Values, typename Row, typename ValueOf>
+void set_column(std::vector<Values>& column, std::span<const Row> rows, ValueOf value_of) {
+  column.resize(rows.size());
+  std::ranges::transform(rows, column.begin(), value_of);
+}
+
+Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
+  return position(quantisation, q[0], q[1], q[2]);
+}
+
+/// Of the points of equal rank the one with the smallest source, as rows ascend by it.
+template <typename Row, typename RankOf>
+const Row& least_row(std::span<const Row> rows, RankOf rank_of) {
+  return *std::ranges::min_element(rows, {}, rank_of);
+}
+
+/// The columns of a strip of rows.
+struct Strip {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<double> distance;
   std::vector<std::uint32_t> pose;
-  const std::size_t most = std::min(kRows, rows.size());
-  source.reserve(most);
-  xyz.reserve(most);
-  distance.reserve(most);
-  pose.reserve(most);
-  for (std::size_t first = 0; first < rows.size(); first += kRows) {
-    source.clear();
-    xyz.clear();
-    distance.clear();
-    pose.clear();
-    for (std::size_t i = first; i < std::min(rows.size(), first + kRows); ++i) {
-      const ClearanceRow& row = rows[i];
-      source.push_back(row.source);
-      xyz.push_back(position(quantisation, row.q[0], row.q[1], row.q[2]));
-      distance.push_back(row.distance);
-      pose.push_back(row.pose);
-    }
-    writer.append_clearances(source, xyz, distance, pose);
+};
+
+using CollisionPiece = WritePiece<EncodedCollisions>;
+using ClearancePiece = WritePiece<EncodedClearances>;
+
+std::shared_ptr<CollisionPiece> encode(const ResultWriter& writer, bool first_pose,
+                                       const Quantisation& quantisation,
+                                       std::span<const CollisionRow> rows) {
+  auto out = std::make_shared<CollisionPiece>(writer.new_collisions());
+  Strip columns;
+  for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
+    set_column(columns.source, strip, [](const auto& row) { return row.source; });
+    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
+    if (first_pose) set_column(columns.pose, strip, [](const auto& row) { return row.first_pose; });
+    out->rows.add(columns.source, columns.xyz, columns.pose);
+  });
+  out->rows.seal();
+  if (first_pose) {
+    const CollisionRow& first = least_row(rows, &CollisionRow::first_pose);
+    out->place = {first.source, first.first_pose, xyz_of(quantisation, first.q), 0};
+  }
+  return out;
+}
+
+std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const Quantisation& quantisation,
+                                       std::span<const ClearanceRow> rows) {
+  auto out = std::make_shared<ClearancePiece>(writer.new_clearances());
+  Strip columns;
+  for_each_strip(rows, [&](std::span<const ClearanceRow> strip) {
+    set_column(columns.source, strip, [](const auto& row) { return row.source; });
+    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
+    set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
+    set_column(columns.pose, strip, [](const auto& row) { return row.pose; });
+    out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose);
+  });
+  out->rows.seal();
+  const ClearanceRow& least = least_row(rows, &ClearanceRow::distance);
+  out->place = {least.source, least.pose, xyz_of(quantisation, least.q), least.distance};
+  return out;
+}
+
+/// The end of the parts from `first` on of which no more than `most` rows come.
+std::size_t end_of_pass(const StoreReader& store, const std::vector<std::uint64_t>& counts,
+                        std::size_t first, std::size_t most) {
+  std::size_t end = first;
+  for (std::uint64_t rows = 0; end < counts.size(); ++end) {
+    rows += counts[end];
+    if (rows > most) break;
+  }
+  if (end == first) refuse(store.name(), "two points have the same source index");
+  return end;
+}
+
+/// Writes a set in passes, by write(rows): a multiple of kEncodedRows, but the last.
+template <typename Row, typename Set, typename RowsOf, typename Write>
+void write_set(const StoreReader& store, const Set& set, const SetCells& in, const WritePlan& plan,
+               Progress& progress, RowsOf rows_of, Write write) {
+  if (in.entries == 0) return;
+  tbb::task_arena arena(plan.threads);
+  std::optional<GatherRows<Row, Set>> gather;
+  arena.execute([&] { gather.emplace(store, set, in, progress); });
+  const std::vector<std::uint64_t>& counts = gather->counts();
+  const std::size_t most = std::min<std::uint64_t>(plan.rows, in.entries);
+  const auto memory = std::make_unique_for_overwrite<Row[]>(most);
+  const std::span<Row> rows(memory.get(), most);
+  std::size_t kept = 0;  // rows of the pass before, at the front
+  for (std::size_t first = 0; first < counts.size();) {
+    const std::size_t end = end_of_pass(store, counts, first, most - kept);
+    std::size_t count = kept;
+    for (std::size_t part = first; part < end; ++part) count += counts[part];
+    arena.execute([&] {
+      gather->gather(first, end, rows.subspan(kept, count - kept), plan.without_copy, rows_of);
+    });
+    const std::size_t whole = end == counts.size() ? count : count - count % kEncodedRows;
+    write(rows.first(whole));
+    std::copy(rows.begin() + static_cast<std::ptrdiff_t>(whole),
+              rows.begin() + static_cast<std::ptrdiff_t>(count), rows.begin());
+    kept = count - whole;
+    first = end;
   }
 }
 
-/// Writes a set of `count` entries in passes, by append(rows).
-template <typename Row, typename Set, typename RowsOf, typename Append>
-void write_set(const StoreReader& store, const Set& set, std::uint64_t count,
-               std::uint64_t memory_bytes, Progress& progress, RowsOf rows_of, Append append) {
-  const std::size_t most = rows_of_pass<Row>(memory_bytes);
-  std::vector<std::uint32_t> cells;
-  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-    if (has_entries(store, set, cell)) cells.push_back(cell);
+/// Writes one result, table by table.
+class ResultWriting {
+ public:
+  ResultWriting(const StoreReader& store, const SearchResult& answer, std::uint64_t memory_bytes,
+                ResultWriter& writer, Progress& progress)
+      : store_(store),
+        answer_(answer),
+        memory_bytes_(memory_bytes),
+        writer_(writer),
+        progress_(progress) {}
+
+  void write_collisions(const SetCells& in, std::optional<FoundPlace>& first) {
+    const WritePlan plan = plan_of<CollisionRow>(store_, memory_bytes_);
+    const HitSet& hits = answer_.hits;
+    const bool first_pose = hits.has_first_pose();
+    const auto rows_of = [&](std::uint32_t cell) {
+      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
+                                               std::uint32_t i) {
+        return CollisionRow{
+            source, {q[0][i], q[1][i], q[2][i]}, first_pose ? hits.first_pose(entry) : 0};
+      };
+    };
+    const auto encode_rows = [&](std::span<const CollisionRow> rows) {
+      return encode(writer_, first_pose, store_.quantisation(), rows);
+    };
+    const auto keep_first = [&](const CollisionPiece& piece) {
+      if (!piece.place || (first && first->pose <= piece.place->pose)) return;
+      first = piece.place;
+    };
+    write_set<CollisionRow>(store_, hits, in, plan, progress_, rows_of,
+                            [&](std::span<const CollisionRow> rows) {
+                              write_rows<EncodedCollisions>(writer_, rows, plan.pieces, progress_,
+                                                            encode_rows, keep_first);
+                            });
   }
-  std::uint64_t from = 0;
-  for (std::uint64_t written = 0; written < count;) {
-    RangePass<Row> pass(from, most, count - written);
-    for (const std::uint32_t cell : cells) {
-      throw_if_stopped(progress);
-      pass.add_cell(store, set, cell, rows_of);
-    }
-    const std::vector<Row> rows = pass.take();
-    if (rows.empty()) break;  // finish() reports what is missing
-    throw_if_stopped(progress);
-    append(rows);
-    written += rows.size();
-    from = rows.back().source + 1;
-    progress.advance(rows.size());
+
+  void write_clearances(const SetCells& in, std::optional<FoundPlace>& least) {
+    const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
+    const ClearanceSet& clearances = answer_.clearances;
+    const auto rows_of = [&](std::uint32_t cell) {
+      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
+                                               std::uint32_t i) {
+        const Clearance clearance = clearances.at(entry);
+        return ClearanceRow{
+            source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
+      };
+    };
+    const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
+      return encode(writer_, store_.quantisation(), rows);
+    };
+    const auto keep_least = [&](const ClearancePiece& piece) {
+      if (least && least->distance <= piece.place->distance) return;
+      least = piece.place;
+    };
+    write_set<ClearanceRow>(store_, clearances, in, plan, progress_, rows_of,
+                            [&](std::span<const ClearanceRow> rows) {
+                              write_rows<EncodedClearances>(writer_, rows, plan.pieces, progress_,
+                                                            encode_rows, keep_least);
+                            });
   }
+
+ private:
+  const StoreReader& store_;
+  const SearchResult& answer_;
+  std::uint64_t memory_bytes_;
+  ResultWriter& writer_;
+  Progress& progress_;
+};
+
+WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
+                           const ResultHeader& header, const std::filesystem::path& path,
+                           std::uint64_t memory_bytes, Progress& progress,
+                           std::span<const double> chainage) {
+  WrittenResult out;
+  const SetCells collisions = cells_of(store, answer.hits);
+  const SetCells clearances =
+      header.clearance > 0 ? cells_of(store, answer.clearances) : SetCells();
+  out.collisions = collisions.entries;
+  out.clearances = clearances.entries;
+  ResultWriter writer(path, header, out.collisions, out.clearances);
+  progress.begin("write", out.collisions + out.clearances, "points");
+  ResultWriting writing(store, answer, memory_bytes, writer, progress);
+  writing.write_collisions(collisions, out.first_place);
+  writing.write_clearances(clearances, out.least_clearance);
+  if (header.profile > 0) {
+    out.least_profile = write_profile(store, answer.profile, chainage, writer, progress);
+  }
+  writer.finish();
+  progress.end();
+  return out;
 }
 
 }  // namespace
 
-void write_result(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
-                  const std::filesystem::path& path, std::uint64_t memory_bytes, Progress& progress,
-                  std::span<const double> chainage) {
-  const HitSet& hits = answer.hits;
-  const ClearanceSet& clearances = answer.clearances;
-  const std::uint64_t collisions = hits.count();
-  const std::uint64_t distances = clearances.count();
-  ResultWriter writer(path, header, collisions, distances);
-  progress.begin("write", collisions + distances, "points");
-  write_set<Collision>(
-      store, hits, collisions, memory_bytes, progress,
-      [&](std::uint32_t cell) {
-        return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
-                                                std::uint32_t i) {
-          return Collision{source,
-                           {q[0][i], q[1][i], q[2][i]},
-                           hits.has_first_pose() ? hits.first_pose(entry) : 0};
-        };
-      },
-      [&](const std::vector<Collision>& rows) {
-        append_rows(writer, rows, store.quantisation(), header.first_pose);
-      });
-  if (header.clearance > 0) {
-    write_set<ClearanceRow>(
-        store, clearances, distances, memory_bytes, progress,
-        [&](std::uint32_t cell) {
-          return [&, q = store.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
-                                                  std::uint32_t i) {
-            const Clearance clearance = clearances.at(entry);
-            return ClearanceRow{
-                source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
-          };
-        },
-        [&](const std::vector<ClearanceRow>& rows) {
-          append_rows(writer, rows, store.quantisation());
-        });
-  }
-  if (header.profile > 0) write_profile(store, answer.profile, chainage, writer, progress);
-  writer.finish();
-  progress.end();
+WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
+                           const ResultHeader& header, const std::filesystem::path& path,
+                           std::uint64_t memory_bytes, Progress& progress,
+                           std::span<const double> chainage, int threads) {
+  if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
+  const ThreadLimit limit(threads);
+  return tbb::task_arena(threads).execute(
+      [&] { return write_tables(store, answer, header, path, memory_bytes, progress, chainage); });
 }
 
 std::uint64_t least_write_bytes() {
-  return kBufferBytes + 2 * kRows * std::max(sizeof(Collision), sizeof(ClearanceRow));
+  return kWriterBytes + kPieceBytes + kLeastThreadBytes +
+         kLeastRows * std::max(sizeof(CollisionRow), sizeof(ClearanceRow));
 }
 
 }  // namespace clearway

@@ -154,20 +154,12 @@ TEST_CASE("a profile has the same bytes whatever the threads, the memory and the
   const auto whole = scene.folder / "whole.h5", output = scene.folder / "out.h5";
   const SearchReport report = search(store, scene.query, whole, {.threads = 1});
   CHECK(report.profile_poses == 200);
-  REQUIRE(report.least);
-  const Profile profile = Result(whole).profile();
-  CHECK(report.least->distance == profile.distance[report.least->pose]);
-  CHECK(report.least->source == profile.source[report.least->pose]);
-  CHECK(*std::min_element(profile.distance.begin(), profile.distance.end()) ==
-        report.least->distance);
   const auto check_same = [&] {
     CHECK((bytes_of(output) == bytes_of(whole)));
     const SearchReport again =
         search(store, scene.query, output, {.device = Device::kCpu, .resume = true});
     CHECK(again.was_finished);
     CHECK(again.profile_poses == 200);
-    REQUIRE(again.least);
-    CHECK(again.least->pose == report.least->pose);
     std::filesystem::remove(output);
   };
   search(store, scene.query, output, {.threads = 3, .memory_bytes = 40 << 20});

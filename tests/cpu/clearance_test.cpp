@@ -76,6 +76,37 @@ TEST_CASE("clearances of few model points, poses and points") {
   CHECK(scene.check(20) == scene.points.size());
 }
 
+TEST_CASE("clearances along slow paths") {
+  // Runs of many poses are nearly straight, seen from the model: they are searched as one.
+  Scene scene;
+  scene.points.resize(250);
+  scene.poses.clear();
+  const double bend = GENERATE(0.0, 1e-9, 1e-3, 0.5, 4.0);
+  for (int i = 0; i < 500; ++i) {
+    const double s = i / 100.0, angle = bend * s / 5;
+    Pose pose = translation({s - 2.5, bend * s * s / 50, 0.25});
+    pose.rotation[0] = pose.rotation[4] = std::cos(angle);
+    pose.rotation[3] = std::sin(angle);
+    pose.rotation[1] = -pose.rotation[3];
+    scene.poses.push_back(pose);
+  }
+  SECTION("as they are") {}
+  SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 300, scene.poses[200]); }
+  SECTION("to and fro") {
+    const auto there = scene.poses;
+    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
+  }
+  SECTION("with a jump") { scene.poses.insert(scene.poses.begin() + 77, scene.poses.back()); }
+  SECTION("jittering") {
+    for (Pose& pose : scene.poses) pose.translation[1] += 1e-3 * random_direction(scene.random).y;
+  }
+  SECTION("stretched") {
+    for (Pose& pose : scene.poses) pose = stretched(pose, {1.2, 0.8, 1.00005});
+  }
+  SECTION("far away") { move_far_away(scene, {5e6, 2e6, 1e3}); }
+  CHECK(scene.check(0.4) > 10);
+}
+
 TEST_CASE("clearances that several poses tie for") {
   Scene scene;
   SECTION("repeated poses") {

@@ -1,4 +1,4 @@
-// What is said of conflicts: numbers, cuts, distances, sides, and what is refused.
+// What is said of conflicts: numbers, cuts, distances, and what is refused.
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
 
@@ -92,6 +92,24 @@ TEST_CASE("a group is cut at multiples of the split where it is longer") {
   CHECK(conflicts_of(found, options).listed.size() == 60);
 }
 
+TEST_CASE("chainages begin where the first pose is said to be, and nothing else changes") {
+  const Found found = rail(60);
+  ConflictOptions options;
+  const Conflicts plain = conflicts_of(found, options);
+  for (const double start : {1234.5, -7.0}) {
+    options.chainage_start = start;
+    const Conflicts moved = conflicts_of(found, options);
+    REQUIRE(moved.listed.size() == plain.listed.size());
+    CHECK(moved.path_length == plain.path_length);
+    for (std::size_t i = 0; i < plain.listed.size(); ++i) {
+      CHECK(moved.listed[i].id == plain.listed[i].id);
+      CHECK(moved.listed[i].source == plain.listed[i].source);
+      CHECK(moved.listed[i].chainage_from == plain.listed[i].chainage_from + start);
+      CHECK(moved.listed[i].chainage_to == plain.listed[i].chainage_to + start);
+    }
+  }
+}
+
 TEST_CASE(
     "small groups are counted whole, and stretches of large ones listed whatever their size") {
   Found found = rail(26);
@@ -140,35 +158,6 @@ TEST_CASE("least distances come from the clearances, of equal ones the smallest 
   CHECK(out.listed[0].encroachment == 0.25);
   CHECK(out.listed[1].least_distance == 0.5);
   CHECK(out.listed[1].nearest_source == 8);
-}
-
-TEST_CASE("the side is seen from the model's box at the pose") {
-  const auto side = [](const Vec3& at, const Pose& pose, const ConflictOptions& how = {}) {
-    Found found;
-    found.poses = {pose};
-    for (int k = 0; k < 3; ++k) found.quantisation.offset[k] = at[k];
-    found.quanta = {{0, 0, 0}};
-    ConflictOptions options = how;
-    options.min_points = 1;
-    return conflicts_of(found, options).listed.at(0).side;
-  };
-  const Pose ahead = translation({100, 50, 0});
-  CHECK(side({100, 52, 0}, ahead) == Side::kLeft);
-  CHECK(side({100, 48, 0}, ahead) == Side::kRight);
-  CHECK(side({100, 50, 2}, ahead) == Side::kAbove);
-  CHECK(side({100, 50, -2}, ahead) == Side::kBelow);
-  CHECK(side({103, 52, 0}, ahead) == Side::kFront);
-  CHECK(side({97, 50, 0}, ahead) == Side::kBehind);
-  CHECK(side({100, 50.9, 0.5}, ahead) == Side::kLeft);  // inside: the nearest side
-  const Pose turned = rotation({0, 0, 1}, std::acos(-1) / 2, {100, 50, 0});
-  CHECK(side({100, 52, 0}, turned) == Side::kFront);
-  CHECK(side({98, 50, 0}, turned) == Side::kLeft);
-  ConflictOptions other;
-  other.forward = Axis::kMinusY;
-  CHECK(side({100, 48, 0}, ahead, other) == Side::kFront);
-  CHECK(side({102, 50, 0}, ahead, other) == Side::kLeft);
-  other.up = Axis::kPlusX;
-  CHECK(side({102, 50, 0}, ahead, other) == Side::kAbove);
 }
 
 TEST_CASE("threads and the order of work change nothing") {
@@ -229,6 +218,14 @@ TEST_CASE("what cannot be grouped is refused") {
 
   ConflictOptions options;
   options.up = Axis::kMinusX;
+  CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
+  options = {};
+  for (const double split : {-1.0, 1e-308, 9e-10, std::nan(""), 1.0 / 0.0}) {
+    options.split = split;
+    CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
+  }
+  options = {};
+  options.chainage_start = 1.0 / 0.0;
   CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
   options = {};
   for (const double gap : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {

@@ -1,6 +1,7 @@
 #include "findings/match_conflicts.hpp"
 
 #include <catch2/catch.hpp>
+#include <utility>
 
 using namespace clearway;
 
@@ -59,6 +60,22 @@ TEST_CASE("long boxes are found from far away") {
   b.listed[1].box.hi.x = 100;
   CHECK(match_conflicts(at({{90, 0, 0}}), b, 0.3).same == Pairs{{1, 2}});
   CHECK(match_conflicts(b, at({{90, 0, 0}}), 0.3).same == Pairs{{2, 1}});
+}
+
+TEST_CASE("conflicts without extent match at their place whatever the gap") {
+  Conflicts a = at({{500'000, 5'000'000, 100}, {500'001, 5'000'000, 100}, {7, 8, 9}});
+  for (Conflict& c : a.listed) c.box.hi = c.box.lo;
+  for (const double gap : {1e-300, 1e-12, 0.3}) {
+    CHECK(match_conflicts(a, a, gap).same == Pairs{{1, 1}, {2, 2}, {3, 3}});
+  }
+  // Flat ones that touch: those with the most in common first.
+  a.listed[0].box = {{500'000, 5'000'000, 100}, {500'010, 5'000'010, 100}};
+  a.listed[1].box = {{500'008, 5'000'000, 100}, {500'020, 5'000'010, 100}};
+  Conflicts b = a;
+  std::swap(b.listed[0].box, b.listed[1].box);
+  CHECK(match_conflicts(a, b, 1e-300).same == Pairs{{1, 2}, {2, 1}, {3, 3}});
+  // As ever: boxes that only touch when grown do not overlap.
+  CHECK(match_conflicts(at({{0, 0, 0}}), at({{2, 0, 0}}), 0.5).same.empty());
 }
 
 TEST_CASE("nothing matches nothing") {

@@ -282,6 +282,7 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path folder = argv[1];
   write_las_seeds({folder, "las"});
+  write_las_seeds({folder, "las_records"});
   write_e57_seeds({folder, "e57"});
   write_pcd_seeds({folder, "pcd"});
   write_laz_seeds({folder, "laz"});

@@ -30,7 +30,8 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
         CHECK(engine->device_bytes() ==
               cuda_sweep_bytes(sweep) + layout.slots * cuda_sweep_slot_bytes(sweep, of, layout));
         return engine;
-      });
+      },
+      true);
 }
 
 }  // namespace

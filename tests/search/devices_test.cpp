@@ -75,7 +75,6 @@ TEST_CASE("of several GPUs the one with the least free bounds what is taken of e
   CHECK(roomy.gpus == std::vector{0, 3});
   CHECK(roomy.memory_bytes == kWanted);
   CHECK(roomy.short_device.empty());
-  CHECK_FALSE(roomy.fallback_allowed);
   const DeviceChoice tight =
       choice_of({gpu(0, 600 * kMiB), gpu(1, 200 * kMiB), gpu(2, 4 * kWanted)}, kWanted);
   CHECK(tight.memory_bytes == 190 * kMiB);
@@ -88,5 +87,4 @@ TEST_CASE("the CPU is taken where there is no GPU, or none with room") {
   CHECK_FALSE(automatic_choice(full.count(), full.open(), kWanted, silent()).is_cuda());
   const DeviceChoice choice = automatic_choice(room.count(), room.open(), kWanted, silent());
   CHECK(choice.gpus == std::vector{1});
-  CHECK(choice.fallback_allowed);
 }

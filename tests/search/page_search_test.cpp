@@ -121,6 +121,17 @@ TEST_CASE("a run asks for its journal once, after its engine was made") {
   CHECK(line.journals_opened == 1);
 }
 
+TEST_CASE("an engine has no more slots than the plan has pages") {
+  Line line;
+  line.kind->changed_needs().most_slots = 64;
+  CHECK(line.run() > 0);
+  CHECK(line.report.pages < 64);
+  CHECK(line.report.slots == line.report.pages);
+  line.kind->changed_needs().most_slots = 4;
+  CHECK(line.run() > 0);
+  CHECK(line.report.slots == 4);
+}
+
 TEST_CASE("layouts that fit either memory but not both are refused with a budget that works") {
   Line line;
   const std::uint64_t hits = line.run();

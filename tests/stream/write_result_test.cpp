@@ -28,18 +28,23 @@ class Site {
 
   /// The result file's bytes.
   std::string written(const SearchResult& answer, const ResultHeader& header,
-                      std::uint64_t memory_bytes) const {
+                      std::uint64_t memory_bytes, int threads = 0) const {
     NoProgress progress;
-    write_result(*store_, answer, header, folder_ / "out.h5", memory_bytes, progress);
+    found_ = write_result(*store_, answer, header, folder_ / "out.h5", memory_bytes, progress, {},
+                          threads);
     CHECK_FALSE(verify_result(ResultReader(folder_ / "out.h5"), progress));
     return bytes_of(folder_ / "out.h5");
   }
+
+  /// What the last one gave.
+  const WrittenResult& found() const { return found_; }
 
   ResultReader result() const { return ResultReader(folder_ / "out.h5"); }
 
  private:
   ScratchFolder folder_;
   std::optional<StoreReader> store_;
+  mutable WrittenResult found_;
 };
 
 ResultHeader header_of(const StoreReader& store) {
@@ -106,4 +111,62 @@ TEST_CASE("collisions and clearances written in several passes give the bytes of
   }
   CHECK(wrong == 0);
   CHECK(source == kPoints);
+}
+
+TEST_CASE("any number of threads writes the same bytes") {
+  const Site site;
+  const SearchResult answer = answer_for(site.store());
+  const ResultHeader header = header_of(site.store());
+  const std::string once = site.written(answer, header, std::uint64_t{1} << 30, 1);
+  for (const int threads : {2, 3, 16}) {
+    CAPTURE(threads);
+    CHECK((site.written(answer, header, std::uint64_t{1} << 30, threads) == once));
+    CHECK((site.written(answer, header, 0, threads) == once));
+  }
+}
+
+TEST_CASE("rows that are appended give the bytes of rows that are written from a search") {
+  const Site site;
+  const SearchResult answer = answer_for(site.store());
+  const ResultHeader header = header_of(site.store());
+  const std::string once = site.written(answer, header, std::uint64_t{1} << 30);
+  const ResultReader result = site.result();
+  const ResultRows rows = read_rows(result);
+  ClearanceRows clearances, batch;
+  for (ClearanceRowStream stream(result); stream.read(batch);) {
+    clearances.source.insert(clearances.source.end(), batch.source.begin(), batch.source.end());
+    clearances.xyz.insert(clearances.xyz.end(), batch.xyz.begin(), batch.xyz.end());
+    clearances.distance.insert(clearances.distance.end(), batch.distance.begin(),
+                               batch.distance.end());
+    clearances.pose.insert(clearances.pose.end(), batch.pose.begin(), batch.pose.end());
+  }
+  const ScratchFolder folder;
+  write_result(folder / "again.h5", header, rows, 7001, clearances);
+  CHECK((bytes_of(folder / "again.h5") == once));
+}
+
+TEST_CASE("writing a result gives the places that reading it gives") {
+  const Site site;
+  const SearchResult answer = answer_for(site.store());
+  site.written(answer, header_of(site.store()), 0);
+  const ResultReader result = site.result();
+  const ResultRows rows = read_rows(result);
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows.first_pose[i] < rows.first_pose[first]) first = i;
+  }
+  std::optional<FoundPlace> least;
+  ClearanceRows batch;
+  for (ClearanceRowStream stream(result); stream.read(batch);) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (least && batch.distance[i] >= least->distance) continue;
+      least = {batch.source[i], batch.pose[i], batch.xyz[i], batch.distance[i]};
+    }
+  }
+  CHECK(site.found().collisions == result.collisions());
+  CHECK(site.found().clearances == result.clearances());
+  CHECK(site.found().first_place ==
+        FoundPlace{rows.source[first], rows.first_pose[first], rows.xyz[first], 0});
+  CHECK(site.found().least_clearance == least);
+  CHECK_FALSE(site.found().least_profile);
 }

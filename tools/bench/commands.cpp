@@ -44,6 +44,8 @@ constexpr Experiment kExperiments[] = {
      "Compares the results of all engines, devices and modes with the sweep's on the CPU, byte by "
      "byte",
      true, true},
+    {"choice", bench_choice,
+     "Whether --engine auto takes the faster engine, and how good its estimates are", true, true},
 };
 
 /// Throws UsageError with the experiments that take --scenes.
@@ -139,7 +141,7 @@ void add_bounds(CLI::App& command, BenchOptions& options) {
 const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
       .add_option("--scenes", options.scenes,
-                  "Scenes, for table, datasets and equality (default: all)")
+                  "Scenes, for table, datasets, equality and choice (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
 }

@@ -5,6 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/comparison_text.hpp"
 #include "cli/conflicts/conflict_comparison.hpp"
+#include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "io/result/compare_results.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 struct CompareOptions {
   std::filesystem::path a, b;
-  std::size_t show = 10;
+  std::uint64_t show = 10;
   bool json = false;
   bool conflicts = false;
   ConflictComparison places;
@@ -46,12 +47,8 @@ void add_compare(CLI::App& program, int& exit_code) {
   command->add_option("B", options->b, "Another result about the same environment")
       ->type_name("FILE")
       ->required();
-  command
-      ->add_option("--show", options->show,
-                   "Print the first N differing points, or new and gone conflicts")
-      ->type_name("N")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
+  add_count_option(*command, "--show", options->show, 0, 1'000'000'000,
+                   "Print the first N differing points, or new and gone conflicts");
   command->add_flag("--json", options->json, "Print one JSON object");
   CLI::Option* conflicts = command->add_flag(
       "--conflicts", options->conflicts,

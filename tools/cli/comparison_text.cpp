@@ -55,8 +55,8 @@ nlohmann::ordered_json point_json(const PointDifference& point) {
 }  // namespace
 
 std::string comparison_text(const Comparison& c, const std::string& a, const std::string& b) {
-  std::string text = "a: " + format_count(c.in_a) + " colliding points in " + a + "\n" +
-                     "b: " + format_count(c.in_b) + " colliding points in " + b + "\n" +
+  std::string text = "a: " + counted(c.in_a, "colliding point") + " in " + a + "\n" +
+                     "b: " + counted(c.in_b, "colliding point") + " in " + b + "\n" +
                      "in both: " + format_count(c.common) + "\n" +
                      "only in a: " + format_count(c.only_in_a) + "\n" +
                      "only in b: " + format_count(c.only_in_b) + "\n";

@@ -52,6 +52,20 @@ nlohmann::ordered_json box_json(const StoreReader& store) {
   return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
 }
 
+/// Bytes that this process read and wrote by system calls, the page cache included, as the system
+/// counts them; null where it does not.
+nlohmann::ordered_json bytes_moved() {
+  nlohmann::ordered_json out = nullptr;
+  std::ifstream io("/proc/self/io");
+  for (std::string name; io >> name;) {
+    std::uint64_t bytes = 0;
+    if (!(io >> bytes)) break;
+    if (name == "rchar:") out["read"] = bytes;
+    if (name == "wchar:") out["written"] = bytes;
+  }
+  return out;
+}
+
 /// Of a store that was there already, what only a conversion knows is null.
 nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArguments& options,
                                double total_seconds) {
@@ -83,6 +97,11 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArgumen
                     {"distribute", report.distribute_seconds},
                     {"partition", report.partition_seconds},
                     {"confirm", report.confirm_seconds}};
+  out["busy_seconds"] = nullptr;
+  for (const StageSeconds& busy : report.busy_seconds) {
+    out["busy_seconds"][busy.stage] = busy.seconds;
+  }
+  out["bytes_moved"] = bytes_moved();
   return out;
 }
 
@@ -92,8 +111,8 @@ void log_report(const ConvertArguments& options, const ConvertReport& report) {
                  options.output.string());
     return;
   }
-  spdlog::info("{}: {} points in {} cells of {}, {} ({:.2f} bytes a point)",
-               options.output.string(), format_count(report.points), format_count(report.cells),
+  spdlog::info("{}: {} in {} of {}, {} ({:.2f} bytes a point)", options.output.string(),
+               counted(report.points, "point"), counted(report.cells, "cell"),
                format_count(options.conversion.cell_points), format_size(report.output_bytes),
                static_cast<double>(report.output_bytes) /
                    static_cast<double>(std::max<std::uint64_t>(1, report.points)));

@@ -31,6 +31,7 @@ struct ExportOptions {
   TrajectoryOptions trajectory_options;
   LengthOptions lengths;
   std::string what = "collisions";
+  double chainage_start = 0;
   bool force = false;
   bool json = false;
 };
@@ -38,6 +39,9 @@ struct ExportOptions {
 void check_combination(const ExportOptions& options) {
   if (!options.scans.empty() && options.what != "collisions") {
     throw UsageError("--scans is for the colliding points: leave out --what " + options.what);
+  }
+  if (options.chainage_start != 0 && options.what != "profile") {
+    throw UsageError("--chainage-start counts along a profile: it needs --what profile");
   }
   if (!options.trajectory.empty() && options.what != "profile") {
     throw UsageError("--trajectory names the poses of a profile: it needs --what profile");
@@ -49,8 +53,6 @@ PoseLabels labels_for(const ResultReader& result, ExportOptions& options) {
   PoseLabels labels;
   if (options.trajectory.empty()) return labels;
   options.trajectory_options.default_crs = result.header().crs_wkt;
-  options.trajectory_options.environment_unit = metres_of_crs(result.header().crs_wkt);
-  options.lengths.convert(options.trajectory_options.environment_unit);
   std::vector<Message> remarks;
   const std::vector<Pose> poses =
       read_trajectory(options.trajectory, options.trajectory_options, &remarks, &labels);
@@ -65,7 +67,7 @@ PoseLabels labels_for(const ResultReader& result, ExportOptions& options) {
 /// What was written, and how many rows.
 struct Exported {
   std::uint64_t rows;
-  const char* unit;
+  const char* row;
 };
 
 Exported export_table(const ResultReader& result, ExportOptions& options) {
@@ -76,18 +78,21 @@ Exported export_table(const ResultReader& result, ExportOptions& options) {
       spdlog::warn("{}: is of version 2; its clearances have no coordinates, run the query again",
                    options.result.string());
     }
-    return {result.clearances(), "clearances"};
+    return {result.clearances(), "clearance"};
   }
   if (options.what == "profile") {
-    export_profile(result, labels_for(result, options), options.output, options.force, progress);
-    return {result.profile_rows(), "poses"};
+    options.trajectory_options.environment_unit = metres_of_crs(result.header().crs_wkt);
+    options.lengths.convert(options.trajectory_options.environment_unit);
+    export_profile(result, labels_for(result, options), options.chainage_start, options.output,
+                   options.force, progress);
+    return {result.profile_rows(), "pose"};
   }
   if (options.scans.empty()) {
     export_result(result, options.output, options.force, progress);
   } else {
     export_scan_records(result, options.scans, options.output, options.force, progress);
   }
-  return {result.collisions(), "colliding points"};
+  return {result.collisions(), "colliding point"};
 }
 
 void run_export(ExportOptions& options) {
@@ -98,7 +103,7 @@ void run_export(ExportOptions& options) {
   refuse_overwriting(options.output, inputs);
   const ResultReader result(options.result);
   const Exported exported = export_table(result, options);
-  spdlog::info("{}: {} {}", options.output.string(), format_count(exported.rows), exported.unit);
+  spdlog::info("{}: {}", options.output.string(), counted(exported.rows, exported.row));
   if (!options.json) return;
   nlohmann::ordered_json out =
       program_json({{"result", options.result}, {"output", options.output}});
@@ -148,6 +153,7 @@ void add_export(CLI::App& program) {
       ->add_option("--trajectory", options->trajectory,
                    "Of the run: adds its times and names to a profile")
       ->type_name("FILE");
+  add_chainage_option(*command, options->lengths, options->chainage_start);
   add_trajectory_options(*command, options->trajectory_options, options->lengths);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");

@@ -54,6 +54,16 @@ void name_files(ReportCommand& options) {
   if (options.report.date.empty()) options.report.date = now_in_utc();
 }
 
+/// What --model-above left out, from the note of the model's reader.
+void note_left_out(ReportCommand& options, const std::vector<Message>& messages) {
+  options.report.model_above = options.model_options.above;
+  for (const Message& told : messages) {
+    for (const auto& [name, value] : told.numbers) {
+      if (name == "left_out") options.report.model_left_out = static_cast<std::uint64_t>(value);
+    }
+  }
+}
+
 Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {
   std::vector<Message>& warnings = options.report.warnings;
   const ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
@@ -61,6 +71,7 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
   options.trajectory_options.default_crs = store.crs_wkt();
   std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options,
                                             &warnings, &options.report.labels);
+  note_left_out(options, warnings);
   std::erase_if(warnings,
                 [](const Message& told) { return told.severity == Message::Severity::kNote; });
   return {std::move(model), std::move(poses), result.parameters()};
@@ -68,11 +79,10 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
 
 void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {
   const std::string conflicts = result.parameters().first_pose
-                                    ? format_count(summary.conflicts.listed.size()) + " conflicts"
+                                    ? counted(summary.conflicts.listed.size(), "conflict")
                                     : "conflicts are not known, as the result has no first poses";
-  spdlog::info("{}: {}, {} colliding points, {}, {}", options.output.string(),
-               summary.clear ? "clear" : "conflict", format_count(result.size()), conflicts,
-               format_size(summary.bytes));
+  spdlog::info("{}: {}, {}, {}, {}", options.output.string(), summary.clear ? "clear" : "conflict",
+               counted(result.size(), "colliding point"), conflicts, format_size(summary.bytes));
   spdlog::info("open it in a browser: it is one file and needs no network");
 }
 
@@ -90,7 +100,7 @@ void run_report(ReportCommand& options) {
   take_unit(unit, options);
   options.model_options.environment_unit = unit;
   for (const ParsedLength& length : options.classes) {
-    options.report.classes.push_back(length.has_unit ? length.value / unit : length.value);
+    options.report.classes.push_back(length.in_units_of(unit));
   }
   options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);
@@ -142,6 +152,10 @@ void add_classes(CLI::App& command, ReportCommand& options) {
 void add_page_options(CLI::App& command, ReportOptions& options) {
   command.add_option("--title", options.title, "Title of the page (default: names of the files)")
       ->type_name("TEXT");
+  command.add_option("--project", options.project, "Name of the project, in the head of the page")
+      ->type_name("TEXT");
+  command.add_option("--client", options.client, "Who the page is for")->type_name("TEXT");
+  command.add_option("--author", options.author, "Who made it")->type_name("TEXT");
   command.add_option("--date", options.date, "Date on the page (default: now, in UTC)")
       ->type_name("TEXT");
   command

@@ -21,7 +21,9 @@
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/system/pending_file.hpp"
+#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -45,6 +47,7 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
   return {{"total", program.total_seconds},
           {"inputs", program.inputs_seconds},
           {"context", search.context},
+          {"context_wait", search.context_wait},
           {"thin", search.thin},
           {"plan", search.plan},
           {"field", search.field},
@@ -54,7 +57,8 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"upload", search.upload},
           {"compute", search.compute},
           {"collect", search.collect},
-          {"write", search.write}};
+          {"write", search.write},
+          {"end_wait", search.end_wait}};
 }
 
 /// What the tolerance spared; null for an exact result.
@@ -70,10 +74,22 @@ nlohmann::ordered_json tolerance_of(const SearchReport& report, double metres) {
           {"settled_by_bounds", spared.resolved_by_bounds}};
 }
 
+/// Of both engines, where it chose one of them; otherwise null.
+nlohmann::ordered_json estimate_of(const SearchReport& report) {
+  if (!report.engine_estimate) return nullptr;
+  return {{"sweep_seconds", report.engine_estimate->sweep_seconds},
+          {"kdtree_seconds", report.engine_estimate->kdtree_seconds}};
+}
+
 /// Whether a value is known of this run; otherwise null.
 template <typename Value>
 nlohmann::ordered_json known(bool is_known, const Value& value) {
   return is_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
+  if (!report.estimate) return nullptr;
+  return {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
 }
 
 /// Of a result that was there already no engine searched: what only a search knows is null.
@@ -94,7 +110,9 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["profile_poses"] = report.profile_poses;
   add_verdict(answer.verdict, answer.labels, out);
   out["engine"] = known(searched, name_of(report.engine));
+  out["engine_estimate"] = estimate_of(report);
   out["device"] = known(searched, name_of(report.device));
+  out["device_estimate"] = device_estimate_of(report);
   out["searches"] = known(searched, report.searches);
   out["field_voxel"] = known(searched, report.field_voxel);
   out["grid_cell"] = known(searched, report.grid_cell);
@@ -131,16 +149,17 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
                  caveat(report));
     return;
   }
-  const std::string found =
-      fmt::format("{} of {} environment points collide", format_count(report.colliding_points),
-                  format_count(report.environment_points));
+  const std::string found = fmt::format("{} of {} {}", format_count(report.colliding_points),
+                                        counted(report.environment_points, "environment point"),
+                                        report.colliding_points == 1 ? "collides" : "collide");
   const std::string how =
       fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
   const bool doubtful = !report.warnings.empty();
   spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
   if (options.query.clearance > 0) {
-    spdlog::info("{} points are within the clearance of {} {}",
-                 format_count(report.clearance_points), options.query.clearance, unit);
+    spdlog::info("{} within the clearance of {} {}",
+                 counted(report.clearance_points, "point is", "points are"),
+                 options.query.clearance, unit);
   }
   if (doubtful) spdlog::info("{}{}", found, caveat(report));
 }
@@ -166,18 +185,15 @@ Store open_environment(const std::filesystem::path& path) {
   }
 }
 
+/// What follows a length; degrees are warned of, and count as metres here.
 std::string unit_of(const Store& store) {
-  const std::string unit = store.length_unit();
-  return unit == "foot" ? "ft" : unit == "us-survey-foot" ? "US ft" : "m";
+  const LengthUnit unit = length_unit_of(store.length_unit());
+  return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
 }
 
-Verdict read_verdict(const std::filesystem::path& output, const std::vector<Pose>& poses) {
-  try {
-    return verdict_of(ResultReader(output), poses);
-  } catch (const Error& error) {
-    throw ResourceError("the result was written, but it cannot be read back: " +
-                        std::string(error.what()));
-  }
+Verdict find_verdict(const SearchReport& report, const Query& query, const RunOptions& options) {
+  if (report.was_finished) return verdict_of(ResultReader(options.output), query.poses);
+  return verdict_of(report, query, options.search.float_precision);
 }
 
 /// Without --json the result itself is the answer: that nobody reads the sentence is no failure.
@@ -198,22 +214,26 @@ bool run(RunOptions& options) {
   watch_call(options.search, progress);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
+  options.search.end_gpus = true;
+  options.search.started = start_devices(options.search);
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
+  if (!options.search.started) options.search.started = start_devices(options.search, &store);
   if (const auto metres = metres_of_unit(store.length_unit())) {
     options.lengths.convert(*metres);
     options.model_options.environment_unit = *metres;
     options.trajectory_options.environment_unit = *metres;
   }
   Answer answer;
-  const Query query = read_query(options, store, answer.labels);
+  const Query query =
+      in_threads(options.search.threads, [&] { return read_query(options, store, answer.labels); });
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();
   log_report(report, options, unit_of(store), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
-  answer.verdict = read_verdict(options.output, query.poses);
+  answer.verdict = find_verdict(report, query, options);
   const std::string sentence =
       verdict_text(answer.verdict, answer.labels, unit_of(store), caveat(report));
   if (options.json) {

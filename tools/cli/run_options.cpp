@@ -86,9 +86,10 @@ void add_device(CLI::App& command, SearchOptions& options) {
 }
 
 void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& lengths) {
-  add_choice(command, "--engine", options.engine,
-             {Engine::kAuto, Engine::kSweep, Engine::kGrid, Engine::kKdtree},
-             "sweep, grid or kdtree; auto takes sweep");
+  add_choice(
+      command, "--engine", options.engine,
+      {Engine::kAuto, Engine::kSweep, Engine::kGrid, Engine::kKdtree},
+      "sweep, grid or kdtree; auto takes sweep or kdtree, whichever will be faster by estimate");
   add_device(command, options);
   add_threads_option(command, options.threads);
   add_memory_option(command, options.memory_bytes);

@@ -99,9 +99,9 @@ void make_scene_files(const SceneOptions& options) {
   }
   model.publish();
   trajectory.publish();
-  spdlog::info("{}: {} environment points, {} model points, {} poses", options.folder.string(),
-               format_count(sizes.points), format_count(sizes.model_points),
-               format_count(sizes.poses));
+  spdlog::info("{}: {}, {}, {}", options.folder.string(),
+               counted(sizes.points, "environment point"),
+               counted(sizes.model_points, "model point"), counted(sizes.poses, "pose"));
 }
 
 }  // namespace

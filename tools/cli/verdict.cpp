@@ -93,7 +93,33 @@ ordered_json place_json(const std::optional<AnswerPlace>& place, const PoseLabel
   return out;
 }
 
+void set_chainages(Verdict& verdict, const std::vector<Pose>& poses) {
+  const std::vector<double> chainage = chainage_of(poses);
+  for (auto* place : {&verdict.first, &verdict.least_clearance, &verdict.least_profile}) {
+    if (*place) (*place)->chainage = chainage.at((*place)->pose);
+  }
+}
+
+std::optional<AnswerPlace> answer_place(const std::optional<FoundPlace>& found, bool distance) {
+  if (!found) return std::nullopt;
+  AnswerPlace place{.source = found->source, .pose = found->pose, .xyz = found->xyz};
+  if (distance) place.distance = found->distance;
+  return place;
+}
+
 }  // namespace
+
+Verdict verdict_of(const SearchReport& report, const Query& query, bool float_precision) {
+  Verdict out;
+  out.colliding_points = report.colliding_points;
+  out.query = query;
+  out.float_precision = float_precision;
+  out.first = answer_place(report.first_place, false);
+  out.least_clearance = answer_place(report.least_clearance, true);
+  out.least_profile = answer_place(report.least_profile, true);
+  set_chainages(out, query.poses);
+  return out;
+}
 
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
   Verdict out;
@@ -103,10 +129,7 @@ Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
   if (result.header().first_pose) out.first = first_place(result);
   out.least_clearance = least_clearance(result);
   out.least_profile = least_of_profile(result);
-  const std::vector<double> chainage = chainage_of(poses);
-  for (auto* place : {&out.first, &out.least_clearance, &out.least_profile}) {
-    if (*place) (*place)->chainage = chainage.at((*place)->pose);
-  }
+  set_chainages(out, poses);
   return out;
 }
 

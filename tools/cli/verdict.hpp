@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clearway/pose.hpp"
+#include "clearway/search.hpp"
 #include "clearway/trajectory.hpp"
 #include "io/result/result.hpp"
 
@@ -21,7 +22,7 @@ struct AnswerPlace {
   std::optional<double> distance{};
 };
 
-/// The answer of a run in short, read from its result, whoever wrote that.
+/// The answer of a run in short.
 struct Verdict {
   std::uint64_t colliding_points = 0;
   QueryParameters query{};
@@ -37,7 +38,11 @@ struct Verdict {
   }
 };
 
-/// Reads the tables that the result has. poses: those of the search. Throws as ResultReader does.
+/// Of a result that was just written.
+Verdict verdict_of(const SearchReport& report, const Query& query, bool float_precision);
+
+/// Reads the tables that the result has, whoever wrote it. poses: those of the search. Throws as
+/// ResultReader does.
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses);
 
 /// One sentence, without what `caveat` adds before its end. unit: of lengths, "m".

@@ -36,4 +36,14 @@ CLEARWAY_HD inline double greatest_squared_distance(const Box& box, const Vec3& 
   return squared_length(d[0], d[1], d[2]);
 }
 
+/// Between the nearest points of two boxes.
+CLEARWAY_HD inline double least_squared_distance(const Box& a, const Box& b) {
+  double d[3];
+  for (int k = 0; k < 3; ++k) {
+    const double below = b.lo[k] - a.hi[k], above = a.lo[k] - b.hi[k];
+    d[k] = below > 0 ? below : above > 0 ? above : 0.0;
+  }
+  return squared_length(d[0], d[1], d[2]);
+}
+
 }  // namespace clearway

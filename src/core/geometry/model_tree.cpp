@@ -6,23 +6,11 @@
 #include "core/geometry/point_box.hpp"
 
 namespace clearway {
-namespace {
-
-/// Between the nearest points of two boxes.
-double least_squared_distance(const Box& a, const Box& b) {
-  double d[3];
-  for (int k = 0; k < 3; ++k) {
-    d[k] = std::max({b.lo[k] - a.hi[k], a.lo[k] - b.hi[k], 0.0});
-  }
-  return squared_length(d[0], d[1], d[2]);
-}
-
-}  // namespace
-
-ModelTree::ModelTree(std::span<const Vec3> model) : points_(model.begin(), model.end()) {
+ModelTree::ModelTree(std::span<const Vec3> model, int threads)
+    : points_(model.begin(), model.end()) {
   if (points_.empty()) return;
   box_ = box_of(points_);
-  build(0, size(), 0);
+  build(threads);
   // A leaf's 4 to 8 points of a surface cover a square of some 2.5 spacings.
   spacing_ = median_leaf_diagonal() / 3.5;
 }
@@ -41,17 +29,38 @@ double ModelTree::median_leaf_diagonal() const {
   return *middle;
 }
 
-void ModelTree::build(std::uint32_t begin, std::uint32_t end, std::size_t node) {
-  const std::span<const Vec3> part(points_.data() + begin, end - begin);
-  if (node >= boxes_.size()) boxes_.resize(node + 1);
-  boxes_[node] = box_of(part);
-  if (end - begin <= kLeafPoints) return;
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  const int axis = longest_side(boxes_[node]);
-  std::nth_element(points_.begin() + begin, points_.begin() + middle, points_.begin() + end,
+/// Level by level: the nodes of one are parts of their own.
+void ModelTree::build(int threads) {
+  boxes_.resize(last_node(size()) + 1);
+  std::vector<Part> level{{0, size(), 0}}, next;
+  while (!level.empty()) {
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
+    for (const Part& part : level) divide(part);
+    next.clear();
+    for (const Part& part : level) {
+      if (part.end - part.begin <= kLeafPoints) continue;
+      next.push_back({part.begin, part.middle(), 2 * part.node + 1});
+      next.push_back({part.middle(), part.end, 2 * part.node + 2});
+    }
+    level.swap(next);
+  }
+}
+
+/// The right half is never the smaller one.
+std::size_t ModelTree::last_node(std::uint32_t points) {
+  std::size_t node = 0;
+  for (; points > kLeafPoints; points -= points / 2) node = 2 * node + 2;
+  return node;
+}
+
+void ModelTree::divide(const Part& part) {
+  const auto begin = points_.begin();
+  const Box box = box_of(std::span(points_).subspan(part.begin, part.end - part.begin));
+  boxes_[part.node] = box;
+  if (part.end - part.begin <= kLeafPoints) return;
+  const int axis = longest_side(box);
+  std::nth_element(begin + part.begin, begin + part.middle(), begin + part.end,
                    [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-  build(begin, middle, 2 * node + 1);
-  build(middle, end, 2 * node + 2);
 }
 
 bool ModelTree::within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
@@ -59,7 +68,7 @@ bool ModelTree::within(std::uint32_t begin, std::uint32_t end, std::size_t node,
   if (begin == end || least_squared_distance(boxes_[node], box) > squared_radius) return true;
   if (end - begin <= kLeafPoints) {
     for (std::uint32_t i = begin; i < end; ++i) {
-      const bool outside = clearway::least_squared_distance(box, points_[i]) > squared_radius;
+      const bool outside = least_squared_distance(box, points_[i]) > squared_radius;
       if (!outside) out.push_back(points_[i]);
     }
     return out.size() <= most;

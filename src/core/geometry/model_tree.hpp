@@ -14,7 +14,7 @@ class ModelTree {
  public:
   using Nearest = ModelTreeRef::Nearest;
 
-  explicit ModelTree(std::span<const Vec3> model);
+  explicit ModelTree(std::span<const Vec3> model, int threads = 1);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   const Vec3& point(std::uint32_t index) const { return points_[index]; }
@@ -46,7 +46,16 @@ class ModelTree {
  private:
   static constexpr std::uint32_t kLeafPoints = ModelTreeRef::kLeafPoints;
 
-  void build(std::uint32_t begin, std::uint32_t end, std::size_t node);
+  /// A node with its points.
+  struct Part {
+    std::uint32_t begin, end;
+    std::size_t node;
+    std::uint32_t middle() const { return begin + (end - begin) / 2; }
+  };
+
+  void build(int threads);
+  void divide(const Part& part);
+  static std::size_t last_node(std::uint32_t points);
   double median_leaf_diagonal() const;
   bool within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
               double squared_radius, std::size_t most, std::vector<Vec3>& out) const;

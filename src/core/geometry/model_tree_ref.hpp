@@ -91,6 +91,38 @@ struct ModelTreeRef {
     return best;
   }
 
+  /// Visits every point for which distance(point) is at most within(), and perhaps others, nearer
+  /// boxes first: squared distances. `box`: what to measure boxes from. A comparison that is not
+  /// possible visits.
+  template <typename Within, typename Distance, typename Visit>
+  CLEARWAY_HD void visit_nearest_first(const Box& box, Within within, Distance distance,
+                                       Visit visit) const {
+    if (size == 0) return;
+    Part open[kMostParts];
+    double squared[kMostParts];  // to the boxes of the open parts
+    int count = 0;
+    squared[count] = 0;
+    open[count++] = {0, 0, size};
+    while (count > 0) {
+      const Part part = open[--count];
+      if (squared[count] > within()) continue;
+      if (part.end - part.begin <= kLeafPoints) {
+        for (std::uint32_t i = part.begin; i < part.end; ++i) {
+          if (!(distance(points[i]) > within())) visit(points[i]);
+        }
+        continue;
+      }
+      const Part left = left_of(part), right = right_of(part);
+      const double to_left = least_squared_distance(boxes[left.node], box);
+      const double to_right = least_squared_distance(boxes[right.node], box);
+      const bool left_first = to_left <= to_right;
+      squared[count] = left_first ? to_right : to_left;
+      open[count++] = left_first ? right : left;
+      squared[count] = left_first ? to_left : to_right;
+      open[count++] = left_first ? left : right;
+    }
+  }
+
  private:
   struct Part {
     std::uint32_t node, begin, end;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <limits>
-#include <vector>
+
+#include "core/util/zeroed_array.hpp"
 
 namespace clearway {
 
@@ -20,38 +22,36 @@ struct Clearance {
 class ClearanceSet {
  public:
   ClearanceSet() = default;
-  explicit ClearanceSet(std::uint64_t entries)
-      : squared_(entries, Clearance{}.squared), poses_(entries, Clearance{}.pose) {}
+  explicit ClearanceSet(std::uint64_t entries) : squared_(entries), poses_(entries) {}
 
   void set(std::uint64_t entry, const Clearance& clearance) {
-    squared_[entry] = clearance.squared;
-    poses_[entry] = clearance.pose;
+    squared_[entry] = std::bit_cast<std::uint64_t>(clearance.squared) ^ kNone;
+    poses_[entry] = ~clearance.pose;
   }
 
-  Clearance at(std::uint64_t entry) const { return {squared_[entry], poses_[entry]}; }
+  Clearance at(std::uint64_t entry) const {
+    return {std::bit_cast<double>(squared_[entry] ^ kNone), ~poses_[entry]};
+  }
 
   /// Which of the entries 64 * index + i have one, as bits i.
   std::uint64_t word(std::uint64_t index) const {
     std::uint64_t bits = 0;
     for (unsigned i = 0; i < 64; ++i) {
-      bits |= std::uint64_t{at(64 * index + i).found()} << i;
+      bits |= std::uint64_t{squared_[64 * index + i] != 0} << i;
     }
     return bits;
   }
 
-  std::uint64_t count() const {
-    std::uint64_t total = 0;
-    for (const double squared : squared_) total += Clearance{squared}.found();
-    return total;
-  }
-
   std::uint64_t allocated_bytes() const {
-    return squared_.capacity() * sizeof(double) + poses_.capacity() * sizeof(std::uint32_t);
+    return squared_.allocated_bytes() + poses_.allocated_bytes();
   }
 
  private:
-  std::vector<double> squared_;
-  std::vector<std::uint32_t> poses_;
+  /// Stored as differences from what means none, so that zeros mean that.
+  static constexpr std::uint64_t kNone = std::bit_cast<std::uint64_t>(Clearance{}.squared);
+
+  ZeroedArray<std::uint64_t> squared_;
+  ZeroedArray<std::uint32_t> poses_;
 };
 
 }  // namespace clearway

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/util/zeroed_array.hpp"
+
 namespace clearway {
 
 /// The colliding points of a PackedCloud by entry: one bit each, and the first pose where asked
@@ -15,7 +17,7 @@ class HitSet {
 
   HitSet(std::uint64_t entries, bool first_pose)
       : words_((entries + 63) / 64),
-        first_pose_(first_pose ? entries : 0, kNever),
+        earliness_(first_pose ? entries : 0),
         has_first_pose_(first_pose) {}
 
   void mark(std::uint64_t entry) { mark_word(entry / 64, std::uint64_t{1} << (entry % 64)); }
@@ -31,9 +33,11 @@ class HitSet {
   /// Marks the entry and lowers its first pose to `pose`. Only with first poses.
   void mark(std::uint64_t entry, std::uint32_t pose) {
     mark(entry);
-    std::atomic_ref target(first_pose_[entry]);
+    const std::uint32_t earliness = kNever - pose;
+    std::atomic_ref target(earliness_[entry]);
     std::uint32_t seen = target.load(std::memory_order_relaxed);
-    while (pose < seen && !target.compare_exchange_weak(seen, pose, std::memory_order_relaxed)) {
+    while (earliness > seen &&
+           !target.compare_exchange_weak(seen, earliness, std::memory_order_relaxed)) {
     }
   }
 
@@ -44,9 +48,9 @@ class HitSet {
   }
 
   bool has_first_pose() const { return has_first_pose_; }
-  std::uint32_t first_pose(std::uint64_t entry) const { return first_pose_[entry]; }
+  std::uint32_t first_pose(std::uint64_t entry) const { return kNever - earliness_[entry]; }
   std::uint32_t first_pose_now(std::uint64_t entry) {
-    return std::atomic_ref(first_pose_[entry]).load(std::memory_order_relaxed);
+    return kNever - std::atomic_ref(earliness_[entry]).load(std::memory_order_relaxed);
   }
 
   std::uint64_t count() const {
@@ -57,13 +61,12 @@ class HitSet {
   }
 
   std::uint64_t allocated_bytes() const {
-    return words_.capacity() * sizeof(std::uint64_t) +
-           first_pose_.capacity() * sizeof(std::uint32_t);
+    return words_.capacity() * sizeof(std::uint64_t) + earliness_.allocated_bytes();
   }
 
  private:
   std::vector<std::uint64_t> words_;
-  std::vector<std::uint32_t> first_pose_;
+  ZeroedArray<std::uint32_t> earliness_;  ///< kNever - first pose, so that zeros mean never
   bool has_first_pose_;
 };
 

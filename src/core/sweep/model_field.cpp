@@ -3,7 +3,11 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
+
+#include "core/sweep/brick_nearest.hpp"
 
 namespace clearway {
 namespace {
@@ -14,16 +18,14 @@ constexpr double kMarginSteps = 3;
 /// twice the radius.
 constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
+/// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
+/// the model's points are worth.
+constexpr double kCheapNodes = 1 << 17;
 
 /// For a reach the coarse lattice is wider, up to this many nodes. Coarse bounds are close from
 /// kCloseSteps coarse steps on: at a distance d they miss at most 3/8 step^2 / d.
 constexpr double kMostWideNodes = 1 << 18;
 constexpr double kCloseSteps = 2;
-
-/// Not above the true square: one rounding to float and a few in double are taken off.
-float rounded_down(double squared) {
-  return std::nextafterf(static_cast<float>(squared * (1 - 1e-12)), 0.0F);
-}
 
 double length(const Vec3& v) { return std::sqrt(squared_length(v.x, v.y, v.z)); }
 
@@ -31,24 +33,34 @@ double length(const Vec3& v) { return std::sqrt(squared_length(v.x, v.y, v.z)); 
 
 ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options,
                        int threads)
-    : tree_(tree) {
+    : tree_(tree), by_need_(options.by_need) {
   if (threads == 0) threads = omp_get_max_threads();
   choose_voxel(radius, options);
   for (;; voxel_ *= 2) {
     lay_out(margin_steps(options.reach));
     fill_coarse(options.reach > 0, threads);
     const double band = this->band(radius, options.reach);
-    const std::uint64_t bytes = mark_bricks(band, threads) * kBrickNodes * 8;
-    if (bytes <= options.most_bytes) break;
+    bricks_ = mark_bricks(band, threads);
+    if (bricks_ * kBrickBytes <= options.most_bytes) break;
   }
-  fill_bricks(threads);
+  distances_ = std::make_unique_for_overwrite<float[]>(bricks_ * kBrickNodes);
+  nearest_ = std::make_unique_for_overwrite<std::uint32_t[]>(bricks_ * kBrickNodes);
+  if (!by_need_) make_all(threads);
 }
 
 void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
   const Box& box = tree_.box();
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
-  const double wanted =
-      std::clamp(kVoxelSpacings * tree_.spacing(), radius / 2, 2 * radius) / options.fineness;
+  const double of_points = kVoxelSpacings * tree_.spacing();
+  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
+  const auto nodes_of = [&](double voxel) {
+    const double around = 2 * radius + 4 * voxel;
+    return (extent.x + around) * (extent.y + around) * (extent.z + around) / std::pow(voxel, 3);
+  };
+  while (options.cheaply_finer && chosen / 2 >= of_points && nodes_of(chosen / 2) <= kCheapNodes) {
+    chosen /= 2;
+  }
+  const double wanted = chosen / options.fineness;
   // A field much finer than the model's points, or than their rounding, serves nobody.
   const double least = 1e-7 * (length(extent) + length(box.hi) + length(box.lo)) + 1e-100;
   voxel_ = options.voxel > 0 ? options.voxel : std::max(wanted, least);
@@ -114,7 +126,7 @@ void ModelField::fill_coarse(bool with_nearest, int threads) {
 }
 
 /// Numbers the coarse cells in which a distance of at most `band` can occur.
-std::uint64_t ModelField::mark_bricks(double band, int threads) {
+std::uint32_t ModelField::mark_bricks(double band, int threads) {
   const double half_diagonal = coarse_ * std::sqrt(0.75) * (1 + 1e-9);
   brick_of_.assign(coarse_squared_.size(), kNoBrick);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
@@ -134,42 +146,44 @@ std::uint64_t ModelField::mark_bricks(double band, int threads) {
   }
   std::uint32_t bricks = 0;
   for (std::uint32_t& brick : brick_of_) {
-    if (brick == 0) brick = bricks++;
+    if (brick == 0) brick = kToBeMade | bricks++;
   }
   return bricks;
 }
 
-void ModelField::fill_bricks(int threads) {
-  std::vector<std::size_t> cells;
-  for (std::size_t at = 0; at < brick_of_.size(); ++at) {
-    if (brick_of_[at] != kNoBrick) cells.push_back(at);
+void ModelField::make_all(int threads) {
+#pragma omp parallel for schedule(dynamic, 16) num_threads(threads)
+  for (std::size_t cell = 0; cell < brick_of_.size(); ++cell) {
+    if (brick_of_[cell] != kNoBrick) make_brick(cell);
   }
-  distances_.resize(cells.size() * kBrickNodes);
-  nearest_.resize(cells.size() * kBrickNodes);
-#pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
-  for (std::size_t brick = 0; brick < cells.size(); ++brick) {
-    const std::size_t cell = cells[brick];
-    const Vec3 corner = coarse_node(static_cast<std::uint32_t>(cell % size_[0]),
-                                    static_cast<std::uint32_t>(cell / size_[0] % size_[1]),
-                                    static_cast<std::uint32_t>(cell / size_[0] / size_[1]));
-    std::size_t at = brick * kBrickNodes;
-    for (std::uint32_t z = 0; z <= kBrick; ++z) {
-      for (std::uint32_t y = 0; y <= kBrick; ++y) {
-        for (std::uint32_t x = 0; x <= kBrick; ++x, ++at) {
-          // The nearest of the node before, along x and at the start of a row along y or z.
-          const std::size_t back = x > 0   ? 1
-                                   : y > 0 ? kBrick + 1
-                                   : z > 0 ? (kBrick + 1) * (kBrick + 1)
-                                           : 0;
-          const std::uint32_t near = back > 0 ? nearest_[at - back] : 0;
-          const Vec3 node{corner.x + x * voxel_, corner.y + y * voxel_, corner.z + z * voxel_};
-          const ModelTree::Nearest nearest = tree_.nearest(node, near);
-          distances_[at] = rounded_down(nearest.squared_distance);
-          nearest_[at] = nearest.point;
-        }
-      }
-    }
+}
+
+void ModelField::make_brick(std::size_t cell) const {
+  const std::uint32_t brick = brick_of_[cell] & kBrickNumber;
+  const std::size_t first = std::size_t{brick} * kBrickNodes;
+  const Vec3 corner = coarse_node(static_cast<std::uint32_t>(cell % size_[0]),
+                                  static_cast<std::uint32_t>(cell / size_[0] % size_[1]),
+                                  static_cast<std::uint32_t>(cell / size_[0] / size_[1]));
+  BrickNearest(tree_).find(corner, voxel_, distances_.get() + first, nearest_.get() + first);
+  std::atomic_ref(brick_of_[cell]).store(brick, std::memory_order_release);
+}
+
+/// The first that asks makes it. Others wait: what they find must not depend on who was first.
+std::uint32_t ModelField::made_brick(std::size_t cell) const {
+  const std::atomic_ref state(brick_of_[cell]);
+  std::uint32_t seen = state.load(std::memory_order_acquire);
+  if ((seen & kBeingMade) == 0 && (seen & kToBeMade) != 0 &&
+      state.compare_exchange_strong(seen, seen | kBeingMade, std::memory_order_acquire)) {
+    make_brick(cell);
   }
+  while (((seen = state.load(std::memory_order_acquire)) & kToBeMade) != 0) {
+    std::this_thread::yield();
+  }
+  return seen;
+}
+
+std::uint32_t make_brick_of(const ModelField& field, std::size_t cell) {
+  return field.made_brick(cell);
 }
 
 ModelFieldRef ModelField::ref() const {
@@ -183,14 +197,21 @@ ModelFieldRef ModelField::ref() const {
           .coarse_squared = coarse_squared_.data(),
           .coarse_nearest = coarse_nearest_.empty() ? nullptr : coarse_nearest_.data(),
           .brick_of = brick_of_.data(),
-          .distances = distances_.data(),
-          .nearest = nearest_.data()};
+          .distances = distances_.get(),
+          .nearest = nearest_.get(),
+          .by_need = by_need_ ? this : nullptr};
+}
+
+ModelFieldRef ModelField::ref_as_made() const {
+  ModelFieldRef made = ref();
+  made.by_need = nullptr;
+  return made;
 }
 
 std::uint64_t ModelField::allocated_bytes() const {
-  return (coarse_squared_.capacity() + distances_.capacity()) * sizeof(float) +
-         (coarse_nearest_.capacity() + brick_of_.capacity() + nearest_.capacity()) *
-             sizeof(std::uint32_t);
+  return coarse_squared_.capacity() * sizeof(float) +
+         (coarse_nearest_.capacity() + brick_of_.capacity()) * sizeof(std::uint32_t) +
+         bricks_ * kBrickBytes;
 }
 
 }  // namespace clearway

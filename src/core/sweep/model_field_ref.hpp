@@ -7,6 +7,8 @@
 
 namespace clearway {
 
+class ModelField;
+
 /// A ModelField where it lies, on the host or on a device. Does not own it. Lattice nodes hold
 /// squared distances, rounded down.
 struct ModelFieldRef {
@@ -14,6 +16,7 @@ struct ModelFieldRef {
   static constexpr std::uint32_t kRow = kBrick + 1;
   static constexpr std::uint32_t kBrickNodes = kRow * kRow * kRow;
   static constexpr std::uint32_t kNoBrick = 0xffffffff;
+  static constexpr std::uint32_t kToBeMade = 0x80000000;  ///< a bit of a brick that is not there
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   struct Bounds {
@@ -33,12 +36,14 @@ struct ModelFieldRef {
   const std::uint32_t* brick_of;        ///< per coarse cell, [z][y][x]
   const float* distances;               ///< per brick [z][y][x]
   const std::uint32_t* nearest;         ///< likewise, the nearest model point
+  const ModelField* by_need;            ///< makes bricks that are asked for, on the host; or null
 
   CLEARWAY_HD std::size_t coarse_nodes() const { return std::size_t{size[0]} * size[1] * size[2]; }
 
   CLEARWAY_HD Bounds bounds(const Vec3& x) const;
 
  private:
+  CLEARWAY_HD std::uint32_t brick_at(std::size_t cell) const;
   CLEARWAY_HD std::uint32_t near_coarse_node(const double (&place)[3]) const;
 };
 
@@ -91,6 +96,19 @@ CLEARWAY_HD inline std::uint32_t ModelFieldRef::near_coarse_node(const double (&
   return coarse_nearest[at];
 }
 
+/// ModelField::made_brick.
+std::uint32_t make_brick_of(const ModelField& field, std::size_t cell);
+
+CLEARWAY_HD inline std::uint32_t ModelFieldRef::brick_at(std::size_t cell) const {
+#ifdef __CUDA_ARCH__
+  return brick_of[cell];
+#else
+  const std::uint32_t brick = __atomic_load_n(brick_of + cell, __ATOMIC_ACQUIRE);
+  if (brick < kToBeMade || brick == kNoBrick) return brick;
+  return by_need != nullptr ? make_brick_of(*by_need, cell) : kNoBrick;
+#endif
+}
+
 CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) const {
   using namespace field_detail;
   const double whole[3] = {(x.x - origin.x) * per_metre, (x.y - origin.y) * per_metre,
@@ -107,7 +125,7 @@ CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) co
     place[k] = whole[k] - cell[k];
   }
   const std::size_t at = (std::size_t{cell[2]} * size[1] + cell[1]) * size[0] + cell[0];
-  const std::uint32_t brick = brick_of[at];
+  const std::uint32_t brick = brick_at(at);
   if (brick == kNoBrick) {
     load_corners(coarse_squared + at, size[0], std::size_t{size[0]} * size[1], corner);
     return {concave_bound(interpolated(place, corner), place, coarse), near_coarse_node(whole)};

@@ -27,6 +27,7 @@ class SweepBlock {
   struct Shared {
     std::uint32_t open[kOpen];    ///< nodes to be looked at
     std::uint32_t queue[kQueue];  ///< nodes for the points
+    std::uint32_t joined;         ///< of them, for clearances
   };
 
   CLEARWAY_HD SweepBlock(const SweepPage& job, std::uint32_t block, Shared& shared,
@@ -43,7 +44,7 @@ class SweepBlock {
     const std::uint32_t per_cell = job_.page.shape.blocks_per_cell;
     const BlockBox& code = job_.page.blocks(block_ / per_cell)[block_ % per_cell];
     const Box box = position_box(job_.quantisation, decode_block_box(cell_.box, code));
-    narrow(centre_of(box), half_diagonal(box), job_.page.nodes(cell_));
+    narrow(PointBox(box), job_.page.nodes(cell_));
   }
 
  private:
@@ -58,15 +59,15 @@ class SweepBlock {
     });
   }
 
-  CLEARWAY_HD void narrow(const Vec3& centre, double rho, const std::uint32_t* nodes) {
+  CLEARWAY_HD void narrow(const PointBox& points, const std::uint32_t* nodes) {
     double limit = job_.sweep.radius;
-    if constexpr (kClearance) limit = clearance_limit(centre, rho, nodes);
+    if constexpr (kClearance) limit = clearance_limit(points.centre, points.rho, nodes);
     for (std::uint32_t next = 0;;) {  // of `nodes`
       const bool done = open_ == 0 && next >= cell_.node_count;
       if (queued_ > kQueue - kWarpLanes || (done && queued_ > 0)) empty_queue();
       if (done || is_whole_) return;
       if (open_ == 0) next = open_planned(nodes, next);
-      narrow_open(centre, rho, limit);
+      if (narrow_open(points, limit)) return mark_all();
     }
   }
 
@@ -81,8 +82,9 @@ class SweepBlock {
   }
 
   /// Looks at the last open nodes, a lane a node. Those that are fine enough go to the queue, those
-  /// that are not leave their halves open; without room for them they are fine enough.
-  CLEARWAY_HD void narrow_open(const Vec3& centre, double rho, double limit) {
+  /// that are not leave their halves open; without room for them they are fine enough. True where
+  /// the whole block is accepted.
+  CLEARWAY_HD bool narrow_open(const PointBox& points, double limit) {
     const std::uint32_t count = open_ < kWarpLanes ? open_ : kWarpLanes;
     open_ -= count;
     const bool has_room = open_ + 2 * count <= kOpen;
@@ -94,10 +96,13 @@ class SweepBlock {
       ++statistics_[lane].node_tests;
       at[lane] = shared_.open[open_ + lane];
       const MotionNode& node = job_.sweep.motion.nodes[at[lane]];
-      fate[lane] = job_.sweep.classify_box(node, centre, rho, limit);
+      fate[lane] = job_.sweep.classify_box(node, points, limit, job_.sweep.accepts_boxes());
       if (fate[lane] == SweepRef::BoxClass::kSplit && !has_room)
         fate[lane] = SweepRef::BoxClass::kKept;
     });
+    const std::uint32_t accepted = Warp::ballot(
+        [&](std::uint32_t lane) { return fate[lane] == SweepRef::BoxClass::kAccepted; });
+    if (accepted != 0) return true;
     const std::uint32_t keep =
         Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepRef::BoxClass::kKept; });
     const std::uint32_t split =
@@ -112,6 +117,15 @@ class SweepBlock {
     });
     queued_ += count_of(keep);
     open_ += 2 * count_of(split);
+    return false;
+  }
+
+  CLEARWAY_HD void mark_all() {
+    const std::uint32_t left = cell_.count - job_.first_point(block_);
+    const std::uint32_t none = left < kBlockPoints ? kBlockPoints - left : 0;
+    Warp::each([&](std::uint32_t lane) {
+      if (lane == 0) job_.hits[block_] = ~std::uint64_t{0} >> none;
+    });
   }
 
   CLEARWAY_HD double clearance_limit(const Vec3& centre, double rho, const std::uint32_t* nodes) {
@@ -142,13 +156,16 @@ class SweepBlock {
   }
 
   CLEARWAY_HD void search_points() {
-    const SweepSubtrees subtrees{shared_.queue, queued_};
+    const std::uint32_t first = SweepWork::kHalves * block_;
     for (std::uint32_t i = 0; i < halves(); ++i) {
-      const std::uint32_t half = SweepWork::kHalves * block_ + i;
-      if (!job_.sweep.hits_follow_from_clearance()) {
-        SweepHits<Warp>(job_, statistics_).search_half(half, subtrees, false);
-      }
-      SweepClearances<Warp>(job_, half, statistics_).search(subtrees);
+      if (job_.sweep.hits_follow_from_clearance()) break;
+      SweepHits<Warp>(job_, statistics_).search_half(first + i, {shared_.queue, queued_}, false);
+    }
+    Warp::each([&](std::uint32_t lane) {
+      if (lane == 0) shared_.joined = job_.sweep.motion.join_straight(shared_.queue, queued_);
+    });
+    for (std::uint32_t i = 0; i < halves(); ++i) {
+      SweepClearances<Warp>(job_, first + i, statistics_).search({shared_.queue, shared_.joined});
     }
   }
 

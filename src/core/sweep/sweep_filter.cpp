@@ -13,15 +13,6 @@ namespace {
 
 using Verdict = SweepRef::Verdict;
 
-/// Per pose the first of the equal ones that it follows without a break.
-std::vector<std::uint32_t> first_equal_poses(std::span<const Pose> poses) {
-  std::vector<std::uint32_t> first(poses.size());
-  for (std::uint32_t i = 0; i < first.size(); ++i) {
-    first[i] = i > 0 && poses[i] == poses[i - 1] ? first[i - 1] : i;
-  }
-  return first;
-}
-
 double rounding_of(const Query& query, const MotionTree& motion, const ModelField& field,
                    const PackedCloud& cloud) {
   const double rounding =
@@ -30,10 +21,14 @@ double rounding_of(const Query& query, const MotionTree& motion, const ModelFiel
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
 
+/// At a distance d from a surface, a chord that is wrong by x leaves the model points of a strip of
+/// width sqrt(8 d x) open, so d x is kept below this many squared spacings (measured).
+constexpr double kOpenArea = 4;
+
 }  // namespace
 
 SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
-                         const ModelField& field, const PackedCloud& cloud)
+                         const ModelField& field, const PackedCloud& cloud, int threads)
     : query_(query),
       motion_(motion),
       model_(model),
@@ -44,51 +39,64 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
            .resolved_from = query.radius,
            .clearance = query.clearance,
            .profile = query.profile,
+           .open_area = kOpenArea * model.spacing() * model.spacing(),
            .rounding = rounding_of(query, motion, field, cloud),
            .first_pose = query.first_pose,
            .between_poses = query.between_poses} {
-  if (query.clearance > 0) first_equal_pose_ = first_equal_poses(query.poses);
+  if (query.clearance > 0) {
+    chords_ = MotionChords(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
+                           model.spacing(), threads);
+    ref_.motion.chords = chords_.data();
+  }
+  for_plan_ = ref_;
+  for_plan_.field = field.ref_as_made();
 }
 
-void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
+bool SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
-  narrow(box, nodes, 0, out, statistics);
+  return narrow(ref_, box, nodes, {0, ref_.accepts_boxes()}, out, statistics);
 }
 
 void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                          std::vector<std::uint32_t>& out) const {
   SweepStatistics not_counted;
-  narrow(box, nodes, ref_.profile * kRoundedUp, out, not_counted);
+  narrow(for_plan_, box, nodes, {ref_.profile * kRoundedUp, false}, out, not_counted);
 }
 
-/// at_least: a distance within which every pose matters.
-void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes, double at_least,
-                         std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+/// limits.distance: one within which every pose matters at least.
+bool SweepFilter::narrow(const SweepRef& ref, const Box& box, std::span<const std::uint32_t> nodes,
+                         Limits limits, std::vector<std::uint32_t>& out,
+                         SweepStatistics& statistics) {
   out.clear();
-  const Vec3 centre = centre_of(box);
-  const double rho = half_diagonal(box);
-  const double limit = std::max(
-      at_least, ref_.clearance > 0
-                    ? ref_.clearance_limit(centre, rho, nodes.data(),
-                                           static_cast<std::uint32_t>(nodes.size()), statistics)
-                    : ref_.radius);
-  for (const std::uint32_t node : nodes) narrow_node(centre, rho, limit, node, out, statistics);
+  const PointBox points(box);
+  limits.distance = std::max(
+      limits.distance,
+      ref.clearance > 0 ? ref.clearance_limit(points.centre, points.rho, nodes.data(),
+                                              static_cast<std::uint32_t>(nodes.size()), statistics)
+                        : ref.radius);
+  return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
+    return narrow_node(ref, points, limits, node, out, statistics);
+  });
 }
 
-void SweepFilter::narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t index,
-                              std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+bool SweepFilter::narrow_node(const SweepRef& ref, const PointBox& points, const Limits& limits,
+                              std::uint32_t index, std::vector<std::uint32_t>& out,
+                              SweepStatistics& statistics) {
   ++statistics.node_tests;
-  const MotionNode& node = motion_.nodes()[index];
-  switch (ref_.classify_box(node, centre, rho, limit)) {
+  const MotionNode& node = ref.motion.nodes[index];
+  switch (ref.classify_box(node, points, limits.distance, limits.accept)) {
     case SweepRef::BoxClass::kDismissed:
-      return;
+      return false;
+    case SweepRef::BoxClass::kAccepted:
+      return true;
     case SweepRef::BoxClass::kKept:
       out.push_back(index);
-      return;
+      return false;
     case SweepRef::BoxClass::kSplit:
-      narrow_node(centre, rho, limit, index + 1, out, statistics);
-      narrow_node(centre, rho, limit, node.later, out, statistics);
+      break;
   }
+  return narrow_node(ref, points, limits, index + 1, out, statistics) ||
+         narrow_node(ref, points, limits, node.later, out, statistics);
 }
 
 Verdict SweepFilter::test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,

@@ -10,6 +10,7 @@
 #include "core/page/pose_reach.hpp"
 #include "core/sweep/model_field.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "core/trajectory/motion_chords.hpp"
 #include "core/trajectory/motion_tree.hpp"
 
 namespace clearway {
@@ -19,21 +20,21 @@ namespace clearway {
 class SweepFilter final : public PoseReach {
  public:
   /// All arguments outlive it. cloud: for the largest coordinates, which the rounding bound needs.
+  /// threads: to build with.
   SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
-              const ModelField& field, const PackedCloud& cloud);
+              const ModelField& field, const PackedCloud& cloud, int threads = 1);
 
   const Query& query() const { return query_; }
   const SweepRef& ref() const { return ref_; }
   const MotionTree& motion() const override { return motion_; }
   const ModelTree& model() const { return model_; }
-
-  /// The first pose equal to `pose` without another in between. Only with a clearance.
-  std::uint32_t first_equal_pose(std::uint32_t pose) const { return first_equal_pose_[pose]; }
+  std::uint64_t allocated_bytes() const { return chords_.allocated_bytes(); }
 
   /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
   /// clearance be the nearest to one, as fine as the box is small; replaces `out`. In the order of
-  /// the poses when `nodes` are.
-  void narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
+  /// the poses when `nodes` are. True, and only some of them, where every point of the box
+  /// collides and nothing else is asked.
+  bool narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
 
   /// The same for the plan: with a profile also those that may be within its distance.
@@ -51,10 +52,16 @@ class SweepFilter final : public PoseReach {
                            SweepStatistics& statistics) const;
 
  private:
-  void narrow(const Box& box, std::span<const std::uint32_t> nodes, double at_least,
-              std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
-  void narrow_node(const Vec3& centre, double rho, double limit, std::uint32_t node,
-                   std::vector<std::uint32_t>& out, SweepStatistics& statistics) const;
+  struct Limits {
+    double distance;  ///< nothing beyond matters
+    bool accept;      ///< boxes as a whole
+  };
+
+  static bool narrow(const SweepRef& ref, const Box& box, std::span<const std::uint32_t> nodes,
+                     Limits limits, std::vector<std::uint32_t>& out, SweepStatistics& statistics);
+  static bool narrow_node(const SweepRef& ref, const PointBox& points, const Limits& limits,
+                          std::uint32_t node, std::vector<std::uint32_t>& out,
+                          SweepStatistics& statistics);
   SweepRef::Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                          double& squared_lower) const;
   bool touches_below(const Vec3& e, std::uint32_t node, SweepStatistics& statistics) const;
@@ -65,7 +72,8 @@ class SweepFilter final : public PoseReach {
   const MotionTree& motion_;
   const ModelTree& model_;
   SweepRef ref_;
-  std::vector<std::uint32_t> first_equal_pose_;
+  MotionChords chords_;  ///< with a clearance
+  SweepRef for_plan_;    ///< makes no bricks: cells are too large to need them
 };
 
 }  // namespace clearway

@@ -27,6 +27,16 @@ struct SweepStatistics {
   }
 };
 
+/// Environment points, known by their box.
+struct PointBox {
+  Box box;
+  Vec3 centre;
+  double rho;  ///< none is farther from the centre
+
+  CLEARWAY_HD explicit PointBox(const Box& of)
+      : box(of), centre(centre_of(of)), rho(half_diagonal(of)) {}
+};
+
 /// The tests of the sweep on data where it lies, on the host or on a device: the inverse query
 /// at one node of the motion tree. e collides with pose i exactly when the model is closer than the
 /// radius to e pulled back by pose i. Bounds: docs/design/numerics.md ("Sweep").
@@ -43,6 +53,7 @@ struct SweepRef {
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
   double clearance;   ///< 0: not asked for
   double profile;     ///< likewise
+  double open_area;   ///< square metres: how straight a chord must be, times the distance
   double rounding;    ///< metres, of a test of one point at one pose
   bool first_pose;
   bool between_poses;
@@ -60,20 +71,34 @@ struct SweepRef {
     return between_poses && pose > 0 ? pose - 1 : pose;
   }
 
+  /// Whether a box may be accepted as a whole: every point that collides is marked alike, and
+  /// nothing else is asked about it. With a tolerance the answer would depend on the box.
+  CLEARWAY_HD bool accepts_boxes() const {
+    return !first_pose && !(clearance > 0) && !(resolved_from < radius);
+  }
+
   enum class BoxClass {
     kDismissed,  ///< no pose of the node matters
+    kAccepted,   ///< its middle pose touches every point of the box
     kSplit,      ///< to be looked at in halves
     kKept,       ///< fine enough for a box of this size
   };
 
-  /// What becomes of a node for the points within rho of `centre`, to which nothing beyond `limit`
-  /// matters.
-  CLEARWAY_HD BoxClass classify_box(const MotionNode& node, const Vec3& centre, double rho,
-                                    double limit) const {
+  /// What becomes of a node for the points of a box, to which nothing beyond `limit` matters.
+  /// accept: whether kAccepted is of use.
+  CLEARWAY_HD BoxClass classify_box(const MotionNode& node, const PointBox& points, double limit,
+                                    bool accept) const {
+    const Vec3& centre = points.centre;
+    const double rho = points.rho;
     const InversePose& back = motion.inverse_poses[node.mid];
     const double reach = limit + node.delta + rho + rounding;
-    if (farther(back.least, field.bounds(back.apply(centre)).squared_lower, reach)) {
-      return BoxClass::kDismissed;
+    const ModelFieldRef::Bounds bounds = field.bounds(back.apply(centre));
+    if (farther(back.least, bounds.squared_lower, reach)) return BoxClass::kDismissed;
+    if (accept && rho < radius && bounds.near != ModelFieldRef::kNone &&
+        greatest_squared_distance(points.box,
+                                  transform(motion.poses[node.mid], model.points[bounds.near])) <
+            rounded_product(radius, radius)) {
+      return BoxClass::kAccepted;
     }
     const bool fine = node.delta <= kMotionPerBox * rho;
     if (node.count > 1) return fine ? BoxClass::kKept : BoxClass::kSplit;

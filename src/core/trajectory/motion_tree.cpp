@@ -40,15 +40,19 @@ InversePose inverse_pose_of(const Pose& pose) {
 
 }  // namespace
 
-MotionTree::MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses)
+MotionTree::MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses,
+                       int threads)
     : poses_(poses), between_poses_(between_poses) {
   if (poses.empty()) return;
   inverse_poses_.resize(poses.size());
   travelled_.resize(poses.size());
+#pragma omp parallel for schedule(static) num_threads(threads)
   for (std::size_t i = 0; i < poses.size(); ++i) {
     inverse_poses_[i] = inverse_pose_of(poses[i]);
-    if (i > 0)
-      travelled_[i] = travelled_[i - 1] + displacement_bound(model, poses[i - 1], poses[i]);
+    if (i > 0) travelled_[i] = displacement_bound(model, poses[i - 1], poses[i]);
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) travelled_[i] += travelled_[i - 1];
     condition_ = std::max(condition_, inverse_poses_[i].greatest / inverse_poses_[i].least);
     for (const double p : poses[i].translation) magnitude_ = std::max(magnitude_, std::abs(p));
   }
@@ -57,10 +61,29 @@ MotionTree::MotionTree(std::span<const Pose> poses, const Box& model, bool betwe
   magnitude_ += 2 * greatest_ * std::max({reach.x, reach.y, reach.z});
   nodes_.reserve(2 * poses.size());
   add(0, static_cast<std::uint32_t>(poses.size()));
-  for (auto node = static_cast<std::uint32_t>(nodes_.size()); node-- > 0;) {
-    nodes_[node].delta = delta_of(node, model);
-  }
   travelled_ = {};
+  find_deltas(model, threads);
+}
+
+/// A node's follows from those below it, which come after it: in one subtree after the other, many
+/// at a time, and then in what is above them.
+void MotionTree::find_deltas(const Box& model, int threads) {
+  constexpr std::uint32_t kSubtreePoses = 512;
+  std::vector<std::uint32_t> above, subtrees;
+  for (std::uint32_t node = 0; node < nodes_.size();) {
+    const bool whole = nodes_[node].count <= kSubtreePoses;
+    (whole ? subtrees : above).push_back(node);
+    node += whole ? 2 * nodes_[node].count - 1 : 1;
+  }
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (const std::uint32_t first : subtrees) {
+    for (std::uint32_t node = first + 2 * nodes_[first].count - 1; node-- > first;) {
+      nodes_[node].delta = delta_of(node, model);
+    }
+  }
+  for (std::size_t i = above.size(); i-- > 0;) {
+    nodes_[above[i]].delta = delta_of(above[i], model);
+  }
 }
 
 void MotionTree::add(std::uint32_t first, std::uint32_t count) {

@@ -16,7 +16,8 @@ class MotionTree {
  public:
   /// `model` holds every model point; both must be finite. between_poses: a pose's range includes
   /// the motion on to the next pose.
-  MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses = false);
+  MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses = false,
+             int threads = 1);
 
   std::span<const MotionNode> nodes() const { return nodes_; }
   std::span<const Pose> poses() const { return poses_; }
@@ -42,6 +43,7 @@ class MotionTree {
 
  private:
   void add(std::uint32_t first, std::uint32_t count);
+  void find_deltas(const Box& model, int threads);
   double delta_of(std::uint32_t node, const Box& model) const;
   double delta_below(std::uint32_t node, std::uint32_t mid, int levels, const Box& model) const;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
@@ -37,12 +38,43 @@ struct InversePose {
   }
 };
 
+/// How straight a node's poses move, seen from the model: what they pull back to lies near the
+/// chord between what its first and its last pose do.
+struct MotionChord {
+  static constexpr float kEqual = -1;  ///< error: all poses are equal
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+
+  float error;  ///< metres, of places that matter
+  float least;  ///< at most the least singular value of any rotation
+
+  CLEARWAY_HD bool is_one_place() const { return error < 0; }
+  CLEARWAY_HD bool is_straight() const { return error < kNone; }
+};
+
 /// A MotionTree where it lies, on the host or on a device. Does not own it.
 struct MotionTreeRef {
   const MotionNode* nodes;           ///< 2 pose_count - 1, or none
   const InversePose* inverse_poses;  ///< a pose
   const Pose* poses;
   std::uint32_t pose_count;
+  const MotionChord* chords = nullptr;  ///< a node, or null where none are needed
+
+  /// Replaces both halves of a straight node by it, again and again; nodes in the order of the
+  /// poses. How many are left.
+  CLEARWAY_HD std::uint32_t join_straight(std::uint32_t* list, std::uint32_t count) const {
+    std::uint32_t left = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      list[left++] = list[i];
+      while (left > 1 && is_straight_from(list[left - 2], list[left - 1])) --list[--left - 1];
+    }
+    return left;
+  }
+
+ private:
+  /// Whether the halves are those of a straight node, which is then earlier - 1.
+  CLEARWAY_HD bool is_straight_from(std::uint32_t earlier, std::uint32_t later) const {
+    return earlier > 0 && nodes[earlier - 1].later == later && chords[earlier - 1].is_straight();
+  }
 };
 
 }  // namespace clearway

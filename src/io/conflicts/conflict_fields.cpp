@@ -34,6 +34,8 @@ std::vector<ConflictField> fields_of(const Conflict& c) {
           {"nearest_source", value_of<std::uint64_t>(c.nearest_source)},
           {"encroachment", value_of<double>(c.encroachment)},
           {"side", std::string_view(name_of(c.side))},
+          {"lateral", value_of<double>(c.lateral)},
+          {"height", value_of<double>(c.height)},
           {"group", c.group}};
 }
 

@@ -1,9 +1,12 @@
 #include "io/convert/convert.hpp"
 
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <future>
+#include <optional>
 
 #include "clearway/error.hpp"
 #include "core/cloud/kd_order.hpp"
@@ -12,8 +15,10 @@
 #include "core/util/stopwatch.hpp"
 #include "io/convert/checks/input_warnings.hpp"
 #include "io/convert/count/count.hpp"
-#include "io/convert/distribute.hpp"
+#include "io/convert/distribute/distribute.hpp"
+#include "io/convert/distribute/distribution.hpp"
 #include "io/convert/inputs/environment_source.hpp"
+#include "io/convert/inputs/file_hashes.hpp"
 #include "io/convert/pack_unit.hpp"
 #include "io/convert/source_description.hpp"
 #include "io/convert/write_cells.hpp"
@@ -30,7 +35,6 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBaseBytes = 64 * kMiB;     // batches, index, libraries
 constexpr std::uint64_t kThreadBytes = 32 * kMiB;   // a counting grid and its refinement
 constexpr std::uint64_t kCellBytes = 160;           // its index, and its nodes in the tree
-constexpr std::uint64_t kBufferBytes = 16 * kMiB;   // units' write buffers
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
 constexpr std::uint32_t kLeastCellPoints = 64;
@@ -85,19 +89,32 @@ Lattice lattice_for(const ConversionOptions& options, const Quantisation& quanti
   return Lattice(cube);
 }
 
-/// padded: points with the padding of cells that are not full, which packs to fewer bytes.
-void check_disk(const std::filesystem::path& folder, std::uint64_t points, std::uint64_t padded) {
-  const std::uint64_t needed = points * (sizeof(DistributedPoint) + kOutputBytesPerPoint) +
-                               (padded - points) * kPaddingBytesPerPoint;
+/// What a conversion writes, in points.
+struct DiskNeed {
+  std::uint64_t points = 0;
+  std::uint64_t padded = 0;   ///< with the padding of cells that are not full, which packs to less
+  std::uint64_t spooled = 0;  ///< into temporary files
+};
+
+void check_disk(const std::filesystem::path& folder, const DiskNeed& need) {
+  const std::uint64_t needed = need.points * kOutputBytesPerPoint +
+                               (need.padded - need.points) * kPaddingBytesPerPoint +
+                               need.spooled * sizeof(DistributedPoint);
   const std::uint64_t free = free_disk_bytes(folder);
-  if (needed > free) {
-    throw ResourceError(
-        folder.string() + ": " + std::to_string(free / kMiB) + " MiB free, expected about " +
-            std::to_string(needed / kMiB) + " MiB for the temporary file and the store of " +
-            std::to_string(points) + " points" +
-            (padded > 2 * points ? "; most of it pads cells that are not full" : ""),
-        padded > 2 * points ? Remedy::kFewerCellPoints : Remedy::kNone);
-  }
+  if (needed <= free) return;
+  const bool mostly_padding = need.padded > 2 * need.points;
+  throw ResourceError(folder.string() + ": " + std::to_string(free / kMiB) +
+                          " MiB free, expected about " + std::to_string(needed / kMiB) +
+                          " MiB for " + (need.spooled > 0 ? "the temporary files and " : "") +
+                          "the store of " + std::to_string(need.points) + " points" +
+                          (mostly_padding ? "; most of it pads cells that are not full" : ""),
+                      mostly_padding ? Remedy::kFewerCellPoints : Remedy::kNone);
+}
+
+/// Half of the machine's memory; the rest is for inputs and the store on their way.
+std::uint64_t most_waiting_bytes() {
+  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) / 2 *
+         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 class Conversion {
@@ -113,27 +130,31 @@ class Conversion {
     EnvironmentSource environment(options_.inputs, environment_options(), progress_);
     refuse_overwriting(options_.output, environment.read_files());
     if (environment.declared_points()) {
-      check_disk(folder_, *environment.declared_points(), *environment.declared_points());
+      check_disk(folder_, {*environment.declared_points(), *environment.declared_points()});
     }
-    SourceDescription sources(environment.read_files(), progress_);
+    SourceDescription others(environment.read_files(), environment.in_pieces(), progress_);
+    FileHashes hashes(environment.files(), environment.in_pieces());
     const Lattice lattice = lattice_for(options_, environment.quantisation());
     InputSurvey survey;
     CountedEnvironment counted =
-        count_environment(environment, lattice, survey, threads_, progress_);
-    fill_metadata(environment, counted, sources.get());
+        count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_);
+    fill_metadata(environment, counted, others.get(hashes.finish()));
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
-    check_cells(top, counted.points);
+    check_cells(top, tree.units().size());
     report_.count_seconds = watch_.lap();
 
     PlaceCounter places(survey.places.suspects());
-    const Distribution distribution =
-        distribute(environment, counted.points_hash, lattice, tree, places, folder_, kBufferBytes,
-                   threads_, progress_);
+    progress_.begin("distribute", counted.points, "points");
+    Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
+                              static_cast<std::size_t>(threads_));
+    distribute(environment, counted.points_hash, lattice, tree, places, distribution, threads_,
+               clocks_, progress_);
+    progress_.end();
     environment.refuse_changed();  // the sources' hashes too are of what was converted
     report_.largest_change = environment.largest_change();
-    report_.temporary_bytes = counted.points * sizeof(DistributedPoint);
+    report_.temporary_bytes = distribution.temporary_bytes();
     warn_of_places(environment, places, counted.points, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
     report_.distribute_seconds = watch_.lap();
@@ -187,12 +208,19 @@ class Conversion {
     return options_.memory_bytes - others;
   }
 
-  /// Whether memory and disk do for the cells.
-  void check_cells(const std::vector<TopNode>& top, std::uint64_t points) {
+  /// Whether memory and disk do for the cells, and whether memory does for all points: they wait
+  /// in it if that leaves enough for a unit a thread.
+  void check_cells(const std::vector<TopNode>& top, std::size_t units) {
+    const std::uint64_t points = report_.points;
     report_.cells = top.empty() ? 0 : top[0].cell_count;
-    bytes_for_units();
+    const std::uint64_t waiting = points * sizeof(DistributedPoint);
+    units_in_flight_ = std::min(units, static_cast<std::size_t>(threads_) + 1);
+    in_memory_ = bytes_for_units() >= waiting + units_in_flight_ * kUnitBytes &&
+                 waiting <= most_waiting_bytes();
+    units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / kUnitBytes, 1,
+                                               std::max<std::size_t>(1, units_in_flight_));
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
-    check_disk(folder_, points, padded);
+    check_disk(folder_, {points, padded, in_memory_ ? 0 : points});
     if (options_.regular_size && padded > 2 * points) {
       log_.warn(
           "padded-cells",
@@ -202,17 +230,29 @@ class Conversion {
     }
   }
 
-  void write_store(const Distribution& distribution, const SplitTree& tree,
+  void write_store(Distribution& distribution, const SplitTree& tree,
                    const std::vector<TopNode>& top, const Lattice& lattice) {
     StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
-    const std::size_t units_in_flight = std::min<std::size_t>(
-        bytes_for_units() / kUnitBytes, static_cast<std::size_t>(threads_) + 1);
-    write_cells(distribution, tree, lattice, report_.metadata, units_in_flight, writer, progress_);
+    write_cells(distribution, tree, lattice, report_.metadata, units_in_flight_, writer, clocks_,
+                progress_);
     report_.partition_seconds = watch_.lap();
-    writer.finish(top);
+    {
+      const auto running = clocks_.measure(Stage::kWrite);
+      writer.finish(top);
+    }
+    auto synced = std::async(std::launch::async, [this] {
+      const auto running = clocks_.measure(Stage::kSync);
+      output_.sync();
+    });
+    {
+      const auto running = clocks_.measure(Stage::kConfirm);
+      writer.confirm();
+    }
+    synced.get();
     output_.publish();
     report_.output_bytes = std::filesystem::file_size(options_.output);
     report_.confirm_seconds = watch_.lap();
+    report_.busy_seconds = clocks_.seconds();
   }
 
   const ConversionOptions& options_;
@@ -221,7 +261,10 @@ class Conversion {
   std::filesystem::path folder_;
   PendingFile output_;
   ConversionReport report_;
+  std::size_t units_in_flight_ = 1;
+  bool in_memory_ = false;
   MessageLog log_{options_.message, report_.warnings};
+  StageClocks clocks_;
   Stopwatch watch_;
 };
 

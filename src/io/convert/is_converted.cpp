@@ -33,7 +33,7 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
          std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
          (!options.strict || found.point_count == found.input_points) &&
          (options.ignore_crs ||
-          (found.unit != LengthUnit::kDegree && units_of_wkt(found.crs_wkt).trouble.empty()));
+          (found.unit != LengthUnit::kDegrees && units_of_wkt(found.crs_wkt).trouble.empty()));
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
   if (!store || !would_make(options, store->metadata())) return false;
   std::vector<std::filesystem::path> files = list_point_files(options.inputs);
   if (options.skip_unreadable) files = readable_files(files, {}, progress).files;
-  SourceDescription sources(with_pose_files(files), progress);
+  SourceDescription sources(with_pose_files(files), {}, progress);
   if (sources.get() != store->metadata().sources) return false;
   const std::vector<std::string> faults = verify_store(*store, progress, 1);
   if (faults.empty()) return true;

@@ -113,44 +113,65 @@ void partition_stably(const BucketPoint* from, BucketPoint* to, std::size_t n, s
 
 class BucketOrder {
  public:
-  BucketOrder(std::uint32_t cell_points, const double* scale)
-      : cell_points_(cell_points), scale_(scale) {}
+  BucketOrder(std::uint32_t cell_points, const double* scale, StageClocks& clocks)
+      : cell_points_(cell_points), scale_(scale), clocks_(clocks) {}
 
   /// Orders n points of `from`; the outcome goes to `result`, which is `from` or `other`.
   void order(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n) const {
-    const std::uint64_t unit = n > cell_points_ ? cell_points_ : kBlockPoints;
-    if (n <= unit) {
-      if (result != from) std::copy(from, from + n, result);
+    if (n < kParallelFrom) {
+      const auto running = clocks_.measure(Stage::kOrder);
+      order_alone(from, other, result, n);
       return;
     }
-    const std::size_t left = left_count(n, unit);
-    const Bounds bounds = bounds_of(from, n);
-    const int axis = longest_side(bounds, scale_);
-    const SplitKey key(axis, bounds.lo[axis]);
-    partition_stably(from, other, n, left, key, select(from, n, left, key, extent(bounds, axis)));
+    const std::size_t left = split_measured(from, other, n);
     const ParallelScope scope;
     const auto order_left = piece_of(scope, [=, this] { order(other, from, result, left); });
     const auto order_right =
         piece_of(scope, [=, this] { order(other + left, from + left, result + left, n - left); });
     scope.begin();
-    if (n >= kParallelFrom) {
-      tbb::parallel_invoke(order_left, order_right);
-    } else {
-      order_left();
-      order_right();
-    }
+    tbb::parallel_invoke(order_left, order_right);
   }
 
  private:
+  static_assert(kParallelFrom > kBlockPoints);
+
+  /// On one thread.
+  void order_alone(BucketPoint* from, BucketPoint* other, BucketPoint* result,
+                   std::size_t n) const {
+    if (n <= kBlockPoints) {
+      if (result != from) std::copy(from, from + n, result);
+      return;
+    }
+    const std::size_t left = split(from, other, n);
+    order_alone(other, from, result, left);
+    order_alone(other + left, from + left, result + left, n - left);
+  }
+
+  std::size_t split_measured(const BucketPoint* from, BucketPoint* to, std::size_t n) const {
+    const auto running = clocks_.measure(Stage::kOrder);
+    return split(from, to, n);
+  }
+
+  /// Parts n > kBlockPoints points; how many of them are left.
+  std::size_t split(const BucketPoint* from, BucketPoint* to, std::size_t n) const {
+    const std::size_t left = left_count(n, n > cell_points_ ? cell_points_ : kBlockPoints);
+    const Bounds bounds = bounds_of(from, n);
+    const int axis = longest_side(bounds, scale_);
+    const SplitKey key(axis, bounds.lo[axis]);
+    partition_stably(from, to, n, left, key, select(from, n, left, key, extent(bounds, axis)));
+    return left;
+  }
+
   std::uint64_t cell_points_;
   const double* scale_;
+  StageClocks& clocks_;
 };
 
 }  // namespace
 
 void order_bucket(std::span<BucketPoint> points, std::span<BucketPoint> scratch,
-                  std::uint32_t cell_points, const double (&scale)[3]) {
-  BucketOrder(cell_points, scale)
+                  std::uint32_t cell_points, const double (&scale)[3], StageClocks& clocks) {
+  BucketOrder(cell_points, scale, clocks)
       .order(points.data(), scratch.data(), points.data(), points.size());
 }
 

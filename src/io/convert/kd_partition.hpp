@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "io/convert/stage_clocks.hpp"
+
 namespace clearway {
 
 /// A point while its bucket is put in order, 16 bytes. `index` is its position among the points
@@ -17,6 +19,6 @@ struct BucketPoint {
 /// overwritten. scale: metres an integer step on each axis. Uses the threads of the calling TBB
 /// arena.
 void order_bucket(std::span<BucketPoint> points, std::span<BucketPoint> scratch,
-                  std::uint32_t cell_points, const double (&scale)[3]);
+                  std::uint32_t cell_points, const double (&scale)[3], StageClocks& clocks);
 
 }  // namespace clearway

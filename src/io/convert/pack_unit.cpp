@@ -16,27 +16,27 @@ namespace {
 /// The points of a unit: as loaded (in source order) and as they are put in order.
 class Unit {
  public:
-  Unit(const Distribution& distribution, std::size_t unit)
-      : loaded_(distribution.first[unit + 1] - distribution.first[unit]),
-        points_(loaded_.size()),
-        scratch_(loaded_.size()) {
-    distribution.file.read_at(distribution.first[unit] * sizeof(DistributedPoint),
-                              std::as_writable_bytes(std::span(loaded_)));
-    for (std::size_t i = 0; i < loaded_.size(); ++i) {
-      const auto& q = loaded_[i].q;
+  Unit(Distribution& distribution, std::size_t unit, StageClocks& clocks) {
+    const auto running = clocks.measure(Stage::kLoad);
+    loaded_ = distribution.take(unit);
+    points_ = std::make_unique_for_overwrite<BucketPoint[]>(loaded_.count);
+    scratch_ = std::make_unique_for_overwrite<BucketPoint[]>(loaded_.count);
+    for (std::size_t i = 0; i < loaded_.count; ++i) {
+      const auto& q = loaded_.points[i].q;
       points_[i] = {{q[0], q[1], q[2]}, static_cast<std::uint32_t>(i)};
     }
   }
 
-  std::size_t size() const { return points_.size(); }
-  std::uint64_t source(const BucketPoint& p) const { return loaded_[p.index].source_index(); }
-  std::span<BucketPoint> points() { return points_; }
-  std::span<BucketPoint> scratch() { return scratch_; }
+  std::uint64_t source(const BucketPoint& p) const {
+    return loaded_.points[p.index].source_index();
+  }
+  std::span<BucketPoint> points() { return {points_.get(), loaded_.count}; }
+  std::span<BucketPoint> scratch() { return {scratch_.get(), loaded_.count}; }
 
  private:
-  std::vector<DistributedPoint> loaded_;
-  std::vector<BucketPoint> points_;
-  std::vector<BucketPoint> scratch_;
+  UnitPoints loaded_;
+  std::unique_ptr<BucketPoint[]> points_;
+  std::unique_ptr<BucketPoint[]> scratch_;
 };
 
 QuantumBox box_of(std::span<const BucketPoint> points) {
@@ -70,6 +70,7 @@ PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
   std::vector<std::uint64_t> sources(cell_points, unit.source(points.back()));
   for (std::size_t i = 0; i < points.size(); ++i) sources[i] = unit.source(points[i]);
   append_packed_chunk<std::uint64_t>(sources, cell.chunks[3]);
+  hash_chunks(cell);
   return cell;
 }
 
@@ -110,22 +111,23 @@ class UnitBuckets {
 }  // namespace
 
 struct OrderedUnit::State {
+  StageClocks& clocks;
   Unit unit;
   std::uint32_t cell_points;
   std::vector<std::span<const BucketPoint>> cells;
   std::size_t next = 0;
 };
 
-OrderedUnit::OrderedUnit(const Distribution& distribution, std::size_t unit, const SplitTree& tree,
+OrderedUnit::OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
                          const Lattice& lattice, const Quantisation& quantisation,
-                         std::uint32_t cell_points)
-    : state_(new State{Unit(distribution, unit), cell_points, {}}) {
+                         std::uint32_t cell_points, StageClocks& clocks)
+    : state_(new State{clocks, Unit(distribution, unit, clocks), cell_points, {}}) {
   Unit& loaded = state_->unit;
   for (const std::span<BucketPoint> bucket :
        UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
     const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
     order_bucket(bucket, loaded.scratch().subspan(first, bucket.size()), cell_points,
-                 quantisation.scale);
+                 quantisation.scale, clocks);
     for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
       state_->cells.emplace_back(
           bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
@@ -145,6 +147,7 @@ std::vector<PackedCell> OrderedUnit::pack_next() {
   {
     const ParallelScope scope;
     const auto pack = piece_of(scope, [&](std::size_t i) {
+      const auto running = state.clocks.measure(Stage::kPack);
       packed[i] = pack_cell(state.unit, state.cells[first + i], state.cell_points);
     });
     scope.begin();

@@ -4,8 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "io/convert/distribute.hpp"
+#include "core/geometry/quantisation.hpp"
+#include "io/convert/distribute/distribution.hpp"
 #include "io/convert/split_tree.hpp"
+#include "io/convert/stage_clocks.hpp"
 #include "io/store/store_writer.hpp"
 
 namespace clearway {
@@ -18,8 +20,9 @@ inline constexpr std::uint64_t kUnitBytes = kBucketPoints * 72;
 /// padded cells can be far larger than their points.
 class OrderedUnit {
  public:
-  OrderedUnit(const Distribution& distribution, std::size_t unit, const SplitTree& tree,
-              const Lattice& lattice, const Quantisation& quantisation, std::uint32_t cell_points);
+  OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
+              const Lattice& lattice, const Quantisation& quantisation, std::uint32_t cell_points,
+              StageClocks& clocks);
   ~OrderedUnit();
 
   /// The next cells, with padding at most kBucketPoints points but at least a cell; empty at the

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "io/system/file.hpp"
 #include "io/system/xxh64.hpp"
@@ -23,6 +24,31 @@ SourceFile describe(const std::filesystem::path& path, const std::stop_token& st
     bytes += got;
   }
   return {path.filename().string(), bytes, hash.digest()};
+}
+
+SourceDescription::SourceDescription(std::vector<std::filesystem::path> files,
+                                     std::vector<bool> known, const Progress& progress)
+    : files_(std::move(files)), progress_(progress) {
+  known.resize(files_.size());
+  sources_ = std::async(std::launch::async, [this, known = std::move(known)] {
+    std::vector<std::optional<SourceFile>> sources(files_.size());
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (!known[i]) sources[i] = describe(files_[i], stop_.get_token(), progress_);
+    }
+    return sources;
+  });
+}
+
+std::vector<SourceFile> SourceDescription::get(std::vector<std::optional<SourceFile>> known) {
+  const std::vector<std::optional<SourceFile>> described = sources_.get();
+  known.resize(files_.size());
+  std::vector<SourceFile> sources;
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    const auto& found = described[i] ? described[i] : known[i];
+    // A file without any piece was known to nobody.
+    sources.push_back(found ? *found : describe(files_[i], stop_.get_token(), progress_));
+  }
+  return sources;
 }
 
 std::string layout_name(const std::optional<double>& regular_size) {

@@ -17,24 +17,22 @@ namespace clearway {
 SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
                     const Progress& progress);
 
-/// Describes the inputs on a thread of its own, while they are counted; gives up when it goes.
+/// Describes inputs on a thread of its own, while they are counted; gives up when it goes.
 class SourceDescription {
  public:
-  SourceDescription(std::vector<std::filesystem::path> files, const Progress& progress)
-      : sources_(std::async(std::launch::async,
-                            [files = std::move(files), &progress, stop = stop_.get_token()] {
-                              std::vector<SourceFile> sources;
-                              for (const auto& file : files)
-                                sources.push_back(describe(file, stop, progress));
-                              return sources;
-                            })) {}
+  /// known: which of them somebody else describes; may be shorter.
+  SourceDescription(std::vector<std::filesystem::path> files, std::vector<bool> known,
+                    const Progress& progress);
   ~SourceDescription() { stop_.request_stop(); }
 
-  std::vector<SourceFile> get() { return sources_.get(); }
+  /// known: those that somebody else described.
+  std::vector<SourceFile> get(std::vector<std::optional<SourceFile>> known = {});
 
  private:
   std::stop_source stop_;
-  std::future<std::vector<SourceFile>> sources_;
+  std::vector<std::filesystem::path> files_;
+  const Progress& progress_;
+  std::future<std::vector<std::optional<SourceFile>>> sources_;
 };
 
 /// "adaptive" or "regular:SIZE".

@@ -19,10 +19,11 @@ struct UnitInFlight {
   std::optional<OrderedUnit> rest;
 };
 
-void write_unit(UnitInFlight& unit, StoreWriter& writer, Progress& progress) {
+void write_unit(UnitInFlight& unit, StoreWriter& writer, StageClocks& clocks, Progress& progress) {
   while (!unit.packed.empty()) {
     for (const PackedCell& cell : unit.packed) {
       throw_if_stopped(progress);
+      const auto running = clocks.measure(Stage::kWrite);
       writer.append(cell);
       progress.advance(cell.cell.count);
     }
@@ -33,9 +34,9 @@ void write_unit(UnitInFlight& unit, StoreWriter& writer, Progress& progress) {
 
 }  // namespace
 
-void write_cells(const Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
+void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
-                 Progress& progress) {
+                 StageClocks& clocks, Progress& progress) {
   using Flying = std::shared_ptr<UnitInFlight>;
   std::size_t next = 0;
   const ParallelScope scope;
@@ -48,13 +49,13 @@ void write_cells(const Distribution& distribution, const SplitTree& tree, const 
   const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
     auto flying = std::make_shared<UnitInFlight>();
     flying->rest.emplace(distribution, unit, tree, lattice, metadata.quantisation,
-                         metadata.cell_points);
+                         metadata.cell_points, clocks);
     flying->packed = flying->rest->pack_next();
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;
   });
-  const auto write =
-      piece_of(scope, output, [&](const Flying& unit) { write_unit(*unit, writer, progress); });
+  const auto write = piece_of(
+      scope, output, [&](const Flying& unit) { write_unit(*unit, writer, clocks, progress); });
   progress.begin("partition", metadata.point_count, "points");
   scope.begin();
   tbb::parallel_pipeline(

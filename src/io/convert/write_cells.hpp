@@ -3,17 +3,18 @@
 #include <cstddef>
 
 #include "core/util/progress.hpp"
-#include "io/convert/distribute.hpp"
+#include "io/convert/distribute/distribution.hpp"
 #include "io/convert/lattice.hpp"
 #include "io/convert/split_tree.hpp"
+#include "io/convert/stage_clocks.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_writer.hpp"
 
 namespace clearway {
 
 /// Partitions and packs the units, several at a time as memory allows, and writes them in order.
-void write_cells(const Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
+void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
-                 Progress& progress);
+                 StageClocks& clocks, Progress& progress);
 
 }  // namespace clearway

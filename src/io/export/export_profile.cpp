@@ -7,6 +7,7 @@
 #include "clearway/result.hpp"
 #include "io/export/position_text.hpp"
 #include "io/export/row_sink.hpp"
+#include "io/formats/text/text_writer.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
 
@@ -26,8 +27,12 @@ std::string quoted(const std::string& field) {
 
 class ProfileTable {
  public:
-  ProfileTable(const File& file, const ResultReader& result, const PoseLabels& labels)
-      : out_(file), position_(result.header().quantisation), labels_(labels) {
+  ProfileTable(const File& file, const ResultReader& result, const PoseLabels& labels,
+               double chainage_start)
+      : out_(file),
+        position_(result.header().quantisation),
+        labels_(labels),
+        chainage_start_(chainage_start) {
     out_ << "pose";
     if (!labels.time.empty()) out_ << ",time";
     if (!labels.name.empty()) out_ << ",name";
@@ -39,7 +44,7 @@ class ProfileTable {
       out_ << pose_;
       if (!labels_.time.empty()) out_ << "," << labels_.time[pose_];
       if (!labels_.name.empty()) out_ << "," << quoted(labels_.name[pose_]);
-      out_ << "," << rows.chainage[i] << ",";
+      out_ << "," << chainage_start_ + rows.chainage[i] << ",";
       if (rows.source[i] == Profile::kNoPoint) {
         out_ << ",,,,\n";
         continue;
@@ -55,12 +60,13 @@ class ProfileTable {
   TextWriter out_;
   PositionText position_;
   const PoseLabels& labels_;
+  double chainage_start_;
   std::uint64_t pose_ = 0;
 };
 
 }  // namespace
 
-void export_profile(const ResultReader& result, const PoseLabels& labels,
+void export_profile(const ResultReader& result, const PoseLabels& labels, double chainage_start,
                     const std::filesystem::path& output, bool overwrite, Progress& progress) {
   if (!(result.header().profile > 0)) {
     throw UsageError(result.name() + ": has no profile", Remedy::kAskForProfile);
@@ -77,7 +83,7 @@ void export_profile(const ResultReader& result, const PoseLabels& labels,
   PendingFile pending(output, overwrite);
   {
     const File file = File::create(pending.partial());
-    ProfileTable table(file, result, labels);
+    ProfileTable table(file, result, labels, chainage_start);
     progress.begin("export", result.profile_rows(), "poses");
     ProfileRowStream stream(result);
     for (ProfileRows rows; stream.read(rows);) {

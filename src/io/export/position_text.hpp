@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "io/export/decimal_axis.hpp"
-#include "io/formats/text/text_writer.hpp"
 
 namespace clearway {
 
@@ -15,7 +14,8 @@ class PositionText {
       : axes_{DecimalAxis(quantisation, 0), DecimalAxis(quantisation, 1),
               DecimalAxis(quantisation, 2)} {}
 
-  void write(TextWriter& out, const Vec3& p, std::string_view between) {
+  template <typename Text>
+  void write(Text& out, const Vec3& p, std::string_view between) {
     out << axes_[0].text(p.x) << between << axes_[1].text(p.y) << between << axes_[2].text(p.z);
   }
 

@@ -1,14 +1,17 @@
 #include "io/export/row_sink.hpp"
 
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "io/export/position_text.hpp"
+#include "io/export/text_blocks.hpp"
 #include "io/formats/las/las_writer.hpp"
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/formats/requantize.hpp"
+#include "io/formats/text/text_writer.hpp"
 #include "io/system/file_ending.hpp"
 
 namespace clearway {
@@ -16,20 +19,33 @@ namespace {
 
 using Quanta = std::vector<std::array<std::int32_t, 3>>;
 
-Quanta quanta_of(const ExportTable& table, const ExportRows& rows) {
-  Quanta out(rows.xyz.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const auto q = quantum_at(table.result.header().quantisation, k, rows.xyz[i][k]);
-      if (!q) {
-        throw InputError(table.result.name() + ": /" + table.group + "/xyz, source " +
-                         std::to_string(rows.source[i]) +
-                         ": expected a whole multiple of the scale above the offset");
-      }
-      out[i][static_cast<std::size_t>(k)] = *q;
-    }
+/// False where a coordinate is not on the scale.
+bool set_quanta(const Quantisation& quantisation, const Vec3& p, std::array<std::int32_t, 3>& out) {
+  for (int k = 0; k < 3; ++k) {
+    const auto q = quantum_at(quantisation, k, p[k]);
+    if (!q) return false;
+    out[static_cast<std::size_t>(k)] = *q;
   }
-  return out;
+  return true;
+}
+
+Quanta quanta_of(const ExportTable& table, const ExportRows& rows) {
+  const Quantisation& quantisation = table.result.header().quantisation;
+  Quanta out(rows.xyz.size());
+  std::atomic<std::size_t> first_wrong = out.size();
+  for_each_block(out.size(), [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      if (set_quanta(quantisation, rows.xyz[i], out[i])) continue;
+      std::size_t seen = first_wrong;
+      while (i < seen && !first_wrong.compare_exchange_weak(seen, i)) {
+      }
+      return;
+    }
+  });
+  if (first_wrong == out.size()) return out;
+  throw InputError(table.result.name() + ": /" + table.group + "/xyz, source " +
+                   std::to_string(rows.source[first_wrong]) +
+                   ": expected a whole multiple of the scale above the offset");
 }
 
 class LasSink final : public RowSink {
@@ -73,48 +89,60 @@ class PlySink final : public RowSink {
 class XyzSink final : public RowSink {
  public:
   XyzSink(const ExportTable& table, const File& file)
-      : out_(file), position_(table.result.header().quantisation) {}
+      : file_(file), position_(table.result.header().quantisation) {}
 
   void write(const ExportRows& rows) override {
-    for (std::size_t i = 0; i < rows.xyz.size(); ++i) {
-      position_.write(out_, rows.xyz[i], " ");
-      if (!rows.distance.empty()) out_ << " " << rows.distance[i] << " " << rows.pose[i];
-      out_ << "\n";
-    }
+    write_blocks(file_, rows.xyz.size(), [&](TextBuffer& out, std::size_t first, std::size_t end) {
+      PositionText position = position_;
+      for (std::size_t i = first; i < end; ++i) {
+        position.write(out, rows.xyz[i], " ");
+        if (!rows.distance.empty()) out << " " << rows.distance[i] << " " << rows.pose[i];
+        out << "\n";
+      }
+    });
   }
-  void finish() override { out_.flush(); }
+  void finish() override {}
 
  private:
-  TextWriter out_;
-  PositionText position_;
+  const File& file_;
+  const PositionText position_;
 };
 
 /// Of a result of version 2, clearances have no coordinates.
 class CsvSink final : public RowSink {
  public:
   CsvSink(const ExportTable& table, const File& file)
-      : out_(file), position_(table.result.header().quantisation) {
-    out_ << "source";
-    if (!table.distance || table.result.header().has_clearance_xyz()) out_ << ",x,y,z";
-    if (table.first_pose) out_ << ",first_pose";
-    if (table.distance) out_ << ",distance,pose";
-    out_ << "\n";
+      : file_(file), position_(table.result.header().quantisation) {
+    TextWriter out(file);
+    out << "source";
+    if (!table.distance || table.result.header().has_clearance_xyz()) out << ",x,y,z";
+    if (table.first_pose) out << ",first_pose";
+    if (table.distance) out << ",distance,pose";
+    out << "\n";
+    out.flush();
   }
 
   void write(const ExportRows& rows) override {
-    for (std::size_t i = 0; i < rows.source.size(); ++i) {
-      out_ << rows.source[i];
-      if (!rows.xyz.empty()) position_.write(out_ << ",", rows.xyz[i], ",");
-      if (!rows.first_pose.empty()) out_ << "," << rows.first_pose[i];
-      if (!rows.distance.empty()) out_ << "," << rows.distance[i] << "," << rows.pose[i];
-      out_ << "\n";
-    }
+    write_blocks(file_, rows.source.size(),
+                 [&](TextBuffer& out, std::size_t first, std::size_t end) {
+                   PositionText position = position_;
+                   for (std::size_t i = first; i < end; ++i) write_row(rows, i, position, out);
+                 });
   }
-  void finish() override { out_.flush(); }
+  void finish() override {}
 
  private:
-  TextWriter out_;
-  PositionText position_;
+  static void write_row(const ExportRows& rows, std::size_t i, PositionText& position,
+                        TextBuffer& out) {
+    out << rows.source[i];
+    if (!rows.xyz.empty()) position.write(out << ",", rows.xyz[i], ",");
+    if (!rows.first_pose.empty()) out << "," << rows.first_pose[i];
+    if (!rows.distance.empty()) out << "," << rows.distance[i] << "," << rows.pose[i];
+    out << "\n";
+  }
+
+  const File& file_;
+  const PositionText position_;
 };
 
 }  // namespace

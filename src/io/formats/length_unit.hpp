@@ -5,7 +5,7 @@
 namespace clearway {
 
 /// Of a file's coordinates.
-enum class LengthUnit { kUnknown, kMetre, kFoot, kUsSurveyFoot, kDegree };
+enum class LengthUnit { kUnknown, kMetre, kFoot, kUsSurveyFoot, kDegrees };
 
 /// "unknown", "metre", "foot", "us-survey-foot", "degree".
 std::string to_string(LengthUnit unit);

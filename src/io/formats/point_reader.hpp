@@ -42,6 +42,15 @@ struct PointBatch {
   std::size_t size() const { return quanta.size() + positions.size(); }
 };
 
+/// The bytes of a file that a piece of its points was read from.
+struct PieceBytes {
+  std::uint64_t first = 0;  ///< position in the file
+  std::size_t count = 0;
+  std::unique_ptr<std::byte[]> bytes;
+
+  std::span<std::byte> span() const { return {bytes.get(), count}; }
+};
+
 /// Reads the points of one file, front to back, in constant memory. Non-finite positions are
 /// delivered as they are; the caller counts them. Malformed input throws InputError with file, line
 /// or byte, and what was expected; nothing is skipped silently.
@@ -53,6 +62,13 @@ class PointReader {
   virtual const CloudInfo& info() const = 0;
   /// Fills `batch` with up to kBatchPoints points; false, and an empty batch, at the end.
   virtual bool read(PointBatch& batch) = 0;
+  /// Pieces of the file's points, which read_piece() reads in any order; 0 where only read() can.
+  /// In their order they are all points, and their bytes follow each other.
+  virtual std::size_t pieces() const { return 0; }
+  virtual std::uint64_t points_of_piece(std::size_t /*piece*/) const { return 0; }
+  /// Several threads at once, while nobody calls read(). bytes: receives those of the piece, or
+  /// null. Throws as read() does.
+  virtual void read_piece(std::size_t /*piece*/, PointBatch& /*batch*/, PieceBytes* /*bytes*/) {}
   virtual bool can_rewind() const { return true; }
   /// Back to the first point. Throws ResourceError where the input cannot seek.
   virtual void rewind() = 0;

@@ -117,7 +117,7 @@ StatedUnit horizontal(const std::vector<Node>& nodes) {
   const auto geodetic = find(nodes, {"GEODCRS", "GEODETICCRS"});
   if (geodetic && has_cartesian_axes(nodes, *geodetic)) return unit_within(nodes, *geodetic);
   if (geodetic || find(nodes, {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS"})) {
-    return {LengthUnit::kDegree, {}};
+    return {LengthUnit::kDegrees, {}};
   }
   return {};
 }
@@ -138,7 +138,7 @@ StatedUnit unit_of_length(double metres) {
 CrsUnits crs_units(const StatedUnit& plane, const StatedUnit& heights) {
   if (!plane.other.empty()) return {plane.unit, "its unit is " + plane.other};
   const bool stated = heights.unit != LengthUnit::kUnknown || !heights.other.empty();
-  const bool comparable = plane.unit != LengthUnit::kUnknown && plane.unit != LengthUnit::kDegree;
+  const bool comparable = plane.unit != LengthUnit::kUnknown && plane.unit != LengthUnit::kDegrees;
   if (!stated || !comparable || heights.unit == plane.unit) return {plane.unit, {}};
   return {plane.unit, "its heights are in " +
                           (heights.other.empty() ? to_string(heights.unit) : heights.other) +

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -162,9 +163,20 @@ class Rows {
 
   std::uint64_t rows() const { return rows_; }
   void write(std::uint64_t first_row, std::span<const Number> values);
+  /// Makes the index of a dataset with rows, as the first write() does. For write_chunk().
+  void make_index();
+  /// A whole chunk as stored_chunk.hpp has it, to where the file ends now. After make_index(), for
+  /// all chunks, and without write().
+  void write_chunk(std::uint64_t first_row, std::span<const std::byte> chunk);
   /// After the last write, which may fail as late as here.
   void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;
+  /// The chunks from `first_row`, which begins one, as stored_chunk.hpp has them, not checked.
+  /// False where they are stored in another way or cannot be read: read() tells what is wrong then.
+  bool read_chunks(std::uint64_t first_row, std::uint64_t row_count,
+                   std::vector<std::vector<std::byte>>& chunks) const;
+  /// Rows of a chunk of those.
+  std::uint64_t chunk_rows() const;
 
  private:
   Rows() = default;

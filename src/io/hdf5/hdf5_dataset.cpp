@@ -1,26 +1,26 @@
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <tuple>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "io/hdf5/hdf5_detail.hpp"
+#include "io/hdf5/stored_chunk.hpp"
 
 namespace clearway::hdf5 {
 namespace {
 
-constexpr hsize_t kChunkBytes = 1 << 18;
+constexpr hsize_t kChunkBytes = 1 << 18;  // the most
 
-/// Chunked with fletcher32 by a power of two of rows, at most kChunkBytes, so that row ranges of
-/// 2^16 end at the ends of chunks whatever the columns; an empty dataset has no chunks.
+constexpr std::uint32_t kAllFilters = 0;  // a mask of those that were left out
+
+/// Chunked with fletcher32; an empty dataset has no chunks.
 Id checked_layout(std::uint64_t rows, std::uint64_t columns, std::size_t number_bytes) {
   Id list = untimed(H5P_DATASET_CREATE);
   if (rows == 0) return list;
   const std::uint64_t row_bytes = std::max<std::uint64_t>(columns, 1) * number_bytes;
-  const std::uint64_t chunk_rows =
-      std::min(rows, std::bit_floor(std::max<std::uint64_t>(1, kChunkBytes / row_bytes)));
-  const std::array<hsize_t, 2> chunk{chunk_rows, std::max<std::uint64_t>(columns, 1)};
+  const std::array<hsize_t, 2> chunk{rows_of_chunk(rows, row_bytes),
+                                     std::max<std::uint64_t>(columns, 1)};
   check(H5Pset_chunk(list.get(), columns == 0 ? 1 : 2, chunk.data()), "HDF5 chunk size");
   check(H5Pset_fletcher32(list.get()), "HDF5 fletcher32");
   return list;
@@ -171,6 +171,20 @@ void Rows<Number>::write(std::uint64_t first_row, std::span<const Number> values
 }
 
 template <typename Number>
+void Rows<Number>::make_index() {
+  const std::vector<Number> row(std::max<std::uint64_t>(columns_, 1));
+  write(0, row);
+}
+
+template <typename Number>
+void Rows<Number>::write_chunk(std::uint64_t first_row, std::span<const std::byte> chunk) {
+  const std::array<hsize_t, 2> at{first_row, 0};
+  check(H5Dwrite_chunk(dataset_.get(), H5P_DEFAULT, kAllFilters, at.data(), chunk.size(),
+                       chunk.data()),
+        "write dataset " + name_);
+}
+
+template <typename Number>
 void Rows<Number>::close() {
   dataset_.close("write dataset " + name_);
 }
@@ -184,6 +198,36 @@ void Rows<Number>::read(std::uint64_t first_row, std::span<Number> values) const
               values.data()) < 0) {
     malformed(file_, name_, "intact data (" + reason() + ")");
   }
+}
+
+template <typename Number>
+std::uint64_t Rows<Number>::chunk_rows() const {
+  return rows_of_chunk(rows_, std::max<std::uint64_t>(columns_, 1) * sizeof(Number));
+}
+
+template <typename Number>
+bool Rows<Number>::read_chunks(std::uint64_t first_row, std::uint64_t row_count,
+                               std::vector<std::vector<std::byte>>& chunks) const {
+  const Id list(H5Dget_create_plist(dataset_.get()), H5Pclose, name_);
+  std::array<hsize_t, 2> chunk{};
+  const int dimensions = columns_ == 0 ? 1 : 2;
+  if (H5Pget_chunk(list.get(), dimensions, chunk.data()) != dimensions) return false;
+  if (chunk[0] != chunk_rows() || chunk[1] != columns_) return false;
+  const std::uint64_t row_bytes = std::max<std::uint64_t>(columns_, 1) * sizeof(Number);
+  const std::uint64_t bytes = chunk_rows() * row_bytes + kChecksumBytes;
+  for (std::uint64_t row = first_row; row < first_row + row_count; row += chunk_rows()) {
+    const std::array<hsize_t, 2> at{row, 0};
+    hsize_t stored = 0;
+    if (H5Dget_chunk_storage_size(dataset_.get(), at.data(), &stored) < 0) return false;
+    if (stored != bytes) return false;
+    std::vector<std::byte>& into = chunks.emplace_back(bytes);
+    std::uint32_t filters_left_out = 0;
+    if (H5Dread_chunk(dataset_.get(), H5P_DEFAULT, at.data(), &filters_left_out, into.data()) < 0) {
+      return false;
+    }
+    if (filters_left_out != kAllFilters) return false;
+  }
+  return true;
 }
 
 #define CLEARWAY_INSTANTIATE(Number)                                                      \

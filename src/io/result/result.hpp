@@ -10,6 +10,8 @@
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "io/result/encoded_rows.hpp"
+#include "io/system/xxh64.hpp"
 
 namespace clearway {
 
@@ -44,6 +46,10 @@ struct ResultHeader : QueryParameters {
 /// first, then clearances, then the profile. All append functions throw std::logic_error for rows
 /// out of this order, more rows than promised, sources that do not ascend (but in the profile) and
 /// spans of unequal lengths. A failing disk throws ResourceError.
+///
+/// Instead of appending rows, threads may encode them kEncodedRows at a time, fewer only at the
+/// end of a table. These are then hashed in order, and written in order, one at a time each; one
+/// thread may hash while another writes.
 class ResultWriter {
  public:
   /// The profile has a row a pose.
@@ -60,6 +66,15 @@ class ResultWriter {
   /// The next poses' rows, as Profile has them. Only where the header asks for a profile.
   void append_profile(std::span<const double> distance, std::span<const std::uint64_t> source,
                       std::span<const Vec3> xyz, std::span<const double> chainage);
+
+  /// To be filled and sealed. Thread safe.
+  EncodedCollisions new_collisions() const;
+  EncodedClearances new_clearances() const;
+  void hash(const EncodedCollisions& rows);
+  void hash(const EncodedClearances& rows);
+  void write(EncodedCollisions& rows);
+  void write(EncodedClearances& rows);
+
   /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
   void finish();
 
@@ -87,6 +102,10 @@ class ResultReader {
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
   /// Below header().poses. Only where the header has first poses.
   void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
+  /// All three, with many threads; first_pose: empty unless the header has it. Adds the columns to
+  /// their hashes. first: a multiple of kEncodedRows.
+  void read_collisions(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
+                       std::span<std::uint32_t> first_pose, std::span<Xxh64Stream> hashes) const;
 
   /// Rows of the clearances, 0 where the header has none.
   std::uint64_t clearances() const;
@@ -96,6 +115,11 @@ class ResultReader {
   /// where the header has clearances. xyz: empty unless the header has them.
   void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<double> distance, std::span<std::uint32_t> pose) const;
+  /// The same with many threads. Adds the columns to their hashes, but xyz where there is none.
+  /// first: a multiple of kEncodedRows.
+  void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
+                       std::span<double> distance, std::span<std::uint32_t> pose,
+                       std::span<Xxh64Stream> hashes) const;
 
   /// Rows of the profile: header().poses, or 0 where the header has none.
   std::uint64_t profile_rows() const;

@@ -4,6 +4,7 @@
 #include "clearway/error.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/result/as_numbers.hpp"
+#include "io/result/parallel_read.hpp"
 #include "io/result/result.hpp"
 #include "io/result/result_header.hpp"
 #include "io/result/result_names.hpp"
@@ -135,6 +136,16 @@ struct ResultReader::State {
   std::optional<ProfileDatasets> profile;
 };
 
+namespace {
+
+template <typename... Columns>
+void add_to(std::span<Xxh64Stream> hashes, const Columns&... columns) {
+  std::size_t i = 0;
+  ((columns.empty() ? void() : hashes[i].update(std::as_bytes(columns)), ++i), ...);
+}
+
+}  // namespace
+
 ResultReader::ResultReader(const std::filesystem::path& path) {
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
 }
@@ -151,6 +162,28 @@ std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
 std::uint64_t ResultReader::collisions_hash() const { return state_->collisions_hash; }
 std::uint64_t ResultReader::clearances_hash() const { return state_->clearance_hash; }
 std::uint64_t ResultReader::profile_hash() const { return state_->profile_hash; }
+
+void ResultReader::read_collisions(std::uint64_t first, std::span<std::uint64_t> source,
+                                   std::span<Vec3> xyz, std::span<std::uint32_t> first_pose,
+                                   std::span<Xxh64Stream> hashes) const {
+  const State& s = *state_;
+  check_lengths(source.size(), xyz);
+  check_lengths(s.first_pose ? source.size() : 0, first_pose);
+  check_range(first, source.size(), collisions());
+  ParallelRead read;
+  const RowChecks checks = s.checks(names::kGroup, first);
+  const bool there = as_input(s.name, [&] {
+    return read.add(s.source, first, source, hashes[0], checks.from_any_row(&RowChecks::sources)) &&
+           read.add(s.xyz, first, xyz, hashes[1], checks.from_any_row(&RowChecks::points)) &&
+           (!s.first_pose || read.add(*s.first_pose, first, first_pose, hashes[2],
+                                      checks.for_poses(names::kFirstPose)));
+  });
+  if (there && read.run() && ascends_at_chunks(source, s.source.chunk_rows())) return;
+  read_source(first, source);
+  read_xyz(first, xyz);
+  if (s.first_pose) read_first_pose(first, first_pose);
+  add_to(hashes, source, xyz, first_pose);
+}
 
 void ResultReader::read_source(std::uint64_t first, std::span<std::uint64_t> out) const {
   check_range(first, out.size(), collisions());
@@ -194,6 +227,37 @@ void ResultReader::read_clearances(std::uint64_t first, std::span<std::uint64_t>
   checks.points(xyz);
   checks.clearances(distance);
   checks.poses(names::kPose, pose);
+}
+
+void ResultReader::read_clearances(std::uint64_t first, std::span<std::uint64_t> source,
+                                   std::span<Vec3> xyz, std::span<double> distance,
+                                   std::span<std::uint32_t> pose,
+                                   std::span<Xxh64Stream> hashes) const {
+  const State& s = *state_;
+  const auto& datasets = s.clearance;
+  if (!datasets) throw std::logic_error("ResultReader: no clearances");
+  check_lengths(source.size(), distance, pose);
+  check_lengths(datasets->xyz ? source.size() : 0, xyz);
+  check_range(first, source.size(), clearances());
+  ParallelRead read;
+  const RowChecks checks = s.checks(names::kClearanceGroup, first);
+  const std::size_t next = datasets->xyz ? 1 : 0;
+  const bool there = as_input(s.name, [&] {
+    return read.add(datasets->source, first, source, hashes[0],
+                    checks.from_any_row(&RowChecks::sources)) &&
+           (!datasets->xyz || read.add(*datasets->xyz, first, xyz, hashes[next],
+                                       checks.from_any_row(&RowChecks::points))) &&
+           read.add(datasets->distance, first, distance, hashes[next + 1],
+                    checks.from_any_row(&RowChecks::clearances)) &&
+           read.add(datasets->pose, first, pose, hashes[next + 2], checks.for_poses(names::kPose));
+  });
+  if (there && read.run() && ascends_at_chunks(source, datasets->source.chunk_rows())) return;
+  read_clearances(first, source, xyz, distance, pose);
+  if (datasets->xyz) {
+    add_to(hashes, source, xyz, distance, pose);
+  } else {
+    add_to(hashes, source, distance, pose);
+  }
 }
 
 std::uint64_t ResultReader::profile_rows() const {

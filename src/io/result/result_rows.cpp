@@ -41,12 +41,7 @@ bool ResultRowStream::read(ResultRows& rows) {
                reader_.collisions_hash());
     return false;
   }
-  reader_.read_source(next_, rows.source);
-  reader_.read_xyz(next_, rows.xyz);
-  if (first_pose) reader_.read_first_pose(next_, rows.first_pose);
-  add(columns_[0], rows.source);
-  add(columns_[1], rows.xyz);
-  add(columns_[2], rows.first_pose);
+  reader_.read_collisions(next_, rows.source, rows.xyz, rows.first_pose, columns_);
   check_ascending(reader_, "/collisions/source", next_, last_source_, rows.source.front());
   last_source_ = rows.source.back();
   next_ += count;
@@ -63,17 +58,14 @@ bool ClearanceRowStream::read(ClearanceRows& rows) {
   rows.pose.resize(count);
   if (count == 0) {
     if (reader_.header().clearance > 0) {
-      // Version 2 has three columns, and the hash is of three.
       check_hash(reader_, "clearance", std::span(columns_).subspan(has_xyz ? 0 : 1),
                  reader_.clearances_hash());
     }
     return false;
   }
-  reader_.read_clearances(next_, rows.source, rows.xyz, rows.distance, rows.pose);
-  add(columns_[has_xyz ? 0 : 1], rows.source);
-  if (has_xyz) add(columns_[1], rows.xyz);
-  add(columns_[2], rows.distance);
-  add(columns_[3], rows.pose);
+  // Version 2 has three columns, and the hash is of three.
+  reader_.read_clearances(next_, rows.source, rows.xyz, rows.distance, rows.pose,
+                          std::span(columns_).subspan(has_xyz ? 0 : 1));
   check_ascending(reader_, "/clearance/source", next_, last_source_, rows.source.front());
   last_source_ = rows.source.back();
   next_ += count;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -10,43 +10,58 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "io/hdf5/hdf5.hpp"
-#include "io/result/as_numbers.hpp"
 #include "io/result/column_hashes.hpp"
+#include "io/result/encoded_rows.hpp"
 
 namespace clearway {
 
-/// A dataset of numbers or points, and its rows not yet written.
+/// A dataset of numbers or points that is written chunk by chunk.
 template <typename Value>
 class ResultColumn {
  public:
   ResultColumn(const hdf5::Id& group, const char* name, std::uint64_t rows)
       : dataset_(group, name, rows, kIsPoints ? 3 : 0) {}
 
-  void append(std::span<const Value> values) {
-    buffer_.insert(buffer_.end(), values.begin(), values.end());
+  void hash(const EncodedColumn<Value>& values) {
+    for (const EncodedChunk& chunk : values.chunks()) hash_.update(chunk.values());
   }
 
-  void flush(std::uint64_t first_row) {
-    hash_.update(std::as_bytes(std::span<const Value>(buffer_)));
-    if constexpr (kIsPoints) {
-      dataset_.write(first_row, as_numbers(std::span<const Vec3>(buffer_)));
-    } else {
-      dataset_.write(first_row, buffer_);
+  void write(EncodedColumn<Value>& values) {
+    if (!values.chunks().empty() && !std::exchange(has_index_, true)) dataset_.make_index();
+    for (EncodedChunk& chunk : values.chunks()) {
+      const std::size_t bytes = chunk.size;
+      held_.push_back(std::move(chunk));
+      if (held_.size() * (bytes - hdf5::kChecksumBytes) > kHeldBytes) write_oldest();
     }
-    buffer_.clear();
   }
 
-  std::uint64_t digest() const { return hash_.digest(); }  ///< of the rows written
+  void write_held() {
+    while (!held_.empty()) write_oldest();
+  }
+
+  std::uint64_t digest() const { return hash_.digest(); }
 
  private:
   static constexpr bool kIsPoints = std::is_same_v<Value, Vec3>;
   using Number = std::conditional_t<kIsPoints, double, Value>;
 
+  /// A chunk's place in the file is given when it is written: where HDF5's own cache of a mebibyte
+  /// a dataset would write it.
+  static constexpr std::size_t kHeldBytes = 1 << 20;
+
+  void write_oldest() {
+    const EncodedChunk& chunk = held_.front();
+    dataset_.write_chunk(next_row_, chunk.stored());
+    next_row_ += (chunk.size - hdf5::kChecksumBytes) / sizeof(Value);
+    held_.pop_front();
+  }
+
   hdf5::Rows<Number> dataset_;
-  std::vector<Value> buffer_;
+  std::deque<EncodedChunk> held_;
+  std::uint64_t next_row_ = 0;
+  bool has_index_ = false;
   Xxh64Stream hash_;
 };
 
@@ -55,85 +70,137 @@ template <typename... Values>
 class ResultTable {
  public:
   using Names = std::array<const char*, sizeof...(Values)>;
+  using Rows = EncodedRows<Values...>;
 
   /// A column without a name is not written.
   ResultTable(const hdf5::Id& file, const char* group, const Names& names, std::uint64_t rows)
       : group_(hdf5::create_group(file, group)), promised_(rows) {
-    each([&](auto& column, std::size_t i) {
-      if (names[i] != nullptr) column.emplace(group_, names[i], rows);
+    std::size_t i = 0;
+    each([&](auto& column) {
+      present_[i] = names[i] != nullptr;
+      if (present_[i]) column.emplace(group_, names[i], rows);
+      ++i;
     });
   }
 
-  /// The next rows; a column that is not written has none. Throws std::logic_error for spans of
-  /// unequal lengths and more rows than promised.
+  /// Of the chunks of all rows.
+  std::uint64_t bytes() const {
+    std::uint64_t total = 0;
+    std::size_t i = 0;
+    ((total += present_[i++] ? stored_bytes<Values>(promised_) : 0), ...);
+    return total;
+  }
+
+  Rows new_rows() const { return {promised_, present_}; }
+
+  /// All rows but a table's last come kEncodedRows at a time, sealed, in order.
+  void hash(const Rows& rows) {
+    each_with(rows.columns(), [](auto& column, const auto& values) { column.hash(values); });
+  }
+
+  void write(Rows& rows) {
+    check_order(rows);
+    each_with(rows.columns(), [](auto& column, auto& values) { column.write(values); });
+    written_ += rows.size();
+    last_source_ = rows.last_source();
+  }
+
+  /// The next rows, however many. Throws std::logic_error as EncodedRows does, and for more rows
+  /// than promised.
   void append(std::span<const Values>... values) {
-    const auto spans = std::tuple(values...);
-    const std::size_t rows = std::get<0>(spans).size();
-    each(
-        [&](auto& column, std::size_t, const auto& span) {
-          if (span.size() != (column ? rows : 0)) {
-            throw std::logic_error("ResultWriter: rows of unequal lengths");
-          }
-        },
-        spans);
-    if (rows > promised_ - written_ - buffered_) {
-      throw std::logic_error("ResultWriter: more rows than promised");
-    }
-    for (std::size_t from = 0; from < rows;) {
-      const std::size_t count = std::min(rows - from, kBufferRows - buffered_);
-      each(
-          [&](auto& column, std::size_t, const auto& span) {
-            if (column) column->append(span.subspan(from, count));
-          },
-          spans);
+    const std::size_t rows = std::get<0>(std::tuple(values...)).size();
+    check_lengths(rows, {values.size()...});
+    if (rows > promised_ - written_ - (buffered_ ? buffered_->size() : 0)) too_many();
+    std::size_t from = 0;
+    do {
+      if (!buffered_) buffered_.emplace(new_rows());
+      const std::size_t count = std::min(rows - from, kEncodedRows - buffered_->size());
+      buffered_->add(part_of(values, from, count)...);
       from += count;
-      buffered_ += count;
-      if (buffered_ == kBufferRows) flush();
-    }
+      if (buffered_->size() == kEncodedRows) flush();
+    } while (from < rows);
   }
 
   void flush() {
-    each([&](auto& column, std::size_t) {
-      if (column) column->flush(written_);
-    });
-    written_ += std::exchange(buffered_, 0);
+    if (!buffered_) return;
+    buffered_->seal();
+    hash(*buffered_);
+    write(*buffered_);
+    buffered_.reset();
   }
 
   void check_complete() const {
-    if (written_ + buffered_ == promised_) return;
-    throw std::logic_error("ResultWriter: " + std::to_string(written_ + buffered_) +
-                           " rows written, " + std::to_string(promised_) + " promised");
+    const std::uint64_t rows = written_ + (buffered_ ? buffered_->size() : 0);
+    if (rows == promised_) return;
+    throw std::logic_error("ResultWriter: " + std::to_string(rows) + " rows written, " +
+                           std::to_string(promised_) + " promised");
+  }
+
+  /// The chunks that are held back; nothing is written after them.
+  void write_held() {
+    each([](auto& column) {
+      if (column) column->write_held();
+    });
   }
 
   std::uint64_t hash() {
     ColumnHashes hashes;
-    each([&](auto& column, std::size_t) {
+    each([&](auto& column) {
       if (column) hashes.add_digest(column->digest());
     });
     return hashes.digest();
   }
 
  private:
-  /// A multiple of every dataset's chunk rows. The order of the writes, and with it every address
-  /// in the file, follows from it and the number of rows, not from how they were appended.
-  static constexpr std::size_t kBufferRows = 1 << 16;
+  [[noreturn]] static void too_many() {
+    throw std::logic_error("ResultWriter: more rows than promised");
+  }
 
-  /// Calls visit(column, its number, and what else has a part for each column).
-  template <typename Visit, typename... Others>
-  void each(Visit visit, const Others&... others) {
+  void check_lengths(std::size_t rows,
+                     const std::array<std::size_t, sizeof...(Values)>& lengths) const {
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      if (lengths[i] == (present_[i] ? rows : 0)) continue;
+      throw std::logic_error("ResultWriter: rows of unequal lengths");
+    }
+  }
+
+  void check_order(const Rows& rows) const {
+    if (rows.size() > promised_ - written_) too_many();
+    if (rows.size() < kEncodedRows && written_ + rows.size() < promised_) {
+      throw std::logic_error("ResultWriter: rows in pieces of another length");
+    }
+    if (written_ > 0 && rows.size() > 0 && rows.has_sources() &&
+        rows.first_source() <= last_source_) {
+      throw std::logic_error("ResultWriter: rows not ascending by source");
+    }
+  }
+
+  /// Rows from .. from + count - 1 of a column that is written, none of another.
+  template <typename Value>
+  static std::span<const Value> part_of(std::span<const Value> values, std::size_t from,
+                                        std::size_t count) {
+    return values.empty() ? values : values.subspan(from, count);
+  }
+
+  template <typename Visit>
+  void each(Visit visit) {
+    std::apply([&](auto&... column) { (visit(column), ...); }, columns_);
+  }
+
+  /// Calls visit(column, its values) for the columns that are written.
+  template <typename Columns, typename Visit>
+  void each_with(Columns& values, Visit visit) {
     const auto at = [&]<std::size_t... I>(std::index_sequence<I...>) {
-      const auto one = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
-        visit(std::get<K>(columns_), K, std::get<K>(others)...);
-      };
-      (one(std::integral_constant<std::size_t, I>()), ...);
+      ((std::get<I>(columns_) ? visit(*std::get<I>(columns_), *std::get<I>(values)) : void()), ...);
     };
     at(std::index_sequence_for<Values...>());
   }
 
   hdf5::Id group_;
-  std::uint64_t promised_, written_ = 0;
-  std::size_t buffered_ = 0;
+  std::uint64_t promised_, written_ = 0, last_source_ = 0;
+  typename Rows::Present present_{};
   std::tuple<std::optional<ResultColumn<Values>>...> columns_;
+  std::optional<Rows> buffered_;
 };
 
 }  // namespace clearway

@@ -7,6 +7,7 @@
 #include "io/result/result_header.hpp"
 #include "io/result/result_names.hpp"
 #include "io/result/result_table.hpp"
+#include "io/system/file.hpp"
 
 namespace clearway {
 namespace {
@@ -22,26 +23,6 @@ constexpr ClearanceTable::Names kClearanceColumns{names::kSource, names::kXyz, n
 constexpr ProfileTable::Names kProfileColumns{names::kDistance, names::kSource, names::kXyz,
                                               names::kChainage};
 
-/// Sources so far.
-class AscendingSources {
- public:
-  void check(std::span<const std::uint64_t> source) const {
-    std::optional<std::uint64_t> last = last_;
-    for (const std::uint64_t index : source) {
-      if (last && index <= *last) {
-        throw std::logic_error("ResultWriter: rows not ascending by source");
-      }
-      last = index;
-    }
-  }
-  void add(std::span<const std::uint64_t> source) {
-    if (!source.empty()) last_ = source.back();
-  }
-
- private:
-  std::optional<std::uint64_t> last_;
-};
-
 }  // namespace
 
 struct ResultWriter::State {
@@ -49,6 +30,7 @@ struct ResultWriter::State {
         std::uint64_t clearance_rows)
       : name(path.string()),
         file(hdf5::create_file(path)),
+        output(File::open_for_writing(path)),
         collisions(std::in_place, file, names::kGroup,
                    CollisionTable::Names{names::kSource, names::kXyz,
                                          header.first_pose ? names::kFirstPose : nullptr},
@@ -60,6 +42,17 @@ struct ResultWriter::State {
       profile.emplace(file, names::kProfileGroup, kProfileColumns, header.poses);
     }
     write_result_header(file, header);
+    output.reserve_ahead(collisions->bytes() + (clearances ? clearances->bytes() : 0) +
+                         (profile ? profile->bytes() : 0));
+  }
+
+  /// What was written goes to the disk while the rest is computed.
+  void written() {
+    constexpr std::uint64_t kAtOnce = std::uint64_t{32} << 20;
+    const std::uint64_t end = output.size_bytes();
+    if (end < synced + kAtOnce) return;
+    output.begin_sync(synced, end - synced);
+    synced = end;
   }
 
   /// Closes a table whose rows the next one's follow.
@@ -72,10 +65,11 @@ struct ResultWriter::State {
 
   std::string name;
   hdf5::Id file;
+  File output;               ///< the same file
+  std::uint64_t synced = 0;  ///< bytes of it that are on their way to the disk
   std::optional<CollisionTable> collisions;
   std::optional<ClearanceTable> clearances;
   std::optional<ProfileTable> profile;
-  AscendingSources collision_sources, clearance_sources;
 };
 
 ResultWriter::ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
@@ -92,9 +86,7 @@ ResultWriter::~ResultWriter() {
 void ResultWriter::append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
                           std::span<const std::uint32_t> first_pose) {
   State& s = *state_;
-  s.collision_sources.check(source);
   hdf5::naming(s.name, [&] { s.collisions->append(source, xyz, first_pose); });
-  s.collision_sources.add(source);
 }
 
 void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
@@ -102,10 +94,8 @@ void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
                                      std::span<const std::uint32_t> pose) {
   State& s = *state_;
   if (!s.clearances) throw std::logic_error("ResultWriter: no clearances");
-  s.clearance_sources.check(source);
   s.complete(s.collisions);
   hdf5::naming(s.name, [&] { s.clearances->append(source, xyz, distance, pose); });
-  s.clearance_sources.add(source);
 }
 
 void ResultWriter::append_profile(std::span<const double> distance,
@@ -118,6 +108,28 @@ void ResultWriter::append_profile(std::span<const double> distance,
   hdf5::naming(s.name, [&] { s.profile->append(distance, source, xyz, chainage); });
 }
 
+EncodedCollisions ResultWriter::new_collisions() const { return state_->collisions->new_rows(); }
+
+EncodedClearances ResultWriter::new_clearances() const {
+  if (!state_->clearances) throw std::logic_error("ResultWriter: no clearances");
+  return state_->clearances->new_rows();
+}
+
+void ResultWriter::hash(const EncodedCollisions& rows) { state_->collisions->hash(rows); }
+void ResultWriter::hash(const EncodedClearances& rows) { state_->clearances->hash(rows); }
+
+void ResultWriter::write(EncodedCollisions& rows) {
+  hdf5::naming(state_->name, [&] { state_->collisions->write(rows); });
+  state_->written();
+}
+
+void ResultWriter::write(EncodedClearances& rows) {
+  State& s = *state_;
+  s.complete(s.collisions);
+  hdf5::naming(s.name, [&] { s.clearances->write(rows); });
+  s.written();
+}
+
 void ResultWriter::finish() {
   State& s = *state_;
   s.complete(s.collisions);
@@ -128,6 +140,9 @@ void ResultWriter::finish() {
     if (s.clearances) hdf5::write_number(s.file, names::kClearanceHash, s.clearances->hash());
     if (s.profile) hdf5::write_number(s.file, names::kProfileHash, s.profile->hash());
     hdf5::write_number(s.file, "complete", std::uint8_t{1});
+    s.collisions->write_held();
+    if (s.clearances) s.clearances->write_held();
+    if (s.profile) s.profile->write_held();
     hdf5::check(H5Fflush(s.file.get(), H5F_SCOPE_LOCAL), "write the result");
     // After the flush nothing is left that closing could fail to write.
     s.profile.reset();

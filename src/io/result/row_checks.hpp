@@ -25,8 +25,29 @@ struct RowChecks {
                std::span<const Vec3> xyz) const;
   void chainages(std::span<const double> chainage) const;
 
+  /// A check as a call of (first row, values).
+  template <typename Value>
+  auto from_any_row(void (RowChecks::*check)(std::span<const Value>) const) const {
+    return [*this, check](std::uint64_t row, std::span<const Value> values) {
+      (RowChecks{name, header, group, row}.*check)(values);
+    };
+  }
+  auto for_poses(const char* dataset) const {
+    return [*this, dataset](std::uint64_t row, std::span<const std::uint32_t> values) {
+      RowChecks{name, header, group, row}.poses(dataset, values);
+    };
+  }
+
   [[noreturn]] void refuse_row(const char* dataset, std::size_t row,
                                const std::string& expected) const;
 };
+
+/// Whether sources ascend from each chunk to the next, where they do in each.
+inline bool ascends_at_chunks(std::span<const std::uint64_t> sources, std::uint64_t chunk_rows) {
+  for (std::size_t row = chunk_rows; row < sources.size(); row += chunk_rows) {
+    if (sources[row] <= sources[row - 1]) return false;
+  }
+  return true;
+}
 
 }  // namespace clearway

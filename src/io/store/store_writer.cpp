@@ -1,15 +1,19 @@
 #include "io/store/store_writer.hpp"
 
 #include <hdf5.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "clearway/error.hpp"
 #include "core/cloud/kd_order.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/store/store_layout.hpp"
 #include "io/system/file.hpp"
+#include "io/system/growing_file.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway {
@@ -90,6 +94,7 @@ struct StoreWriter::State {
   CellIndex index;
   File blocks;  ///< rows of /blocks/box, spooled: too many to keep in memory
   std::uint64_t block_rows = 0;
+  std::optional<GrowingFile> growth;
   ColumnHashes hashes;  ///< of all datasets but /points
 
   std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
@@ -132,23 +137,33 @@ struct StoreWriter::State {
       hdf5::check(H5Dget_chunk_info_by_coord(id, at.data(), &mask, &address, &size),
                   path.string() + ": HDF5 address of a chunk");
     }
+    growth->written(address + bytes.size());
     return address;
+  }
+
+  void confirm_address(const File& reread, std::size_t chunk) const {
+    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(index.bytes[chunk]);
+    const std::span<std::byte> read(bytes.get(), index.bytes[chunk]);
+    reread.read_at(index.address[chunk], read);
+    if (xxh64(read) == index.xxh64[chunk]) return;
+    throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(chunk / 4) +
+                        " read back differs from what was written at byte " +
+                        std::to_string(index.address[chunk]));
   }
 
   void confirm_addresses() const {
     const File reread = File::open_for_reading(path);
-    std::vector<std::byte> bytes;
-    for (std::size_t i = 0; i < index.bytes.size(); ++i) {
-      bytes.resize(index.bytes[i]);
-      reread.read_at(index.address[i], bytes);
-      if (xxh64(bytes) != index.xxh64[i]) {
-        throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(i / 4) +
-                            " read back differs from what was written at byte " +
-                            std::to_string(index.address[i]));
-      }
-    }
+    const ParallelScope scope;
+    const auto confirm =
+        piece_of(scope, [&](std::size_t chunk) { confirm_address(reread, chunk); });
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, index.bytes.size(), confirm);
   }
 };
+
+void hash_chunks(PackedCell& packed) {
+  for (std::size_t i = 0; i < packed.chunks.size(); ++i) packed.xxh64[i] = xxh64(packed.chunks[i]);
+}
 
 StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
                          std::uint64_t cells)
@@ -159,6 +174,7 @@ StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata&
                        .points = {},
                        .index = {},
                        .blocks = File::create_temporary(folder_of(path)),
+                       .growth = {},
                        .hashes = {}}) {
   hdf5::naming(path.string(), [&] { create(cells); });
 }
@@ -167,6 +183,7 @@ void StoreWriter::create(std::uint64_t cells) {
   const StoreMetadata& metadata = state_->metadata;
   reserve(state_->index, cells);
   state_->file = hdf5::create_file(state_->path);
+  state_->growth.emplace(state_->path);
   write_metadata(state_->file, metadata, state_->hashes);
   const hdf5::Id group = hdf5::create_group(state_->file, "points");
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -192,7 +209,7 @@ void StoreWriter::append(const PackedCell& packed) {
     const std::vector<std::byte>& chunk = packed.chunks[static_cast<std::size_t>(i)];
     index.address.push_back(state.write_chunk(i, cell, chunk));
     index.bytes.push_back(static_cast<std::uint32_t>(chunk.size()));
-    index.xxh64.push_back(xxh64(chunk));
+    index.xxh64.push_back(packed.xxh64[static_cast<std::size_t>(i)]);
   }
   index.count.push_back(packed.cell.count);
   index.box.insert(index.box.end(), packed.cell.box.lo, packed.cell.box.lo + 3);
@@ -203,6 +220,8 @@ void StoreWriter::append(const PackedCell& packed) {
 void StoreWriter::finish(const std::vector<TopNode>& tree) {
   hdf5::naming(state_->path.string(), [&] { write_index(tree); });
 }
+
+void StoreWriter::confirm() const { state_->confirm_addresses(); }
 
 void StoreWriter::write_index(const std::vector<TopNode>& tree) {
   State& state = *state_;
@@ -230,7 +249,8 @@ void StoreWriter::write_index(const std::vector<TopNode>& tree) {
   hdf5::write_number(state.file, "complete", std::uint32_t{1});
   for (hdf5::Id& dataset : state.points) dataset.close(state.path.string() + ": cannot write");
   state.file.close(state.path.string() + ": cannot write");
-  state.confirm_addresses();
+  state.growth->trim();
+  state.growth.reset();
 }
 
 }  // namespace clearway

@@ -17,7 +17,11 @@ struct PackedCell {
   Cell cell;
   std::vector<BlockBox> blocks;                  ///< one for each block with points
   std::array<std::vector<std::byte>, 4> chunks;  ///< x, y, z, source; each of cell_points values
+  std::array<std::uint64_t, 4> xxh64{};          ///< of the chunks, see hash_chunks()
 };
+
+/// Fills in the hashes; on the threads that pack, as the writer has only one.
+void hash_chunks(PackedCell& packed);
 
 /// Writes a store front to back. All calls from one thread. The caller owns the file's name and
 /// publishes it after finish().
@@ -30,9 +34,11 @@ class StoreWriter {
 
   void append(const PackedCell& cell);
 
-  /// Writes the index, closes the file, and re-reads every chunk at its recorded address.
-  /// Throws ResourceError when a chunk is not where it should be.
+  /// Writes the index and closes the file.
   void finish(const std::vector<TopNode>& tree);
+  /// After finish(): re-reads every chunk at its recorded address, on the threads of the calling
+  /// TBB arena. Throws ResourceError when a chunk is not where it should be.
+  void confirm() const;
 
  private:
   void create(std::uint64_t cells);

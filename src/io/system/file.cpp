@@ -51,6 +51,10 @@ File File::open_regular(const std::filesystem::path& path) {
   return file;
 }
 
+File File::open_for_writing(const std::filesystem::path& path) {
+  return {checked_open(path, O_RDWR | O_NOFOLLOW, "open"), path.string()};
+}
+
 File File::create(const std::filesystem::path& path) {
   return {checked_open(path, O_RDWR | O_CREAT | O_TRUNC | O_NOFOLLOW, "create"), path.string()};
 }
@@ -151,6 +155,20 @@ void File::reserve(std::uint64_t bytes) const {
     errno = error;
     fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());
   }
+}
+
+void File::reserve_ahead(std::uint64_t bytes) const {
+  if (bytes == 0) return;
+  while (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) != 0) {
+    if (errno == EOPNOTSUPP || errno == ENOSYS) return;
+    if (errno != EINTR) fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());
+  }
+}
+
+void File::begin_sync(std::uint64_t offset, std::uint64_t bytes) const {
+  // What fails here fails again where it is waited for.
+  ::sync_file_range(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes),
+                    SYNC_FILE_RANGE_WRITE);
 }
 
 void File::sync() const {

@@ -15,6 +15,8 @@ class File {
   static File open_for_reading(const std::filesystem::path& path);
   /// Refuses what is no regular file, such as a pipe, at once instead of waiting for its bytes.
   static File open_regular(const std::filesystem::path& path);
+  /// An existing file, whose bytes stay.
+  static File open_for_writing(const std::filesystem::path& path);
   /// Creates the file or empties an existing one.
   static File create(const std::filesystem::path& path);
   /// A file without a name in `folder`, gone when closed or when the process dies.
@@ -46,6 +48,10 @@ class File {
   void rewind() const;
   /// Reserves disk space; throws when there is not enough.
   void reserve(std::uint64_t bytes) const;
+  /// The same beyond the end of the file, whose length stays; nothing where the file system cannot.
+  void reserve_ahead(std::uint64_t bytes) const;
+  /// Asks the system to write a range to the disk, as sync() will. Does not wait for it.
+  void begin_sync(std::uint64_t offset, std::uint64_t bytes) const;
   void sync() const;
 
  private:

@@ -87,8 +87,10 @@ void PendingFile::refuse_existing() {
   check_output_name(final_, overwrite_);
 }
 
+void PendingFile::sync() const { File::open_for_reading(partial_).sync(); }
+
 void PendingFile::publish() {
-  File::open_for_reading(partial_).sync();
+  sync();
   const unsigned flags = overwrite_ ? 0 : RENAME_NOREPLACE;
   int failed = ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, final_.c_str(), flags);
   if (failed != 0 && errno == EINVAL) {  // a file system without RENAME_NOREPLACE

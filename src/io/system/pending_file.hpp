@@ -25,6 +25,9 @@ class PendingFile {
   /// From now on an existing file is not overwritten. Throws UsageError where there is one.
   void refuse_existing();
 
+  /// Waits until the disk has the file, so that publish() does not.
+  void sync() const;
+
   /// fsync, rename to the final name, fsync of the folder. Writers must have closed the file.
   void publish();
 

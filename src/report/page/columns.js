@@ -64,7 +64,7 @@ async function readPoints(name, lattice, offset = [0, 0, 0]) {
 }
 
 async function readPoses() {
-  const facts = page.facts.page;
+  const facts = page.facts.page, start = page.facts.inputs.trajectory.chainage_start;
   const read = async (name) => integersOf(await columnBytes("pose." + name));
   const [index, x, y, z, chainage, distance, px, py, pz, time] = await Promise.all(
       ["index", "x", "y", "z", "chainage", "distance", "px", "py", "pz", "time"].map(read));
@@ -73,7 +73,7 @@ async function readPoses() {
   return {
     count: index ? index.length : 0,
     index, x, y, z, rotation, distance, px, py, pz, time,
-    chainage: chainage ? Float64Array.from(chainage, (c) => c * facts.chainage_step) : [],
+    chainage: chainage ? Float64Array.from(chainage, (c) => start + c * facts.chainage_step) : [],
     name: names ? new TextDecoder().decode(names).split("\n") : null,
   };
 }

@@ -2,19 +2,25 @@
 
 const kKinds = [["front", "From the front", "The conflict and what is within a few metres of it, and the vehicle's outline."],
                 ["above", "From above", "What is not above the vehicle."],
-                ["section", "Cross-section", "A slice through the nearest point. The dashed outline is the distance to keep."]];
+                ["section", "Cross-section", "The dashed outline is the distance to keep."]];
+
+/** What the slice goes through: without clearances the nearest point is not known. */
+function sliceWords(conflict) {
+  return conflict.nearest_point ? "A slice through the nearest point."
+      : "A slice through the middle of its points, at the first pose that comes too close.";
+}
 
 function conflictFacts(conflict) {
   const { query } = page.facts, words = classOf(conflict.least_distance);
   const rows = [
-    ["Where", `chainage ${conflict.chainage_from.toFixed(2)} to ${station(conflict.chainage_to)}` +
-              after(sideWords(conflict.side))],
+    ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideWords(conflict.side))}`],
     ["Place", coordinates(conflict.nearest_point ?? conflict.centroid)],
-  ];
+    offsetWords(conflict) && ["Offset", offsetWords(conflict)],
+  ].filter(Boolean);
   if (conflict.least_distance !== null) {
     rows.push(["Distance", `${words.symbol} ${words.name}: ${metres(conflict.least_distance)} of ` +
                            `${shortLength(query.radius)}`],
-              ["Missing", metres(conflict.encroachment)]);
+              ["Missing", missingWords(conflict.encroachment, conflict.least_distance)]);
   } else {
     rows.push(["Distance", `closer than ${shortLength(query.radius)}; run with --clearance to know it`]);
   }
@@ -28,20 +34,25 @@ function conflictFacts(conflict) {
 /** The three pictures, drawn at once. width: of each in pixels. */
 function conflictPictures(conflict, width) {
   return make("div", { class: "pictures" }, kKinds.map(([kind, title, what]) => {
+    const text = kind === "section" ? `${sliceWords(conflict)} ${what}` : what;
     const canvas = make("canvas", { width, height: Math.round(width * 0.75), role: "img",
                                     "data-kind": kind,
                                     "aria-label": `Conflict ${conflict.id}, ${title}` });
     drawConflict(canvas, conflict, kind);
-    return make("figure", {}, canvas, make("figcaption", {}, make("strong", {}, title), ` ${what}`));
+    return make("figure", {}, canvas, make("figcaption", {}, make("strong", {}, `${title}.`),
+                                           make("span", { class: "what" }, ` ${text}`)));
   }));
 }
 
-/** The conflict before or after the chosen one, as the table is sorted. */
-function nextConflict(by) {
+/** The conflict before or after the chosen one, as the table is sorted; undefined at an end. */
+function neighbourConflict(by) {
   const order = sortedConflicts(tableColumns());
-  const at = order.indexOf(page.conflict);
-  const next = order[at + by];
-  if (next) selectConflict(next);
+  return order[order.indexOf(page.conflict) + by];
+}
+
+function neighbourButton(label, by) {
+  return button(label, () => selectConflict(neighbourConflict(by)),
+                { disabled: !neighbourConflict(by) });
 }
 
 function drawDetails() {
@@ -53,13 +64,12 @@ function drawDetails() {
   const focused = holder.contains(document.activeElement) ? document.activeElement.textContent : null;
   holder.replaceChildren(
     make("div", { class: "tools" }, make("h3", {}, `Conflict ${conflict.id}`),
-         button("Previous", () => nextConflict(-1)), button("Next", () => nextConflict(1)),
+         neighbourButton("Previous", -1), neighbourButton("Next", 1),
          button("Show in 3-D", () => byId("view").scrollIntoView())),
     make("div", { class: "details" }, conflictFacts(conflict),
          conflictPictures(conflict, innerWidth > 1800 ? 880 : 640)));
-  for (const again of holder.querySelectorAll("button")) {
-    if (again.textContent === focused) again.focus();
-  }
+  const buttons = [...holder.querySelectorAll("button:not(:disabled)")];
+  if (focused) (buttons.find((again) => again.textContent === focused) ?? buttons[0])?.focus();
 }
 
 function buildDetails() {

@@ -131,7 +131,7 @@ const environmentColours = (() => {
 })();
 
 const classColours = page.facts.classes.map((c) => packed(kClassWords[c.name].rgb));
-const classShapes = ["diamond", "triangle", "round"];
+const classShapes = page.facts.classes.map((c) => kClassWords[c.name].shape);
 
 /** The environment, in greys. */
 function paintEnvironment(painter, how = {}) {

@@ -61,7 +61,7 @@ function drawNumbers(context, painter, unitSize, places) {
   for (const conflict of order) {
     const at = painter.project(placeOf(conflict));
     if (!at || at[0] < 0 || at[1] < 0 || at[0] > painter.width || at[1] > painter.height) continue;
-    const apart = Math.max(21, 7 * String(conflict.id).length) * unitSize;
+    const apart = Math.max(24, 8 * String(conflict.id).length) * unitSize;
     const free = taken.every(([x, y]) => Math.hypot(x - at[0], y - at[1]) > apart);
     (free ? taken : dots).push(at);
     at.conflict = conflict;
@@ -73,12 +73,22 @@ function drawNumbers(context, painter, unitSize, places) {
   }
 }
 
+/** The outline of a mark: a diamond and a triangle are as large as the disc in them. */
+function markPath(context, shape, x, y, radius) {
+  const corners = { diamond: [[0, -1.35], [1.35, 0], [0, 1.35], [-1.35, 0]],
+                    triangle: [[0, -1.75], [1.55, 0.95], [-1.55, 0.95]] }[shape];
+  context.beginPath();
+  if (!corners) context.arc(x, y, radius, 0, 7);
+  for (const [dx, dy] of corners ?? []) context.lineTo(x + dx * radius, y + dy * radius);
+  context.closePath();
+}
+
 function drawNumber(context, [x, y], conflict, full, unitSize) {
   const chosen = conflict === page.conflict, digits = String(conflict.id).length;
   const radius = (full ? Math.max(chosen ? 12 : 9.5, 3.2 * digits) : 3) * unitSize;
-  context.beginPath();
-  context.arc(x, y, radius, 0, 7);
-  context.fillStyle = chosen ? "#111827" : classOf(conflict.least_distance).colour;
+  const words = classOf(conflict.least_distance);
+  markPath(context, words.shape, x, y, radius);
+  context.fillStyle = chosen ? "#111827" : words.colour;
   context.globalAlpha = full ? 1 : 0.6;
   context.fill();
   context.globalAlpha = 1;

@@ -2,13 +2,17 @@
 
 const kPrintedRows = 200, kPrintedCards = 8;
 
+/** Rows in the order of the table, whatever its filters leave out. */
 function printedTable() {
-  const columns = tableColumns(), all = sortedConflicts(columns), rows = all.slice(0, kPrintedRows);
-  const left = all.length - rows.length;
+  const { list, count: found } = page.facts.conflicts, columns = tableColumns();
+  const rows = sortedConflicts(columns, list).slice(0, kPrintedRows);
+  const left = found - rows.length, elsewhere = list.length < found
+      ? `the page itself lists ${count(list.length)}, clearway conflicts writes all`
+      : "the page itself lists all";
   return [make("table", { class: "list" }, tableHead(columns, false),
                make("tbody", {}, rows.map((c) => tableRow(c, columns, false)))),
           left > 0 && make("p", { class: "note" },
-                           `${count(left)} more conflicts are in the page itself, not on paper.`)];
+                           `${plural(left, "more conflict")} not on paper: ${elsewhere}.`)];
 }
 
 function printedCards() {
@@ -21,17 +25,43 @@ function printedCards() {
               conflictPictures(conflict, 520)))];
 }
 
+/** What stands below each printed page: the title, the result's short hash, and the number. */
+function pageFeet() {
+  const { title, inputs } = page.facts;
+  const quoted = (text) => `"${text.replace(/\p{C}/gu, " ").replace(/["\\]/g, "\\$&")}"`;
+  const font = "font: 7.5pt sans-serif; color: #4b5563;";
+  return `@page { @bottom-left { ${font} content: ${quoted(title)}; }
+    @bottom-center { ${font} content: "Result ${inputs.result.hash.slice(0, 8)}"; }
+    @bottom-right { ${font} content: "Page " counter(page) " of " counter(pages); } }`;
+}
+
+/** Of paper's width, so that its letters are not too small to read. */
+function drawProfileFor(paper) {
+  profile.onPaper = paper;
+  drawProfile();
+}
+
 function preparePrint() {
   const holder = byId("print-cards");
-  if (holder.childElementCount > 0) return;
+  if (byId("print-feet")) return;
+  drawProfileFor(true);
+  document.head.append(make("style", { id: "print-feet" }, pageFeet()));
+  byId("verdict-body").append(make("p", { class: "note on-paper" }, byId("footer").textContent));
   if (conflictList().length === 0) return;
-  holder.append(make("section", { class: "printed-table" }, make("h2", {}, "All conflicts"),
-                     ...printedTable().filter(Boolean)),
-                make("section", {}, ...printedCards().flat()));
+  byId("print-table").append(...printedTable().filter(Boolean));
+  holder.append(make("section", {}, ...printedCards().flat()));
+}
+
+function endPrint() {
+  drawProfileFor(false);
+  byId("print-cards").replaceChildren();
+  byId("print-table").replaceChildren();
+  byId("print-feet").remove();
+  document.querySelector(".on-paper").remove();
 }
 
 function buildPrint() {
   byId("print-page").addEventListener("click", () => window.print());
   window.addEventListener("beforeprint", preparePrint);
-  window.addEventListener("afterprint", () => byId("print-cards").replaceChildren());
+  window.addEventListener("afterprint", endPrint);
 }

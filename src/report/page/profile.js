@@ -1,6 +1,7 @@
 // The least distance of every pose against chainage, with the required distance and the conflicts.
 
-const profile = { from: 0, to: 1, width: 1000, height: 300, left: 62, right: 16, top: 14, bottom: 62 };
+const profile = { from: 0, to: 1, width: 1000, height: 300, left: 62, right: 16, top: 26, bottom: 68,
+                  onPaper: false };
 
 function profileX(chainage) {
   const inner = profile.width - profile.left - profile.right;
@@ -21,6 +22,16 @@ function profileLength() {
   return Math.max(page.facts.inputs.trajectory.length, 1e-3);
 }
 
+/** The chainage of the first pose. */
+function profileStart() {
+  return page.facts.inputs.trajectory.chainage_start;
+}
+
+/** Where a stretch of the profile may begin. */
+function stretchStart(from, span) {
+  return profileStart() + clamp(from - profileStart(), 0, profileLength() - span);
+}
+
 /** Values at round steps from a to b. */
 function ticks(a, b, most) {
   const step = [1, 2, 5, 10].map((f) => f * 10 ** Math.floor(Math.log10((b - a) / most)))
@@ -32,22 +43,30 @@ function ticks(a, b, most) {
   return out;
 }
 
-/** The line of the profile: for each pixel column the least and the greatest, as a path. */
+/**
+ * The line of the profile as pieces: for each pixel column the least and the greatest. Poses where
+ * nothing was found leave a gap.
+ */
 function profileLine() {
   const { chainage } = page.poses, n = page.poses.count, bins = new Map();
   for (let i = 0; i < n; ++i) {
     if (chainage[i] < profile.from || chainage[i] > profile.to) continue;
-    const d = distanceAt(i) ?? profileTop(), x = Math.round(profileX(chainage[i]) * 2) / 2;
+    const d = distanceAt(i), x = Math.round(profileX(chainage[i]) * 2) / 2;
     const bin = bins.get(x);
-    if (bin) { bin[0] = Math.min(bin[0], d); bin[1] = Math.max(bin[1], d); bin[2] = d; }
+    if (d === null) { if (!bin) bins.set(x, null); }
+    else if (bin) { bin[0] = Math.min(bin[0], d); bin[1] = Math.max(bin[1], d); bin[2] = d; }
     else bins.set(x, [d, d, d]);
   }
-  const points = [];
-  for (const [x, [lo, hi, last]] of bins) {
-    points.push([x, hi]);
-    if (lo < hi) points.push([x, lo], [x, last]);
+  const pieces = [];
+  let piece = null;
+  for (const [x, bin] of bins) {
+    if (!bin) { piece = null; continue; }
+    if (!piece) pieces.push(piece = []);
+    const [lo, hi, last] = bin;
+    piece.push([x, hi]);
+    if (lo < hi) piece.push([x, lo], [x, last]);
   }
-  return points;
+  return pieces;
 }
 
 function profileAxes() {
@@ -63,7 +82,7 @@ function profileAxes() {
                             class: "grid" }),
              make("text", { x: profileX(c), y: height - bottom + 16, class: "middle" }, String(c)));
   }
-  out.push(make("text", { x: width - right, y: height - 6, class: "end" },
+  out.push(make("text", { x: width - right, y: height - 4, class: "end" },
                 `chainage (${unitSymbol})`),
            make("text", { x: 14, y: (top + height - bottom) / 2, class: "middle",
                           transform: `rotate(-90 14 ${(top + height - bottom) / 2})` },
@@ -73,33 +92,43 @@ function profileAxes() {
 
 function profileCurve() {
   if (!page.poses.distance || page.poses.count === 0) return [];
-  const points = profileLine(), radius = page.facts.query.radius;
-  if (points.length === 0) return [];
-  const line = points.map(([x, d], i) => `${i ? "L" : "M"}${x} ${profileY(d).toFixed(1)}`).join("");
-  const low = points.map(([x, d]) => `L${x} ${profileY(Math.min(d, radius)).toFixed(1)}`).join("");
-  const area = `M${points[0][0]} ${profileY(radius)}${low}L${points.at(-1)[0]} ${profileY(radius)}Z`;
+  const radius = page.facts.query.radius, pieces = profileLine();
+  const line = pieces.map((points) => points.map(([x, d], i) =>
+      `${i ? "L" : "M"}${x} ${profileY(d).toFixed(1)}`).join("") + "h0").join("");
+  const area = pieces.map((points) => `M${points[0][0]} ${profileY(radius)}` +
+      points.map(([x, d]) => `L${x} ${profileY(Math.min(d, radius)).toFixed(1)}`).join("") +
+      `L${points.at(-1)[0]} ${profileY(radius)}Z`).join("");
   return [make("path", { d: area, fill: "url(#hatch)", stroke: "none" }),
           make("path", { d: line, class: "curve" })];
+}
+
+/** What a gap of the curve means. */
+function profileBeyond() {
+  if (!page.poses.distance || !page.poses.distance.some((d) => d < 0)) return [];
+  const far = shortLength(page.facts.query.profile);
+  return make("text", { x: profile.left, y: profile.top - 8 },
+              `Where there is no curve, nothing is closer than ${far}.`);
 }
 
 /** Conflicts as bars below the axis, numbered where there is room. */
 function profileConflicts() {
   const out = [], y = profile.height - profile.bottom + 24;
   let free = -Infinity;
-  const worst = worstConflict();
+  const worst = worstConflict(), several = classesDiffer();
   for (const conflict of conflictList()) {
     if (conflict.chainage_to < profile.from || conflict.chainage_from > profile.to) continue;
     const x1 = clamp(profileX(conflict.chainage_from), profile.left, profile.width - profile.right);
     const x2 = clamp(profileX(conflict.chainage_to), profile.left, profile.width - profile.right);
     const chosen = conflict === page.conflict, words = classOf(conflict.least_distance);
     const width = Math.max(3, x2 - x1), middle = x1 + width / 2;
-    const label = chosen || middle - free > 8 * String(conflict.id).length + 10;
+    const marked = several ? `${words.symbol}${conflict.id}` : `${conflict.id}`;
+    const label = chosen || middle - free > 8 * marked.length + 10;
     if (label) free = middle;
     const extra = conflict === worst ? " (worst)" : "";
     out.push(make("g", { class: chosen ? "mark chosen" : "mark",
                          onclick: (event) => { event.stopPropagation(); selectConflict(conflict); } },
       make("rect", { x: x1, y, width, height: 7, fill: words.colour }),
-      label && make("text", { x: middle, y: y + 21, class: "middle" }, `${conflict.id}`),
+      label && make("text", { x: middle, y: y + 21, class: "middle" }, marked),
       make("title", {}, `Conflict ${conflict.id}${extra}`)));
   }
   return out;
@@ -114,8 +143,9 @@ function profileRequired() {
 
 function drawProfile() {
   const holder = byId("profile-chart"), { query } = page.facts;
-  profile.width = Math.max(520, holder.clientWidth || 1000);
-  profile.height = clamp(profile.width * 0.24, 220, 420);
+  profile.width = profile.onPaper ? 720 : Math.max(520, holder.clientWidth || 1000);
+  profile.height = profile.onPaper ? 360 : clamp(profile.width * 0.24, 220, 420);
+  profile.bottom = conflictList().length > 0 ? 68 : 42;
   const { width, height, left, right, top, bottom } = profile;
   const hatch = make("pattern", { id: "hatch", width: 7, height: 7, patternUnits: "userSpaceOnUse",
                                   patternTransform: "rotate(45)" },
@@ -127,7 +157,7 @@ function drawProfile() {
     make("defs", {}, hatch),
     make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom,
                    class: "field" }),
-    profileAxes(), profileCurve(), profileRequired(), profileConflicts(),
+    profileAxes(), profileCurve(), profileRequired(), profileBeyond(), profileConflicts(),
     make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
   if (!(query.profile > 0)) {
     svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong" },
@@ -142,22 +172,22 @@ function drawProfile() {
 }
 
 function profileLabel() {
-  return "Least distance against chainage. Arrow keys go from pose to pose, plus and minus zoom, " +
-      "0 shows all.";
+  return `Least distance against chainage, required ${shortLength(page.facts.query.radius)}. ` +
+      "Arrow keys go from pose to pose, plus and minus zoom, 0 shows all.";
 }
 
 function zoomProfile(factor, at) {
   const all = profileLength(), span = clamp((profile.to - profile.from) * factor, all / 5000, all);
-  const centre = at ?? page.poses.chainage[page.pose] ?? all / 2;
+  const centre = at ?? page.poses.chainage[page.pose] ?? profileStart() + all / 2;
   const share = clamp((centre - profile.from) / (profile.to - profile.from), 0, 1);
-  profile.from = clamp(centre - share * span, 0, all - span);
+  profile.from = stretchStart(centre - share * span, span);
   profile.to = profile.from + span;
   drawProfile();
 }
 
 function panProfile(metresAlong) {
   const span = profile.to - profile.from;
-  profile.from = clamp(profile.from + metresAlong, 0, profileLength() - span);
+  profile.from = stretchStart(profile.from + metresAlong, span);
   profile.to = profile.from + span;
   drawProfile();
 }
@@ -171,7 +201,7 @@ function chainageAt(svg, event) {
 
 function watchProfile(svg) {
   svg.addEventListener("pointermove", (event) => {
-    const chainage = clamp(chainageAt(svg, event), 0, profileLength());
+    const chainage = stretchStart(chainageAt(svg, event), 0);
     if (event.buttons & 1) {
       panProfile((profile.grip ?? chainage) - chainage);
     } else if (page.poses.count > 0) {

@@ -3,9 +3,9 @@
 function profileValueWords(i) {
   const d = distanceAt(i), { query } = page.facts;
   if (d === undefined) return "";
-  if (d === null) return `: nothing closer than ${shortLength(query.profile)}`;
+  if (d === null) return `: beyond ${shortLength(query.profile)}, nothing is closer`;
   const missing = query.radius - d;
-  return `: ${metres(d)}` + (missing > 0 ? `, ${metres(missing)} missing` : ", enough");
+  return `: ${metres(d)}` + (missing > 0 ? `, ${missingWords(missing, d)} missing` : ", enough");
 }
 
 function showProfileValue(i) {
@@ -34,7 +34,7 @@ function moveProfileCursor() {
   if (page.poses.count === 0) return;
   const chainage = page.poses.chainage[page.pose], span = profile.to - profile.from;
   if (chainage < profile.from || chainage > profile.to) {
-    profile.from = clamp(chainage - span / 2, 0, profileLength() - span);
+    profile.from = stretchStart(chainage - span / 2, span);
     profile.to = profile.from + span;
     drawProfile();
     return;
@@ -42,23 +42,26 @@ function moveProfileCursor() {
   showProfileValue(page.pose);
 }
 
+/** The pose of the least distance, seen from near where all of the path is shown. */
+function goToNearest() {
+  selectPose(shownPose(page.facts.least_distance.pose));
+  if (profile.to - profile.from > 0.99 * profileLength()) zoomProfile(0.2);
+  showProfileValue(page.pose);
+  tell("overview");
+}
+
 function buildProfile() {
-  profile.from = 0;
-  profile.to = profileLength();
+  profile.from = profileStart();
+  profile.to = profileStart() + profileLength();
   byId("profile-tools").append(
     button("Zoom in", () => zoomProfile(0.5)), button("Zoom out", () => zoomProfile(2)),
     button("All", () => zoomProfile(1e9)),
-    page.poses.distance && button("Nearest pose", () => {
-      const list = page.poses.distance;
-      let best = -1;
-      list.forEach((d, i) => { if (d >= 0 && (best < 0 || d < list[best])) best = i; });
-      if (best >= 0) selectPose(best);
-    }) || "",
+    page.facts.least_distance ? button("Nearest pose", goToNearest) : "",
     make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, arrow keys step."));
   drawProfile();
   on("pose", moveProfileCursor);
   on("conflict", drawProfile);
   new ResizeObserver(() => {
-    if (Math.abs(byId("profile-chart").clientWidth - profile.width) > 8) drawProfile();
+    if (!profile.onPaper && Math.abs(byId("profile-chart").clientWidth - profile.width) > 8) drawProfile();
   }).observe(byId("profile-chart"));
 }

@@ -5,19 +5,26 @@ const table = { title: "", down: true, first: 0, rows: 100, side: "", from: "", 
 
 const sizeOf = (c) => c.hi.map((h, k) => h - c.lo[k]);
 
+/** Whether the class of a conflict tells it from others. */
+function classesDiffer() {
+  return new Set(conflictList().map((c) => classOf(c.least_distance).name)).size > 1;
+}
+
 /** title, key to sort by, cell. */
 function tableColumns() {
-  const measured = conflictList().some((c) => c.least_distance !== null);
+  const list = conflictList(), measured = list.some((c) => c.least_distance !== null);
+  const digits = digitsFor(list.map((c) => c.least_distance));
+  const lengths = (key) => (c) => c[key] === null ? "" : fixed(c[key], digits);
+  const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key])];
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
-    ["Chainage", (c) => c.chainage_from, (c) => c.chainage_to - c.chainage_from < 0.005
-        ? c.chainage_from.toFixed(2) : `${c.chainage_from.toFixed(2)} – ${c.chainage_to.toFixed(2)}`],
+    ["Chainage", (c) => c.chainage_from, chainageCell],
     ["Side", (c) => c.side, (c) => kSides[c.side]],
-    measured && ["Class", (c) => c.least_distance ?? Infinity, classCell],
-    measured && ["Least distance", (c) => c.least_distance ?? Infinity,
-                 (c) => c.least_distance === null ? "" : c.least_distance.toFixed(3)],
-    measured && ["Missing", (c) => c.encroachment ?? -1,
-                 (c) => c.encroachment === null ? "" : c.encroachment.toFixed(3)],
+    list.some((c) => c.lateral !== null) && ["Lateral", ...offset("lateral")],
+    list.some((c) => c.height !== null) && ["Height", ...offset("height")],
+    measured && classesDiffer() && ["Class", (c) => c.least_distance ?? Infinity, classCell],
+    measured && ["Least distance", (c) => c.least_distance ?? Infinity, lengths("least_distance")],
+    measured && ["Missing", (c) => c.encroachment ?? -1, lengths("encroachment")],
     ["Points", (c) => c.points, (c) => count(c.points)],
     ["Size", (c) => Math.max(...sizeOf(c)), (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × ")],
     ["Pose", poseOf, (c) => String(poseOf(c))],
@@ -25,6 +32,12 @@ function tableColumns() {
      (c) => coordinates(c.nearest_point ?? c.centroid)],
   ].filter(Boolean).map(([title, value, cell]) =>
       ({ title, value, cell, number: !["Side", "Class"].includes(title) }));
+}
+
+/** From and to, or one of them where they are the same. */
+function chainageCell(conflict) {
+  const [from, to] = [conflict.chainage_from, conflict.chainage_to].map((c) => c.toFixed(2));
+  return from === to ? from : `${from} – ${to}`;
 }
 
 function classCell(conflict) {
@@ -35,7 +48,7 @@ function classCell(conflict) {
 
 /** Column titles with the unit, where all of its numbers have one. */
 function titleWithUnit(title) {
-  const has = ["Chainage", "Least distance", "Missing", "Size", "Place x, y, z"].includes(title);
+  const has = ["Chainage", "Lateral", "Height", "Least distance", "Missing", "Size", "Place x, y, z"].includes(title);
   return has ? `${title} (${unitSymbol})` : title;
 }
 
@@ -46,17 +59,17 @@ function filteredConflicts() {
       !(c.chainage_from > to) && !((c.encroachment ?? 0) < least));
 }
 
-function sortedConflicts(columns) {
+function sortedConflicts(columns, list = filteredConflicts()) {
   const column = columns.find((c) => c.title === table.title) ?? columns[0];
   const sign = table.down ? -1 : 1;
-  return filteredConflicts().sort((a, b) => {
+  return [...list].sort((a, b) => {
     const x = column.value(a), y = column.value(b);
     return (x < y ? -sign : x > y ? sign : 0) || a.id - b.id;
   });
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Side", "Least distance", "Class", "Pose"].includes(title);
+  const numbers = !["No.", "Chainage", "Side", "Lateral", "Height", "Least distance", "Class", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;
@@ -69,8 +82,7 @@ function tableHead(columns, sortable) {
   return make("thead", {}, make("tr", {}, columns.map((c) => {
     const sorted = sortable && table.title === c.title;
     const label = titleWithUnit(c.title) + (sorted ? (table.down ? " ▼" : " ▲") : "");
-    return make("th", { scope: "col", class: c.number ? "number" : null, "aria-sort": sorted ? (table.down ? "descending" : "ascending")
-                                                          : null },
+    return make("th", { scope: "col", class: c.number ? "number" : null, "aria-sort": !sortable ? null : !sorted ? "none" : table.down ? "descending" : "ascending" },
                 sortable ? button(label, () => sortBy(c.title)) : titleWithUnit(c.title));
   })));
 }
@@ -79,17 +91,39 @@ function tableRow(conflict, columns, live) {
   const cells = columns.map((c) => make("td", { class: c.number ? "number" : null }, c.cell(conflict)));
   if (!live) return make("tr", {}, cells);
   const chosen = conflict === page.conflict;
-  return make("tr", { tabindex: 0, "data-id": conflict.id, class: chosen ? "chosen" : null,
+  return make("tr", { tabindex: -1, "data-id": conflict.id, class: chosen ? "chosen" : null,
                       "aria-selected": String(chosen), onclick: () => selectConflict(conflict),
                       onkeydown: rowKey }, cells);
 }
 
+const tableRows = () => [...document.querySelectorAll("#conflicts-table tbody tr")];
+
+/** The table is one stop of the Tab key: that row, or else the chosen one, or the first. */
+function setTabStop(row) {
+  const rows = tableRows();
+  const stop = row ?? rows.find((r) => r.classList.contains("chosen")) ?? rows[0];
+  for (const other of rows) other.tabIndex = other === stop ? 0 : -1;
+}
+
+/** To the row so many further down, on another page of the table where it is there. */
+function focusRow(row, by) {
+  const total = filteredConflicts().length, at = table.first + tableRows().indexOf(row);
+  const next = clamp(at + by, 0, total - 1);
+  if (next < table.first || next >= table.first + table.rows) {
+    table.first = next - next % table.rows;
+    drawTable();
+  }
+  const there = tableRows()[next - table.first];
+  setTabStop(there);
+  there.focus();
+}
+
 function rowKey(event) {
   const row = event.currentTarget;
-  const next = { ArrowDown: row.nextElementSibling, ArrowUp: row.previousElementSibling }[event.key];
-  if (next) {
+  const by = { ArrowDown: 1, ArrowUp: -1, PageDown: 10, PageUp: -10, Home: -1e9, End: 1e9 }[event.key];
+  if (by) {
     event.preventDefault();
-    next.focus();
+    focusRow(row, by);
   } else if (event.key === "Enter" || event.key === " ") {
     event.preventDefault();
     selectConflict(conflictList().find((c) => String(c.id) === row.dataset.id));
@@ -111,9 +145,11 @@ function drawTable() {
   const columns = tableColumns(), all = sortedConflicts(columns);
   const rows = all.slice(table.first, table.first + table.rows);
   byId("conflicts-table").replaceChildren(
-    make("div", { class: "scroll" }, make("table", { class: "list" }, tableHead(columns, true),
-         make("tbody", {}, rows.map((c) => tableRow(c, columns, true))))),
+    make("div", { class: "scroll" }, make("table", { class: "list", role: "grid", "aria-label":
+         "Conflicts. Arrow keys go from row to row, Enter shows the conflict." },
+         tableHead(columns, true), make("tbody", {}, rows.map((c) => tableRow(c, columns, true))))),
     tablePager(all.length));
+  setTabStop();
 }
 
 /** The part of the table with the chosen conflict, if it passes the filters. */
@@ -137,6 +173,7 @@ function markRow() {
     row.classList.toggle("chosen", chosen);
     row.setAttribute("aria-selected", String(chosen));
   }
+  if (!holder.contains(document.activeElement)) setTabStop();
 }
 
 function filterField(label, name, width) {
@@ -184,6 +221,11 @@ function conflictsNote(found) {
   if (found.count === 0 && found.small_points === 0) return "There are none: nothing collides.";
   let text = `Colliding points at most ${shortLength(found.gap)} apart are one conflict`;
   text += found.split > 0 ? `, cut every ${shortLength(found.split)} along the path.` : ".";
+  if (found.list.some((c) => c.lateral !== null)) {
+    const place = found.list.some((c) => c.nearest_point) ? "nearest point" : "centre of its points";
+    text += ` Lateral is how far left (+) or right (−) of the path the ${place} lies, height how ` +
+        "far above it, along the vehicle's own axes.";
+  }
   if (found.small_groups > 0) {
     text += ` ${plural(found.small_groups, "group")} of fewer than ${count(found.min_points)} points ` +
         `(${plural(found.small_points, "point")} in all) are counted as colliding, but not listed.`;

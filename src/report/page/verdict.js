@@ -18,7 +18,8 @@ function verdictSymbol(clear) {
 }
 
 function tile(value, label, action) {
-  const content = [make("strong", {}, value), make("span", {}, label)];
+  const content = [make("strong", {}, value), make("span", {}, label, action ?
+      make("span", { class: "on-screen" }, ". Show it") : null)];
   return action ? make("button", { type: "button", class: "tile", onclick: action }, ...content)
                 : make("div", { class: "tile" }, ...content);
 }
@@ -34,12 +35,13 @@ function conflictTiles() {
   tiles.push(tile(count(facts.colliding_points), "colliding points"));
   if (worst) {
     const missing = worst.encroachment;
-    tiles.push(tile(missing === null ? plural(worst.points, "point") : metres(missing),
+    tiles.push(tile(missing === null ? plural(worst.points, "point")
+                        : missingWords(missing, worst.least_distance),
                     missing === null ? "most in one conflict"
                         : worst.least_distance < kTouching ? "missing at least: it touches"
                         : "missing at the worst place"));
     tiles.push(tile(`No. ${worst.id}`,
-                    `worst: chainage ${station(stationOf(worst))}${after(kSides[worst.side])}. Show it`,
+                    `worst: chainage ${station(stationOf(worst))}${after(kSides[worst.side])}`,
                     () => goTo(worst)));
   }
   return tiles;
@@ -49,7 +51,7 @@ function clearTiles() {
   const { least_distance: least, query, inputs } = page.facts, tiles = [];
   if (least) {
     tiles.push(tile(metres(least.distance), "least distance found"));
-    tiles.push(tile(station(least.chainage), "chainage of it. Show it", () => {
+    tiles.push(tile(station(least.chainage), "chainage of it", () => {
       selectPose(shownPose(least.pose));
       byId("view").scrollIntoView();
       tell("overview");
@@ -89,7 +91,8 @@ function verdictSentences() {
       ? `Conflict ${worst.id} has the most points. It begins at chainage ` +
         `${station(worst.chainage_from)}${after(sideWords(worst.side))}.`
       : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
-        `${after(sideWords(worst.side))}: ${nearnessText(worst.least_distance, radius)}.`;
+        `${after(sideWords(worst.side))}: ${nearnessText(worst.least_distance, radius)}.` +
+        nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" });
   const least = facts.least_distance;  // of a group that is too small for the list, perhaps
   const nearer = least && worst.least_distance !== null && least.distance < worst.least_distance;
   return [first, nearer ? `${worstText} ${leastSentence()}` : worstText];
@@ -132,13 +135,23 @@ function questionTable() {
     factRow("Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points ` +
             `of ${plural(inputs.environment.files, "file")}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
             `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
-    factRow("Vehicle", `${inputs.model.name}: ${count(inputs.model.points)} points, ` +
+    factRow("Vehicle (model)", `${inputs.model.name}: ${count(inputs.model.points)} points, ` +
             `${size} ${unitSymbol}. `, hash(inputs.model.hash)),
+    inputs.model.above === null ? "" : factRow("Left out", leftOut(inputs.model), optionName("--model-above")),
     factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
     factRow("Asked for", askedFor(query))));
 }
+
+/** What --model-above took from the model's file. */
+function leftOut({ above, left_out: left }) {
+  return `points of the model below z = ${shortLength(above)} in its own frame` +
+      (left > 0 ? `, ${count(left)} of them: ` : ": ");
+}
+
+/** Without line breaks at its hyphens. */
+const optionName = (name) => make("code", { class: "option" }, name);
 
 function askedFor(query) {
   const parts = [`required distance ${shortLength(query.radius)}`];
@@ -170,6 +183,8 @@ function buildVerdict() {
   const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
   const doubtful = clear && warned.length > 0;
   byId("made").textContent = `Made ${facts.date} by Clearway ${facts.clearway}`;
+  byId("about").append(...["project", "client", "author"].filter((key) => facts[key]).map((key) =>
+      make("span", {}, `${key[0].toUpperCase()}${key.slice(1)}: `, make("strong", {}, facts[key]))));
   byId("loading").remove();
   byId("verdict-body").append(
     make("div", { class: `banner ${doubtful ? "doubt" : facts.verdict}` },

@@ -82,7 +82,7 @@ function buildSlider() {
 
 function viewNote() {
   const { page: shown, inputs } = page.facts;
-  let text = "Drag turns, right button or Shift and drag moves, Ctrl and wheel zoom, arrow keys turn. ";
+  let text = "";
   if (shown.poses < inputs.trajectory.poses) {
     text += `The slider has ${count(shown.poses)} of ${count(inputs.trajectory.poses)} poses: the ` +
         `${page.poses.distance ? "nearest" : "first"} of each stretch, and those of the conflicts. `;
@@ -97,7 +97,7 @@ function viewNote() {
 }
 
 function buildView() {
-  const canvas = make("canvas", { id: "view-canvas" });
+  const canvas = make("canvas", { id: "view-canvas", "aria-hidden": "true" });
   const over = make("canvas", { id: "view-numbers", tabindex: 0, role: "application", "aria-label":
       "3-D view. Arrow keys turn it, with Shift they move it, plus and minus zoom, 0 shows all." });
   byId("view-stage").append(canvas, over);
@@ -117,7 +117,10 @@ function buildView() {
           (value) => { view.cutFront = value; }),
     ...classChecks());
   buildSlider();
-  byId("view-note").textContent = viewNote();
+  byId("view-note").append(
+    make("span", { class: "hint" },
+         "Drag turns, right button or Shift and drag moves, Ctrl and wheel zoom, arrow keys turn. "),
+    viewNote());
   watchPointer(over, turnView, (factor) => zoomView(factor),
                (x, y) => pickNumber(view.places, over, x, y));
   over.addEventListener("keydown", viewKey);

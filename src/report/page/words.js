@@ -1,19 +1,26 @@
 const unitSymbol = { metre: "m", foot: "ft", "us-survey-foot": "ft", degree: "°" }[page.facts.unit]
     ?? "m";
 const kClassWords = {
-  hit: { symbol: "◆", colour: "#c2410c", rgb: [213, 70, 0] },
-  near: { symbol: "▲", colour: "#a16207", rgb: [240, 170, 0] },
-  watch: { symbol: "●", colour: "#0369a1", rgb: [0, 114, 190] },
+  hit: { shape: "diamond", symbol: "◆", colour: "#c2410c", rgb: [213, 70, 0] },
+  near: { shape: "triangle", symbol: "▲", colour: "#a16207", rgb: [240, 170, 0] },
+  watch: { shape: "round", symbol: "●", colour: "#0369a1", rgb: [0, 114, 190] },
 };
 const kModelColour = "#00735c", kModelRgb = [0, 140, 110];
 
 const count = (n) => Math.round(n).toLocaleString("en-US");
 const plural = (n, one, many = one + "s") => `${count(n)} ${n === 1 ? one : many}`;
-const metres = (v, digits = 3) => v === null || v === undefined ? "unknown"
-    : `${v.toFixed(digits)} ${unitSymbol}`;
+/** Digits after the point with which none of these lengths looks like nothing. */
+const digitsFor = (values) => values.some((v) => v && Math.abs(v) < 0.001) ? 4 : 3;
+/** A distance; what is less than half of the last digit is said to be below it. */
+const fixed = (v, digits) => v > 0 && v < 0.5 * 10 ** -digits ? `< ${(10 ** -digits).toFixed(digits)}`
+    : v.toFixed(digits);
+const metres = (v, digits = digitsFor([v])) => v === null || v === undefined ? "unknown"
+    : `${fixed(v, digits)} ${unitSymbol}`;
 /** Below it the surfaces meet, as far as scans can tell. */
 const kTouching = 0.001;
-const station = (v) => metres(v, 3);  // as fine as the column of chainages
+/** With the digits of the distance, so that both add up to what is required. */
+const missingWords = (missing, distance) => metres(missing, digitsFor([distance]));
+const station = (v) => metres(v, 2);
 const shortLength = (v) => `${+v.toPrecision(4)} ${unitSymbol}`;
 const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
 
@@ -22,6 +29,19 @@ const kSides = { left: "left", right: "right", above: "above", below: "below", f
 const sideWords = (side) => ({ left: "on the left", right: "on the right", above: "above it",
                                below: "below it", front: "in front of it", behind: "behind it" })[side]
     ?? "";
+
+/** Left is positive. Without "-0.00". */
+function signed(v) {
+  const sign = +v.toFixed(2) === 0 ? "" : v > 0 ? "+" : "−";
+  return sign + Math.abs(v).toFixed(2);
+}
+
+/** Where a place is, seen from the path; empty where that is not known. */
+function offsetWords({ lateral, height }) {
+  if (lateral === null || height === null) return "";
+  return `${metres(Math.abs(lateral), 2)} ${lateral < 0 ? "right" : "left"} of the path and ` +
+      `${metres(Math.abs(height), 2)} ${height < 0 ? "below" : "above"} it`;
+}
 
 /** ", text", or nothing. */
 const after = (text) => text ? `, ${text}` : "";
@@ -64,11 +84,18 @@ function missingParts() {
   return out;
 }
 
+/** of: a place with side, lateral and height. */
+function nearestPointSentence({ point, ...of }) {
+  if (!point) return "";
+  const where = [sideWords(of.side), offsetWords(of)].filter(Boolean).join(", ");
+  return ` The nearest point is ${where}${where ? "," : ""} at ${coordinates(point)}.`;
+}
+
 function leastSentence() {
   const { least_distance: least, query } = page.facts;
   if (least) {
     return `The least distance is ${metres(least.distance)}, at chainage ` +
-        `${station(least.chainage)} (pose ${least.pose}).`;
+        `${station(least.chainage)} (pose ${count(least.pose)}).${nearestPointSentence(least)}`;
   }
   const looked = Math.max(query.clearance, query.profile);
   if (looked > 0) return `Nothing is closer than ${shortLength(looked)}.`;

@@ -90,7 +90,7 @@ class Trial {
         path_(path_box()) {}
 
   std::string remedy() const {
-    if (question_.unit != LengthUnit::kDegree && looks_like_degrees()) {
+    if (question_.unit != LengthUnit::kDegrees && looks_like_degrees()) {
       return "The path's positions look like degrees. Convert them to the scan's coordinates";
     }
     if (const auto height = height_difference()) {

@@ -13,7 +13,7 @@ void warn_of_unit(LengthUnit unit, MessageLog& log) {
         "the environment is in feet: lengths, model and trajectory without a unit of their own are "
         "taken in feet too");
   }
-  if (unit == LengthUnit::kDegree) {
+  if (unit == LengthUnit::kDegrees) {
     log.warn("degrees",
              "the environment is in degrees: radius, model and trajectory are taken in degrees "
              "too. Distances in degrees mean nothing: convert the scan to metres");
@@ -52,7 +52,7 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
     log.warn("no-points", "the environment has no points: nothing can collide");
     return;
   }
-  if (query.poses.empty() || unit == LengthUnit::kDegree) return;
+  if (query.poses.empty() || unit == LengthUnit::kDegrees) return;
   if (query.poses.size() == 1) {
     log.note("the trajectory has one pose: the model is checked at that place alone");
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "search/devices.hpp"
@@ -9,9 +10,12 @@ namespace clearway {
 
 class StoreReader;
 
-/// The CUDA form of the engine that options choose, one on each of the devices. Only in a build
-/// with CUDA. options.threads is not 0; all references outlive it.
+/// Waits for GPUs, and chooses some: as many as options name, or one.
+using OpenGpus = std::function<DeviceChoice()>;
+
+/// The CUDA form of the engine that options choose, one on each of the GPUs that `open` gives once
+/// there is a plan. Only in a build with CUDA. options.threads is not 0; all references outlive it.
 std::unique_ptr<PageEngineKind> cuda_kind(const StoreReader& store, const Query& query,
-                                          const SearchOptions& options, const DeviceChoice& device);
+                                          const SearchOptions& options, OpenGpus open);
 
 }  // namespace clearway

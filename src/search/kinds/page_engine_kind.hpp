@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,6 +19,9 @@ namespace clearway {
 /// One for each device.
 using PageEngines = std::vector<std::unique_ptr<PageEngine>>;
 
+/// Engines that are taken down on threads of their own. Its end waits for them.
+using EngineEnd = std::vector<std::future<void>>;
+
 /// Slots of an engine on the CPU beside those that are searched: for pages that are read meanwhile.
 inline constexpr std::uint32_t kSlotsAhead = 2;
 
@@ -27,10 +31,11 @@ struct PageEngineNeeds {
   std::uint32_t page_cells = 1;  ///< the most cells of a page
   std::uint64_t page_bytes = 0;  ///< wanted; more where a cell needs it, less with little memory
   int threads = 1;               ///< that run the pipeline, those that wait for a device included
+  int waiting_threads = 0;       ///< of them, those that wait
   std::uint32_t devices = 1;     ///< engines that are made
   bool on_gpu = false;
-  std::uint64_t most_device_bytes = 0;  ///< of each GPU
-  std::string short_device = {};        ///< as refuse_device_memory takes it
+  std::uint64_t most_device_bytes = 0;  ///< of each GPU, once resolved
+  std::string short_device = {};        ///< likewise, as refuse_device_memory takes it
 };
 
 /// An engine that works on pages before it is made: builds its index of the query, with which the
@@ -54,7 +59,11 @@ class PageEngineKind {
   /// Builds the index, in the place of an earlier one. The trees outlive it.
   virtual const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) = 0;
 
-  // With an index:
+  /// Waits for the devices: from here on needs() has their limits. Called with a plan, before
+  /// memory is asked for; may be called again.
+  virtual void resolve_devices() {}
+
+  // With an index, and all but index_bytes() with devices:
 
   virtual std::uint64_t index_bytes() const = 0;
   /// Memory on the host with this layout, bytes: what make() allocates and what searches do.
@@ -64,11 +73,16 @@ class PageEngineKind {
   virtual std::uint64_t device_bytes(const SlotLayout&) const { return 0; }
   /// For the log and the report.
   virtual void report_index(SearchReport& report, const MessageLog& log) const = 0;
-  /// Slots of the layout are those of each device. The index outlives the engines.
+  /// Slots of the layout are those of each device. The index outlives the engines' searches.
   virtual PageEngines make(const SlotLayout& layout) = 0;
   /// Called once after the last page: for the log, and for what only the engines can report.
   virtual void report_search(const PageEngines& engines, SearchReport& report,
                              const MessageLog& log) const = 0;
+  /// Takes the engines down, beside the caller where that takes long.
+  virtual EngineEnd end([[maybe_unused]] PageEngines engines) const {
+    engines.clear();
+    return {};
+  }
 
  protected:
   PageEngineNeeds needs_;

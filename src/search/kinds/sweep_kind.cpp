@@ -1,6 +1,7 @@
 #include "search/kinds/sweep_kind.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/sweep/tolerance.hpp"
 #include "core/util/format.hpp"
@@ -19,6 +20,11 @@ constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
 /// field decides which of them need a search of it.
 constexpr double kProfileFineness = 2;
 
+/// From so many poses on the field is as fine as it pays for many (docs/design/sweep.md,
+/// "Fineness").
+constexpr double kPosesOfFullFineness = 1000;
+constexpr double kLeastFineness = 0.25;
+
 }  // namespace
 
 /// With a tolerance the result depends on the field, which memory must not decide.
@@ -33,11 +39,21 @@ const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t m
   field_.reset();
   field_.emplace(trees.model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
-                                   .fineness = fineness_,
+                                   .fineness = fineness_for_query(),
+                                   .cheaply_finer = !(query_.tolerance > 0),
                                    .reach = std::max(query_.clearance, query_.profile),
-                                   .most_bytes = most_bytes},
+                                   .most_bytes = most_bytes,
+                                   .by_need = !needs_.on_gpu},
                  options_.threads);
-  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_);
+  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_, options_.threads);
+}
+
+/// Coarser for few poses, which ask for few exact tests. Not with a tolerance, whose result depends
+/// on the field; and other modes ask more of it.
+double SweepKind::fineness_for_query() const {
+  if (query_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
+  const auto poses = static_cast<double>(query_.poses.size());
+  return fineness_ * std::clamp(std::cbrt(poses / kPosesOfFullFineness), kLeastFineness, 1.0);
 }
 
 void SweepKind::report_index(SearchReport& report, const MessageLog& log) const {

@@ -24,7 +24,9 @@ class SweepKind : public PageEngineKind {
 
   std::vector<IndexSize> index_sizes() const override;
   const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
-  std::uint64_t index_bytes() const override { return field_->allocated_bytes(); }
+  std::uint64_t index_bytes() const override {
+    return field_->allocated_bytes() + filter_->allocated_bytes();
+  }
   void report_index(SearchReport& report, const MessageLog& log) const override;
 
  protected:
@@ -38,6 +40,8 @@ class SweepKind : public PageEngineKind {
   std::optional<SweepFilter> filter_;
 
  private:
+  double fineness_for_query() const;
+
   double fineness_;
 };
 

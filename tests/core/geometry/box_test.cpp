@@ -96,9 +96,9 @@ TEST_CASE("a box of one point has its distance") {
 TEST_CASE("a box is never dismissed or taken for a point that is not a number") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Box box{{1, 1, 1}, {2, 2, 2}};
-  CHECK_FALSE(least_squared_distance(box, {nan, 1, 1}) > 0.5);
+  CHECK_FALSE(least_squared_distance(box, Vec3{nan, 1, 1}) > 0.5);
   CHECK_FALSE(greatest_squared_distance(box, {nan, 1, 1}) < 100.0);
   const double infinity = std::numeric_limits<double>::infinity();
-  CHECK(least_squared_distance(box, {infinity, 1, 1}) == infinity);
+  CHECK(least_squared_distance(box, Vec3{infinity, 1, 1}) == infinity);
   CHECK(greatest_squared_distance(box, {-infinity, 1, 1}) == infinity);
 }

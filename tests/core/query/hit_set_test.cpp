@@ -52,7 +52,8 @@ TEST_CASE("the least first pose of many threads wins") {
   constexpr std::uint64_t kSlots = 1 << 14;
   constexpr std::uint64_t kThreads = 4;
   constexpr int kRounds = 50;
-  std::vector<HitSet> rounds(kRounds, HitSet(kSlots, true));
+  std::vector<HitSet> rounds;
+  while (rounds.size() < kRounds) rounds.emplace_back(kSlots, true);
   std::barrier start(kThreads);
   const auto mark_all = [&](std::uint64_t thread) {
     for (HitSet& hits : rounds) {
@@ -77,7 +78,8 @@ TEST_CASE("marks of many threads in the same words are all there") {
   constexpr std::uint64_t kSlots = 1 << 21;
   constexpr std::uint64_t kThreads = 4;
   constexpr int kRounds = 20;
-  std::vector<HitSet> rounds(kRounds, HitSet(kSlots, false));
+  std::vector<HitSet> rounds;
+  while (rounds.size() < kRounds) rounds.emplace_back(kSlots, false);
   std::barrier start(kThreads);
   const auto mark_own = [&](std::uint64_t thread) {
     for (HitSet& hits : rounds) {

@@ -4,9 +4,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <thread>
 
 #include "core/geometry/predicate.hpp"
+#include "core/sweep/brick_nearest.hpp"
 
 using namespace clearway;
 
@@ -99,6 +102,73 @@ TEST_CASE("field bounds hold and are tight near the model") {
     std::vector<Vec3> plane;
     for (int i = 0; i < 2500; ++i) plane.push_back({i % 50 * 0.02, i / 50 * 0.02, 0});
     check_field(plane, 0.1, 0);
+  }
+}
+
+TEST_CASE("a field made by need is the whole one") {
+  const auto model = shell(2000, {1, 2, 3});
+  const ModelTree tree(model);
+  const double reach = GENERATE(0.0, 0.5);
+  const ModelField whole(tree, 0.1, {.reach = reach}, 2);
+  const ModelField by_need(tree, 0.1, {.reach = reach, .by_need = true}, 2);
+  const ModelFieldRef as_made = by_need.ref_as_made();
+  std::uint64_t coarser = 0;
+  const auto differences = [&](unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::uint64_t differing = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3& m = model[static_cast<std::size_t>(i) % model.size()];
+      const Vec3 x{m.x + 0.2 * normal(random), m.y + 0.2 * normal(random),
+                   m.z + 0.2 * normal(random)};
+      const ModelField::Bounds a = whole.bounds(x);
+      if (seed == 0) {
+        const double bound = as_made.bounds(x).squared_lower;
+        differing += bound > brute_squared(model, x) + 1e-9;
+        coarser += bound < a.squared_lower;
+        continue;
+      }
+      const ModelField::Bounds b = by_need.bounds(x);
+      differing += a.squared_lower != b.squared_lower || a.near != b.near;
+    }
+    return differing;
+  };
+  CHECK(differences(0) == 0);
+  CHECK(coarser > 1000);
+  std::uint64_t differing[4];
+  std::vector<std::thread> threads;
+  for (unsigned i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] { differing[i] = differences(1 + i); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::uint64_t of_thread : differing) CHECK(of_thread == 0);
+}
+
+TEST_CASE("the nodes of a brick have the model points that the tree finds") {
+  std::vector<Vec3> model;
+  SECTION("a shell") { model = shell(3000, {0, 0, 0}); }
+  SECTION("dense beside the brick") { model = shell(100'000, {0, 0, 0}); }
+  SECTION("far from the origin") { model = shell(3000, {5e5, -2e5, 100}); }
+  SECTION("one point") { model = {{0.1, 0.2, 0.3}}; }
+  SECTION("duplicates") { model.assign(5000, {0.1, 0.2, 0.3}); }
+  const ModelTree tree(model);
+  const auto nearest = std::make_unique<BrickNearest>(tree);
+  std::vector<float> squared(ModelFieldRef::kBrickNodes);
+  std::vector<std::uint32_t> point(ModelFieldRef::kBrickNodes);
+  for (const double voxel : {0.01, 0.1, 1.0}) {
+    const Vec3& at = model[model.size() / 2];
+    const Vec3 corner{at.x - 3 * voxel, at.y - 5 * voxel, at.z - 4.5 * voxel};
+    nearest->find(corner, voxel, squared.data(), point.data());
+    std::uint64_t differing = 0;
+    for (std::uint32_t i = 0; i < ModelFieldRef::kBrickNodes; ++i) {
+      constexpr std::uint32_t kRow = ModelFieldRef::kRow;
+      const Vec3 node{corner.x + i % kRow * voxel, corner.y + i / kRow % kRow * voxel,
+                      corner.z + i / kRow / kRow * voxel};
+      const double least = tree.nearest(node).squared_distance;
+      differing += squared[i] != rounded_down(least) ||
+                   squared_distance(tree.point(point[i]), node) != least;
+    }
+    CHECK(differing == 0);
   }
 }
 

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "io/convert/count/count.hpp"
-#include "io/convert/distribute.hpp"
+#include "io/convert/distribute/distribute.hpp"
 #include "io/system/xxh64.hpp"
 #include "support/clouds.hpp"
 
@@ -97,13 +97,18 @@ TEST_CASE("points are distributed only where they are those that were counted") 
   const Lattice lattice;
   InputSurvey survey;
   PlaceCounter places({});
-  CountedEnvironment counted = count_environment(environment, lattice, survey, 1, progress);
+  StageClocks clocks;
+  FileHashes hashes(environment.files(), {false, false});
+  CountedEnvironment counted =
+      count_environment(environment, lattice, survey, hashes, 1, clocks, progress);
   const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
   const auto distribute_again = [&] {
-    return distribute(environment, counted.points_hash, lattice, tree, places, scans.folder / "",
-                      1 << 20, 2, progress);
+    Distribution distribution(tree, scans.folder / "", 2);
+    distribute(environment, counted.points_hash, lattice, tree, places, distribution, 2, clocks,
+               progress);
+    return distribution.take(0).count;
   };
-  CHECK(distribute_again().first == std::vector<std::uint64_t>{0, 2000});
+  CHECK(distribute_again() == 2000);
   put_bytes(scans.second, bytes_of(scans.other));
   CHECK_THROWS_AS(distribute_again(), InputError);
 }

@@ -39,9 +39,10 @@ struct Tables {
     export_clearances(ResultReader(folder / "a.h5"), folder / name, false, progress);
     return bytes_of(folder / name);
   }
-  std::string profile_text(const PoseLabels& labels) const {
+  std::string profile_text(const PoseLabels& labels, double chainage_start = 0) const {
     NoProgress progress;
-    export_profile(ResultReader(folder / "a.h5"), labels, folder / "p.csv", true, progress);
+    export_profile(ResultReader(folder / "a.h5"), labels, chainage_start, folder / "p.csv", true,
+                   progress);
     return bytes_of(folder / "p.csv");
   }
 
@@ -77,7 +78,7 @@ TEST_CASE("a result without clearances or profile is refused with the remedy") {
   const ResultReader result(folder / "b.h5");
   NoProgress progress;
   CHECK_THROWS_AS(export_clearances(result, folder / "b.csv", false, progress), UsageError);
-  CHECK_THROWS_WITH(export_profile(result, {}, folder / "b.csv", false, progress),
+  CHECK_THROWS_WITH(export_profile(result, {}, 0, folder / "b.csv", false, progress),
                     Contains("has no profile"));
 }
 
@@ -99,9 +100,12 @@ TEST_CASE("a profile is exported as CSV, without values where there is no point"
   CHECK(tables.profile_text({}) ==
         "pose,chainage,distance,source,x,y,z\n0,0,0.25,9,0.005,0.006,-0.007\n1,1.5,,,,,\n"
         "2,2.25,0.1,3,14.78,-0.002,0.003\n");
+  CHECK(tables.profile_text({}, 1000.5) ==
+        "pose,chainage,distance,source,x,y,z\n0,1000.5,0.25,9,0.005,0.006,-0.007\n"
+        "1,1002,,,,,\n2,1002.75,0.1,3,14.78,-0.002,0.003\n");
   NoProgress progress;
-  CHECK_THROWS_AS(export_profile(ResultReader(tables.folder / "a.h5"), {}, tables.folder / "p.las",
-                                 true, progress),
+  CHECK_THROWS_AS(export_profile(ResultReader(tables.folder / "a.h5"), {}, 0,
+                                 tables.folder / "p.las", true, progress),
                   UsageError);
 }
 

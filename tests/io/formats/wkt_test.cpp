@@ -28,13 +28,13 @@ TEST_CASE("the unit of a projected system is its own, not that of its parts") {
   CHECK(unit_of(projected(foot)) == LengthUnit::kFoot);
   CHECK(unit_of(projected(survey_foot)) == LengthUnit::kUsSurveyFoot);
   CHECK(unit_of(projected(R"(UNIT["km",1000])")) == LengthUnit::kUnknown);
-  CHECK(unit_of(geographic) == LengthUnit::kDegree);
+  CHECK(unit_of(geographic) == LengthUnit::kDegrees);
 
   const std::string vertical = "VERT_CS[\"v\",VERT_DATUM[\"d\",2005]," + foot + "]";
   CHECK(unit_of("COMPD_CS[\"c\"," + projected(survey_foot) + "," + vertical + "]") ==
         LengthUnit::kUsSurveyFoot);
   CHECK(unit_of("COMPD_CS[\"c\"," + vertical + "," + projected(metre) + "]") == LengthUnit::kMetre);
-  CHECK(unit_of("COMPD_CS[\"c\"," + geographic + "," + vertical + "]") == LengthUnit::kDegree);
+  CHECK(unit_of("COMPD_CS[\"c\"," + geographic + "," + vertical + "]") == LengthUnit::kDegrees);
 }
 
 TEST_CASE("well-known text 2 is understood") {
@@ -49,9 +49,9 @@ TEST_CASE("well-known text 2 is understood") {
   CHECK(unit_of("PROJCRS[\"p\"," + base + ",\n  " + conversion + ",\n  " + axis_unit + "]") ==
         LengthUnit::kFoot);
   CHECK(unit_of(R"(GEOGCRS["g",CS[ellipsoidal,2],ANGLEUNIT["degree",0.0174532925]])") ==
-        LengthUnit::kDegree);
+        LengthUnit::kDegrees);
   CHECK(unit_of(R"(GEODCRS["g",CS[Cartesian,3],LENGTHUNIT["metre",1]])") == LengthUnit::kMetre);
-  CHECK(unit_of(R"(GEODCRS["g",CS[ellipsoidal,3]])") == LengthUnit::kDegree);
+  CHECK(unit_of(R"(GEODCRS["g",CS[ellipsoidal,3]])") == LengthUnit::kDegrees);
 }
 
 TEST_CASE("text that is no well-known text tells no unit and does no harm") {

@@ -16,6 +16,7 @@ PackedCell one_point() {
     append_packed_chunk<std::int32_t>(values, packed.chunks[axis]);
   }
   append_packed_chunk<std::uint64_t>(std::vector<std::uint64_t>(64, 0), packed.chunks[3]);
+  hash_chunks(packed);
   return packed;
 }
 
@@ -35,7 +36,8 @@ TEST_CASE("chunks are found whatever the length of the metadata before them") {
     StoreWriter writer(path, metadata, cells);
     for (std::uint64_t cell = 0; cell < cells; ++cell) writer.append(one_point());
     INFO(cells << " cells, " << length << " bytes");
-    CHECK_NOTHROW(writer.finish({{0, static_cast<std::uint32_t>(cells), 0}}));
+    writer.finish({{0, static_cast<std::uint32_t>(cells), 0}});
+    CHECK_NOTHROW(writer.confirm());
     std::filesystem::remove(path);
   }
 }

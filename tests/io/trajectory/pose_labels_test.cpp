@@ -39,6 +39,20 @@ TEST_CASE("a column of names is kept, quotes and blanks around them are not") {
   CHECK(labels.time == Times{3, 4});
 }
 
+TEST_CASE("a separator within quotes is part of the name") {
+  const PoseLabels labels = labels_of(
+      "name,time,x,y,z,qx,qy,qz,qw,\"note, of it\"\n"
+      "\"hall, north\",3,0,0,0,0,0,0,1,\"a,b\"\n"
+      " \"say \"\"a, b\"\"\" ,4,1,0,0,0,0,0,1,none\n"
+      "5\" pipe,5,1,0,0,0,0,0,1,\"\"\n",
+      "path.csv");
+  CHECK(labels.name == Names{"hall, north", "say \"a, b\"", "5\" pipe"});
+  CHECK(labels.time == Times{3, 4, 5});
+  // Quotes that do not close, or close before more text, are text.
+  CHECK(labels_of("x,y,z,qx,qy,qz,qw,name,end\n0,0,0,0,0,0,1,\"open,1\n", "path.csv").name.size() ==
+        1);
+}
+
 TEST_CASE("an index counts where there is no name") {
   const std::string pose = ",0,0,0,0,0,0,1\n";
   CHECK(labels_of("index,x,y,z,qx,qy,qz,qw\n007" + pose, "path.csv").name == Names{"007"});

@@ -30,9 +30,9 @@ using MakeSweep = std::function<std::unique_ptr<PageEngine>(
     const SweepFilter& filter, const PackedCloud& cloud, const SlotLayout& layout)>;
 
 /// Plans the query, and runs it in an engine of as many slots and cells a page as the cloud's
-/// size makes them, so that all occur.
+/// size makes them, so that all occur. whole_field: for an engine that cannot make parts of it.
 SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads,
-                       const MakeSweep& make);
+                       const MakeSweep& make, bool whole_field = false);
 
 /// From now on engines() are these.
 void test_only(std::vector<Engine> engines);

@@ -160,6 +160,28 @@ TEST_CASE("a length may have a unit, which is read exactly") {
   }
 }
 
+TEST_CASE("feet are feet in a scan in feet") {
+  const Files files;
+  put_bytes(files.folder / "feet.xyz", "x[ft],y[ft],z[ft]\n0,0,0\n1,2,3\n4,5,6\n");
+  REQUIRE(
+      files.run("convert " + files.path("feet.xyz") + " -o " + files.path("feet.h5")).exit_code ==
+      0);
+  const auto radius = [&](const std::string& text) {
+    const Outcome outcome =
+        files.run("run --force --env " + files.path("feet.h5") + " --model " +
+                  files.path("model.xyz") + " --trajectory " + files.path("path.txt") +
+                  " --radius '" + text + "' -o " + files.path("r.h5"));
+    CAPTURE(text, outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return ResultReader(files.folder / "r.h5").header().radius;
+  };
+  for (const char* text : {"0.1", "0.2", "0.3", "0.7", "1.1", "2.3e-1"}) {
+    CHECK(radius(std::string(text) + "ft") == std::stod(text));
+  }
+  CHECK(radius("12in") == 1);
+  CHECK(radius("30.48cm") == Approx(1).epsilon(1e-15));
+}
+
 TEST_CASE("every option that is a length takes a unit") {
   const Files files;
   const std::string info =

@@ -209,6 +209,9 @@ TEST_CASE("options that do not go together are refused before an input is looked
     CHECK(site.run(run + options).exit_code == 2);
   }
   CHECK(site.run("compare a.h5 b.h5 --show -1").exit_code == 2);
+  CHECK_THAT(site.run("export a.h5 -o x.csv -o x.csv").err,
+             Contains("--output: given more than once"));
+  CHECK_THAT(site.run("export a.h5 -o x.csv --chainage-start 5").err, Contains("--what profile"));
   CHECK(site.run("scene hall --seed -1 -o " + site.path("s")).exit_code == 2);
 }
 

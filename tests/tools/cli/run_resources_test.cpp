@@ -76,7 +76,7 @@ TEST_CASE("the smallest memory that a refusal names works, and a byte less is re
 
 TEST_CASE("run --json tells of pages and stages") {
   const SmallHall hall;
-  const Outcome outcome = hall.search("--json --threads 3");
+  const Outcome outcome = hall.search("--json --threads 3 --engine sweep");
   REQUIRE(outcome.exit_code == 0);
   const json report = json::parse(outcome.out);
   CHECK(report["device"] == "cpu");

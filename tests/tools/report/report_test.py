@@ -7,16 +7,16 @@ are made and not opened; the test says so. CLEARWAY_TEST_DATA adds the street.
 
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
 
+import scenes
 from browser import Browser, find_chromium
+from page_checks import PageChecks
+from scenes import Scene, clearway, make_empty, make_hall
 
-PROGRAM = None
 CHROMIUM = find_chromium()
-DATE = "2026-01-02 03:04 UTC"
 
 BLANK = """(id) => { const from = document.querySelector(id);
   const copy = new OffscreenCanvas(from.width, from.height), c = copy.getContext("2d");
@@ -25,64 +25,7 @@ BLANK = """(id) => { const from = document.querySelector(id);
   return new Set(pixels).size; }"""
 
 
-def clearway(*arguments, code=0):
-    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
-    if done.returncode != code:
-        raise AssertionError(f"{arguments}: exit code {done.returncode}\n{done.stderr}")
-    return done.stdout if code == 0 else done.stderr
-
-
-class Scene:
-    """Store, model, trajectory and result in a folder of their own."""
-
-    def __init__(self, folder, *query):
-        self.folder, self.model = folder, f"{folder}/model.ply"
-        self.trajectory, self.store = f"{folder}/trajectory.txt", f"{folder}/site.h5"
-        self.query = query
-
-    def search(self, name, *options):
-        result = f"{self.folder}/{name}.h5"
-        clearway("run", "--env", self.store, "--model", self.model, "--trajectory",
-                 self.trajectory, *options, "-o", result, "--force")
-        return result
-
-    def report(self, result, name, *options, code=0):
-        page = f"{self.folder}/{name}.html"
-        text = clearway("report", result, "--env", self.store, "--model", self.model,
-                        "--trajectory", self.trajectory, "-o", page, "--force", "--json",
-                        "--date", DATE, *options, code=code)
-        return page, json.loads(text) if code == 0 else text
-
-
-def make_hall(folder):
-    clearway("scene", "hall", "--points", 60000, "--poses", 400, "--model-points", 5000, "-o",
-             folder, "--force")
-    hall = Scene(folder)
-    clearway("convert", f"{folder}/environment.las", "-o", hall.store, "--force")
-    return hall
-
-
-def make_empty(folder):
-    """A box that is carried one metre above a floor."""
-    scene = Scene(folder)
-    scene.model = f"{folder}/model.xyz"
-    with open(f"{folder}/floor.xyz", "w") as file:
-        for x in range(0, 200):
-            for y in range(-20, 21):
-                file.write(f"{x / 10} {y / 10} 0\n")
-    with open(scene.model, "w") as file:
-        for x in (-0.5, 0.5):
-            for y in (-0.5, 0.5):
-                for z in (0, 1):
-                    file.write(f"{x} {y} {z}\n")
-    with open(scene.trajectory, "w") as file:
-        for i in range(100):
-            file.write(f"1 0 0 {5 + i / 10} 0 1 0 0 0 0 1 {1 + abs(i - 30) / 100}\n")
-    clearway("convert", f"{folder}/floor.xyz", "-o", scene.store, "--force")
-    return scene
-
-
-class ReportTest(unittest.TestCase):
+class ReportTest(PageChecks, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory(prefix="clearway-report-")
@@ -106,23 +49,6 @@ class ReportTest(unittest.TestCase):
             self.skipTest("chromium is not installed: the page is made, but not looked at")
         return self.browser.page(page, **size)
 
-    def check_quiet(self, page):
-        self.assertEqual(page.complaints(), [])
-
-    def check_words(self, page, facts):
-        self.assertEqual(page.run("document.body.dataset.ready"), "true")
-        word = page.run("byId('verdict-word').textContent").lower()
-        doubtful = facts["verdict"] == "clear" and facts["warnings"]
-        self.assertEqual(word, "clear, but doubtful" if doubtful else facts["verdict"])
-        text = page.run("document.body.innerText")
-        for slip in ("false", "undefined", "null", "NaN"):
-            self.assertNotIn(slip, text.split())
-        self.assertIn(f"{facts['colliding_points']:,}", text)
-        for kind in ("environment", "model", "trajectory"):
-            self.assertIn(facts["inputs"][kind]["hash"], text)
-        self.assertEqual(json.loads(page.run("document.getElementById('facts').textContent")),
-                         facts)
-
     def test_bytes_depend_on_nothing_else(self):
         one, _ = self.hall.report(self.found, "one", "--threads", 1)
         two, _ = self.hall.report(self.found, "two", "--threads", 3, "--memory", "1G")
@@ -142,8 +68,45 @@ class ReportTest(unittest.TestCase):
         self.assertGreater(len(listed), 3)
         for a, b in zip(listed, facts["conflicts"]["list"]):
             for key in ("id", "points", "source", "first_pose", "last_pose", "chainage_from",
-                        "chainage_to", "least_distance", "nearest_pose", "side"):
+                        "chainage_to", "least_distance", "nearest_pose", "side", "lateral",
+                        "height"):
                 self.assertEqual(a[key], b[key], key)
+
+    def test_head_of_the_page(self):
+        odd = '<b>"Nord" & \\</script>'
+        path, facts = self.hall.report(self.found, "head", "--title", odd, "--project", odd + "1",
+                                       "--client", odd + "2", "--author", odd + "3")
+        self.assertEqual([facts[key] for key in ("title", "project", "client", "author")],
+                         [odd, odd + "1", odd + "2", odd + "3"])
+        page = self.open(path)
+        self.check_words(page, facts)
+        self.assertEqual(page.run("document.title"), odd)
+        self.assertEqual(page.run("document.querySelector('h1').textContent"), odd)
+        self.assertEqual(page.run("byId('about').textContent"),
+                         f"Project: {odd}1Client: {odd}2Author: {odd}3")
+        self.assertEqual(page.run("(preparePrint(), document.querySelector('#print-feet').sheet"
+                                  ".cssRules.length)"), 1)
+        page.pdf(f"{self.hall.folder}/head.pdf")
+        self.check_quiet(page)
+
+    def test_what_was_left_out_of_the_model(self):
+        above = ("--model-above", 0.25)
+        result = self.hall.search("above", "--radius", 0.1, "--first-pose", *above)
+        self.assertIn("--model", self.hall.report(result, "bad", code=3)[1])
+        self.assertIn("--model", self.hall.report(result, "bad", "--model-above", 0.3, code=3)[1])
+        path, facts = self.hall.report(result, "above", *above)
+        model = facts["inputs"]["model"]
+        self.assertEqual(model["above"], 0.25)
+        self.assertEqual(model["left_out"], 5000 - model["points"])
+        self.assertGreaterEqual(model["box"]["lo"][2], 0.25)
+        self.assertIsNone(self.hall.report(self.found, "all")[1]["inputs"]["model"]["above"])
+        page = self.open(path)
+        self.check_words(page, facts)
+        self.assertIn(f"below z = 0.25 m in its own frame, {model['left_out']:,} of them",
+                      page.run("byId('verdict').innerText"))
+        self.assertIn("middle of its points", page.run("byId('conflict-details').innerText"))
+        self.assertNotIn("nearest point", page.run("byId('conflict-details').innerText"))
+        self.check_quiet(page)
 
     def test_refuses_what_is_not_of_the_run(self):
         other = Scene(self.hall.folder)
@@ -175,49 +138,17 @@ class ReportTest(unittest.TestCase):
             page.frames()
             self.assertGreater(page.run(f"({BLANK})('{canvas}')"), 20, canvas)
         self.check_slider(page)
+        self.check_offsets(page, facts)
+        self.check_ends(page)
         self.check_table(page, facts)
         self.check_keys(page)
+        self.check_paper(page, facts)
         shot = f"{self.hall.folder}/shot.png"
         page.screenshot(shot)
         self.assertGreater(os.path.getsize(shot), 20000)
         page.pdf(f"{self.hall.folder}/page.pdf")
         self.assertGreater(os.path.getsize(f"{self.hall.folder}/page.pdf"), 50000)
         self.check_quiet(page)
-
-    def check_slider(self, page):
-        page.run("""{ const s = byId('pose-slider'); s.value = 7;
-            s.dispatchEvent(new Event('input')); }""")
-        page.frames()
-        index = page.run("page.poses.index[7]")
-        self.assertIn(f"pose {index:,},", page.run("byId('pose-text').textContent"))
-        self.assertIn(f"Pose {index:,},", page.run("byId('profile-readout').textContent"))
-
-    def check_table(self, page, facts):
-        rows = "document.querySelectorAll('#conflicts-table tbody tr')"
-        self.assertEqual(page.run(f"{rows}.length"), min(100, facts["conflicts"]["count"]))
-        page.run("sortBy('No.')")
-        ids = page.run(f"[...{rows}].map((r) => +r.dataset.id)")
-        self.assertEqual(ids, sorted(ids))
-        page.run(f"{rows}[2].click()")
-        self.assertEqual(page.run("page.conflict.id"), ids[2])
-        self.assertIn(f"Conflict {ids[2]}", page.run("byId('conflict-details').innerText"))
-        side = facts["conflicts"]["list"][0]["side"]
-        page.run(f"""{{ const s = document.querySelector('#conflicts-tools select');
-            s.value = '{side}'; s.dispatchEvent(new Event('change')); }}""")
-        count = sum(c["side"] == side for c in facts["conflicts"]["list"])
-        self.assertEqual(page.run(f"{rows}.length"), min(100, count))
-
-    def check_keys(self, page):
-        """From a row of the table to the next, and into it, without a mouse."""
-        page.run("document.querySelector('#conflicts-table tbody tr').focus()")
-        page.key("ArrowDown")
-        chosen = page.run("document.activeElement.dataset.id")
-        page.key("Enter", "\r")
-        self.assertEqual(page.run("String(page.conflict.id)"), chosen)
-        page.run("document.querySelector('#profile-chart svg').focus()")
-        before = page.run("page.pose")
-        page.key("ArrowRight")
-        self.assertEqual(page.run("page.pose"), before + 1)
 
     def test_without_first_poses(self):
         bare = self.hall.search("bare", "--radius", 0.1)
@@ -241,9 +172,29 @@ class ReportTest(unittest.TestCase):
         text = page.run("byId('verdict').innerText")
         self.assertIn("1.000 m", text)
         self.assertIn("chainage 3.0", text)
+        self.assertIn("The nearest point is below it, 0.50 m right of the path and 1.00 m below it",
+                      text)
+        self.assertIn(" at " + page.run("coordinates(page.facts.least_distance.point)") + ".", text)
+        page.run("selectPose(90)")
+        page.run("[...document.querySelectorAll('#profile-tools button')]"
+                 ".find((b) => b.textContent === 'Nearest pose').click()")
+        self.assertEqual(page.run("page.poses.index[page.pose]"), 30)
         page.frames()
         self.assertGreater(page.run(f"({BLANK})('#view-canvas')"), 5)
         self.check_quiet(page)
+
+    def test_profile_has_gaps(self):
+        for far, pieces in ((1.05, 1), (0.5, 0)):
+            result = self.empty.search("gap", "--radius", 0.1, "--first-pose", "--profile", far)
+            path, facts = self.empty.report(result, "gap")
+            page = self.open(path)
+            self.check_words(page, facts)
+            self.assertEqual(page.run("profileLine().length"), pieces)
+            self.assertIn(f"nothing is closer than {far} m",
+                          page.run("document.querySelector('#profile-chart svg').textContent"))
+            buttons = page.run("byId('profile-tools').textContent")
+            self.assertEqual("Nearest pose" in buttons, pieces > 0)
+            self.check_quiet(page)
 
     def test_street(self):
         data = os.environ.get("CLEARWAY_TEST_DATA")
@@ -263,7 +214,7 @@ class ReportTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    scenes.PROGRAM = os.path.abspath(sys.argv.pop(1))
     if CHROMIUM is None:
         print("chromium is not installed: pages are made, but not looked at", file=sys.stderr)
     unittest.main(verbosity=2)

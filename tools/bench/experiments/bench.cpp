@@ -261,6 +261,7 @@ Json Bench::measure(const std::string& key, Json parameters, const SceneFiles& f
     seconds += run.wall_seconds;
     Json report = Json::parse(run.output);
     report["wall_seconds"] = run.wall_seconds;
+    report["cpu_seconds"] = run.cpu_seconds;
     report["peak_resident_bytes"] = run.peak_bytes;
     one["runs"].push_back(std::move(report));
   }

@@ -31,7 +31,7 @@ struct BenchOptions {
   std::string memory = "4G", device_memory = "2G";
   std::string gpus;           ///< of every run on a GPU: "0,1"; empty: the first with room
   bool cold = false;          ///< every run reads its store from the disk
-  SceneFiles also;            ///< a query of the user's, for equality; may be empty
+  SceneFiles also;            ///< a query of the user's, for equality and choice; may be empty
   double limit_seconds = 60;  ///< of one run; one that takes longer is stopped, and has failed
   bool resume = false, force = false;
 };
@@ -152,5 +152,6 @@ void bench_stability(Bench& bench);
 void bench_scaling(Bench& bench);
 void bench_hard(Bench& bench);
 void bench_equality(Bench& bench);
+void bench_choice(Bench& bench);
 
 }  // namespace clearway::bench

@@ -21,7 +21,8 @@ const std::vector<Mode>& modes() {
       {"between poses, first pose", {"--between-poses", "--first-pose"}},
       {"clearance", {"--clearance", "0.3"}, false},
       {"clearance below the radius, first pose", {"--clearance", "0.05", "--first-pose"}, false},
-      {"clearance, first pose", {"--clearance", "0.3", "--first-pose"}, false}};
+      {"clearance, first pose", {"--clearance", "0.3", "--first-pose"}, false},
+      {"profile", {"--profile", "0.3"}, false}};
   return kModes;
 }
 

@@ -73,6 +73,10 @@ struct Ending {
   struct rusage usage {};
 };
 
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 Ending reaped(pid_t process) {
   Ending ending;
   while (::wait4(process, &ending.status, 0, &ending.usage) < 0 && errno == EINTR) {
@@ -117,6 +121,7 @@ ProgramRun Program::run(std::vector<std::string> arguments, double limit_seconds
                  .output = text_of(output),
                  .log = text_of(log),
                  .wall_seconds = wall.seconds(),
+                 .cpu_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime),
                  .peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
   if (tool::stop_requested()) throw Interrupted(line + ": interrupted");
   if (timed_out) return run;

@@ -13,6 +13,7 @@ struct ProgramRun {
   bool timed_out = false;
   std::string output, log;       ///< standard output and standard error
   double wall_seconds = 0;       ///< from its start to its end
+  double cpu_seconds = 0;        ///< of all its threads, the system's included
   std::uint64_t peak_bytes = 0;  ///< of resident memory, mapped files included
 };
 

@@ -45,10 +45,10 @@ const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
 }
 
 std::string line_of(const Conflict& c) {
-  return fmt::format("  {:>5}  {:>19}  {:>11} points  {:>7}  {:.3f} {:.3f} {:.3f}\n", c.id,
+  return fmt::format("  {:>5}  {:>19}  {:>11} {:<6}  {:>7}  {:.3f} {:.3f} {:.3f}\n", c.id,
                      fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to),
-                     format_count(c.points), name_of(c.side), c.centroid.x, c.centroid.y,
-                     c.centroid.z);
+                     format_count(c.points), c.points == 1 ? "point" : "points", name_of(c.side),
+                     c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
 std::string list_text(const char* title, const Conflicts& conflicts,
@@ -71,12 +71,12 @@ std::string text_of(const Compared& a, const Compared& b, const ConflictMatch& m
   std::string text;
   for (const auto& [name, side] : {std::pair("a", &a), std::pair("b", &b)}) {
     const Conflicts& found = side->conflicts;
-    text += fmt::format("{}: {} conflicts of {} points in {}\n", name,
-                        format_count(found.listed.size()),
-                        format_count(found.colliding_points - found.small_points), side->file);
+    text += fmt::format("{}: {} of {} in {}\n", name, counted(found.listed.size(), "conflict"),
+                        counted(found.colliding_points - found.small_points, "point"), side->file);
     if (found.small_groups > 0) {
-      text += fmt::format("{}: {} groups of {} points are too small to be compared\n", name,
-                          format_count(found.small_groups), format_count(found.small_points));
+      text += fmt::format(
+          "{}: {} of {} {} too small to be compared\n", name, counted(found.small_groups, "group"),
+          counted(found.small_points, "point"), found.small_groups == 1 ? "is" : "are");
     }
   }
   if (a.radius != b.radius) {

@@ -33,16 +33,13 @@ void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char
 void add_conflict_options(CLI::App& command, ConflictCommand& options) {
   options.lengths.add(command, "--gap", options.find.gap,
                       "Points at most this far apart belong together (default: 0.3)");
-  command
-      .add_option("--min-points", options.find.min_points,
-                  "Groups of fewer points are counted, not listed")
-      ->type_name("N")
-      ->check(CLI::Range(1.0, 1e15))
-      ->capture_default_str();
+  add_count_option(command, "--min-points", options.find.min_points, 1, 1'000'000'000'000'000,
+                   "Groups of fewer points are counted, not listed");
   options.lengths.add(command, "--split", options.find.split,
                       "Cut groups that are longer than this along the path at multiples of it; 0: "
                       "never (default: 25)",
                       LengthRange::kFromZero);
+  add_chainage_option(command, options.lengths, options.find.chainage_start);
   add_memory_option(command, options.find.memory_bytes);
   add_threads_option(command, options.find.threads);
   add_trajectory_options(command, options.trajectory_options, options.lengths);

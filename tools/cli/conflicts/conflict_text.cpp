@@ -39,20 +39,16 @@ std::string row_text(const Conflict& c, bool distances) {
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
-std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
-  return format_count(count) + " " + (count == 1 ? one : many);
-}
-
 std::string totals_text(const ConflictFile& file) {
   const Conflicts& c = file.conflicts;
   if (c.colliding_points == 0) return "no conflicts: no point collides\n";
-  std::string text = counted(c.listed.size(), "conflict", "conflicts") + " of " +
-                     counted(c.colliding_points - c.small_points, "point", "points") + " along " +
+  std::string text = counted(c.listed.size(), "conflict") + " of " +
+                     counted(c.colliding_points - c.small_points, "point") + " along " +
                      format_brief(c.path_length) + " " + symbol_of(file.unit()) + " of path\n";
   if (c.small_groups > 0) {
-    text += "not listed: " + counted(c.small_groups, "group", "groups") + " of fewer than " +
-            counted(file.options.min_points, "point", "points") + ", together " +
-            counted(c.small_points, "point", "points") + "\n";
+    text += "not listed: " + counted(c.small_groups, "group") + " of fewer than " +
+            counted(file.options.min_points, "point") + ", together " +
+            counted(c.small_points, "point") + "\n";
   }
   return text;
 }

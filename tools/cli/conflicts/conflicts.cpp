@@ -35,7 +35,7 @@ struct ConflictsCommand : ConflictCommand {
   std::vector<std::filesystem::path> outputs;
   ModelOptions model_options;
   std::string date = ConflictFile::kNoDate;
-  std::size_t show = 20;
+  std::uint64_t show = 20;
   bool force = false;
   bool json = false;
 };
@@ -145,10 +145,8 @@ void add_conflicts(CLI::App& program) {
       ->type_name("FILE");
   add_conflict_options(*command, *options);
   add_sides(*command, *options);
-  command->add_option("--show", options->show, "Print a table of so many conflicts")
-      ->type_name("N")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
+  add_count_option(*command, "--show", options->show, 0, 1'000'000'000,
+                   "Print a table of so many conflicts");
   command
       ->add_option_function<std::string>(
           "--date", [&date = options->date](const std::string& text) { date = full_date(text); },

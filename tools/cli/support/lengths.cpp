@@ -56,6 +56,14 @@ std::optional<double> length_in(std::string_view digits, const Unit& unit) {
   return static_cast<double>(static_cast<long double>(*value) * unit.ten_thous / 10'000);
 }
 
+/// "0.2ft" is the double nearest to 0.2.
+double feet_in(std::string_view digits, const Unit& unit) {
+  constexpr long double kFoot = 3048;
+  const long double ten_thous =
+      unit.ten_thous != 0 ? unit.ten_thous : std::pow(10.0L, 4 + unit.power);
+  return static_cast<double>(number_of(digits).value_or(0) * ten_thous / kFoot);
+}
+
 std::optional<ParsedLength> parse(std::string_view text) {
   const std::size_t last_digit = text.find_last_of("0123456789.");
   if (last_digit == std::string_view::npos) return std::nullopt;
@@ -65,12 +73,13 @@ std::optional<ParsedLength> parse(std::string_view text) {
   while (unit.starts_with(' ')) unit.remove_prefix(1);
   if (unit.empty()) {
     const auto value = number_of(digits);
-    return value ? std::optional(ParsedLength{*value, false}) : std::nullopt;
+    return value ? std::optional(ParsedLength{.value = *value}) : std::nullopt;
   }
   for (const Unit& known : kUnits) {
     if (unit != known.name) continue;
     const auto value = length_in(digits, known);
-    return value ? std::optional(ParsedLength{*value, true}) : std::nullopt;
+    if (!value) return std::nullopt;
+    return ParsedLength{.value = *value, .has_unit = true, .feet = feet_in(digits, known)};
   }
   return std::nullopt;
 }
@@ -92,6 +101,11 @@ std::array<ParsedLength, 3> parse_three(const std::string& option, const std::st
 }
 
 }  // namespace
+
+double ParsedLength::in_units_of(double metres) const {
+  if (!has_unit) return value;
+  return metres == kMetresPerFoot ? feet : value / metres;
+}
 
 ParsedLength parse_length(const std::string& option, const std::string& text, LengthRange range) {
   const auto length = parse(text);
@@ -176,11 +190,16 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, Vec3
 
 void LengthOptions::set(double& length, const ParsedLength& parsed) {
   length = parsed.value;
-  if (parsed.has_unit) in_metres_.push_back(&length);
+  if (parsed.has_unit) with_unit_.emplace_back(&length, parsed);
 }
 
 void LengthOptions::convert(double metres) const {
-  for (double* length : in_metres_) *length /= metres;
+  for (const auto& [length, parsed] : with_unit_) *length = parsed.in_units_of(metres);
+}
+
+void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start) {
+  lengths.add(command, "--chainage-start", start, "Chainage of the first pose (default: 0)",
+              LengthRange::kAny);
 }
 
 }  // namespace clearway::tool

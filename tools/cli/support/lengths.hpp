@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clearway/vec3.hpp"
@@ -17,6 +18,10 @@ namespace clearway::tool {
 struct ParsedLength {
   double value = 0;       ///< metres where a unit was given
   bool has_unit = false;  ///< otherwise the unit is that of the file it is compared with
+  double feet = 0;        ///< the same, where a unit was given
+
+  /// In a unit of so many metres.
+  double in_units_of(double metres) const;
 };
 
 /// Which lengths an option takes.
@@ -51,13 +56,16 @@ class LengthOptions {
   CLI::Option* add(CLI::App& command, const std::string& name, Vec3& lengths,
                    const std::string& description);
 
-  /// Turns those that were given in metres into units of `metres` metres.
+  /// Turns those that were given with a unit into units of `metres` metres.
   void convert(double metres) const;
 
  private:
   void set(double& length, const ParsedLength& parsed);
 
-  std::vector<double*> in_metres_;
+  std::vector<std::pair<double*, ParsedLength>> with_unit_;
 };
+
+/// --chainage-start.
+void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start);
 
 }  // namespace clearway::tool

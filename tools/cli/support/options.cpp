@@ -8,6 +8,7 @@
 
 #include "cli/support/lengths.hpp"
 #include "core/util/format.hpp"
+#include "io/formats/text/text_number.hpp"
 
 namespace clearway::tool {
 
@@ -60,6 +61,25 @@ void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& 
           name, [&bytes, name](const std::string& text) { bytes = parse_size(name, text); },
           description)
       ->type_name("SIZE");
+}
+
+void add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
+                      std::uint64_t least, std::uint64_t most, const std::string& description) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [&count, least, most, name](const std::string& text) {
+            const auto given = parse_count(text);
+            if (!given || *given < least || *given > most) {
+              throw CLI::ValidationError(name, text + ": expected a whole number from " +
+                                                   format_count(least) + " to " +
+                                                   format_count(most));
+            }
+            count = *given;
+          },
+          description)
+      ->type_name("N")
+      ->default_str(std::to_string(count));
 }
 
 void add_memory_option(CLI::App& command, std::uint64_t& bytes) {

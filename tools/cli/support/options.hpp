@@ -24,6 +24,10 @@ CLI::Validator seconds_up_to(double most);
 void add_size_option(CLI::App& command, const std::string& name, std::uint64_t& bytes,
                      const std::string& description);
 
+/// An option that takes a whole number from `least` to `most`.
+void add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
+                      std::uint64_t least, std::uint64_t most, const std::string& description);
+
 /// --memory, in bytes.
 void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 

@@ -3,13 +3,13 @@
 #include <malloc.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
-#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "clearway/error.hpp"
 #include "cli/support/advice.hpp"
@@ -23,6 +23,16 @@
 namespace clearway::tool {
 namespace {
 
+/// Of CLI11's own messages the one that says too little.
+std::string failure_text(const CLI::App* program, const CLI::Error& error) {
+  constexpr std::string_view kOnce = ": At Most 1 required but received ";
+  std::string text = CLI::FailureMessage::simple(program, error);
+  const std::size_t at = text.find(kOnce);
+  if (at == std::string::npos) return text;
+  text.replace(at, kOnce.size(), ": given more than once; expected one, but there are ");
+  return text;
+}
+
 /// Help goes to standard output too: a disk that is full there is an error.
 int finish(const CLI::App& program, const CLI::ParseError& error) {
   if (program.exit(error) != 0) return kWrongUsage;
@@ -35,6 +45,7 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   program.set_version_flag("--version", CLEARWAY_VERSION);
   program.require_subcommand(1);
   int exit_code = kDone;
+  program.failure_message(failure_text);
   add_commands(program, exit_code);
   check_words(program, text.name, argc, argv);
   try {
@@ -49,7 +60,6 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
 void prepare_process() {
   start_log();
   hdf5::silence_for_good();
-  ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);  // pages on many streams do not wait in line
   install_map_fault_handler(kResource);
   ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error like a full disk
   ::signal(SIGPIPE, SIG_IGN);  // and so is a pipe that nobody reads

@@ -89,10 +89,9 @@ void write_changed(const ChangeOptions& options, const Change& change) {
   output.publish();
 
   const double motion_after = largest_motion(model, after);
-  spdlog::info(
-      "{}: {} poses, from {}; the largest motion from one to the next {:.6g} m, was {:.6g} m",
-      options.output.string(), format_count(after.size()), format_count(before.size()),
-      motion_after, motion_before);
+  spdlog::info("{}: {}, from {}; the largest motion from one to the next {:.6g} m, was {:.6g} m",
+               options.output.string(), counted(after.size(), "pose"), format_count(before.size()),
+               motion_after, motion_before);
   if (options.json) {
     const nlohmann::ordered_json report{{"poses_in", before.size()},
                                         {"poses_out", after.size()},

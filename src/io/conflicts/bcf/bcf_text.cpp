@@ -1,6 +1,7 @@
 #include "io/conflicts/bcf/bcf_text.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "core/util/format.hpp"
 #include "io/conflicts/json_text.hpp"
@@ -63,6 +64,14 @@ std::string title_of(const ConflictFile& file, const Conflict& c) {
   return out;
 }
 
+/// "1.25 m left of the path's position and 0.5 m above it".
+std::string offset_text(const ConflictFile& file, const Conflict& c) {
+  return length_text(file, format_brief(std::abs(*c.lateral))) +
+         (*c.lateral < 0 ? " right" : " left") + " of the path's position and " +
+         length_text(file, format_brief(std::abs(*c.height))) +
+         (*c.height < 0 ? " below it" : " above it");
+}
+
 std::string description_of(const ConflictFile& file, const Conflict& c) {
   std::string out = format_count(c.points) + (c.points == 1 ? " point is" : " points are") +
                     " closer than " + length_text(file, format_number(file.header.radius)) +
@@ -71,6 +80,10 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
     out += " The least distance is " + length_text(file, format_brief(*c.least_distance)) +
            ", at pose " + std::to_string(*c.nearest_pose) + "; " +
            length_text(file, format_brief(*c.encroachment)) + " are missing.";
+  }
+  if (c.lateral && c.height) {
+    out += std::string(c.nearest_point ? " Its nearest point" : " Its centroid") + " lies " +
+           offset_text(file, c) + ".";
   }
   return out + " First touched at poses " + std::to_string(c.first_pose) + " to " +
          std::to_string(c.last_pose) + ", counted from 0.";

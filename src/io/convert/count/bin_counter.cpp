@@ -34,10 +34,17 @@ void BinCounter::add_key(const Key& key, std::uint64_t count) {
     ++occupied_;
   }
   slot.count += count;
+  last_ = static_cast<std::size_t>(&slot - slots_.data());
 }
 
 void BinCounter::add(const LatticePoint& point, std::uint64_t count) {
-  add_key({point[0] >> shift_, point[1] >> shift_, point[2] >> shift_}, count);
+  const Key key{point[0] >> shift_, point[1] >> shift_, point[2] >> shift_};
+  Slot& last = slots_[last_];
+  if (last.count != 0 && last.key == key) {
+    last.count += count;
+    return;
+  }
+  add_key(key, count);
   while (occupied_ > most_bins_) coarsen();
 }
 

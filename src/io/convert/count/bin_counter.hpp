@@ -45,6 +45,7 @@ class BinCounter {
   unsigned shift_;
   std::size_t most_bins_;
   std::size_t occupied_ = 0;
+  std::size_t last_ = 0;     // slot of the point before: often that of the next one too
   std::vector<Slot> slots_;  // open addressing, half full with most_bins
 };
 

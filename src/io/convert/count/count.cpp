@@ -1,13 +1,11 @@
 #include "io/convert/count/count.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_pipeline.h>
 
 #include <map>
-#include <memory>
 
 #include "clearway/error.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/convert/inputs/for_each_batch.hpp"
 #include "io/convert/points_hash.hpp"
 
 namespace clearway {
@@ -19,24 +17,29 @@ constexpr std::size_t kMostBins = 1 << 17;
 constexpr std::size_t kMostSubBins = 1 << 10;  // of one overfull bin
 constexpr unsigned kSourceShift = 20;          // coinciding points: ranges of 2^20 source indices
 
-std::vector<Bin> count_bins(EnvironmentSource& environment, const Lattice& lattice, int threads,
-                            PointsHash& hash, InputSurvey& survey, std::uint64_t& points,
-                            Progress& progress) {
+/// What is made of a batch where nothing is.
+struct Nothing {};
+
+std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice, PointsHash& hash,
+                            InputSurvey& survey, std::uint64_t& points, Progress& progress) {
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
-  for_each_batch(
-      environment, threads, progress,
+  for_each_batch<Nothing>(
+      pass,
       [&](const QuantaBatch& batch) {
-        hash.add(batch);
-        survey.places.add(batch);
-        points += batch.quanta.size();
-      },
-      [&](const QuantaBatch& batch) {
+        const auto running = pass.clocks().measure(Stage::kCount);
         survey.boxes.add(batch);
         BinCounter& counter = counters.local();
         for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
         progress.advance(batch.quanta.size());
-      });
+        return Nothing();
+      },
+      [&](const QuantaBatch& batch, Nothing&) {
+        hash.add(batch);
+        survey.places.add(batch);
+        points += batch.quanta.size();
+      },
+      [](Nothing&) {});
   BinCounter all(kFinestShift, kMostBins);
   for (const BinCounter& counter : counters) all.merge(counter);
   if (lattice.regular() && all.shift() > lattice.cube_bits()) {
@@ -98,14 +101,14 @@ class Refinement {
 };
 
 /// Replaces the overfull bins of `bins` by finer ones; one more pass over the input.
-void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
-            const SplitTree& tree, std::vector<Bin>& bins, Progress& progress) {
+void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree& tree,
+            std::vector<Bin>& bins, Progress& progress) {
   tbb::enumerable_thread_specific<Refinement> counters(
       [&tree] { return Refinement(tree.overfull()); });
-  environment.rewind();
-  for_each_batch(
-      environment, threads, progress, [](const QuantaBatch&) {},
+  for_each_batch<Nothing>(
+      pass,
       [&](const QuantaBatch& batch) {
+        const auto running = pass.clocks().measure(Stage::kCount);
         Refinement& counter = counters.local();
         for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
           const LatticePoint point = lattice(batch.quanta[i], batch.source(i));
@@ -113,7 +116,9 @@ void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
           if (bin >= 0) counter.add(static_cast<std::size_t>(bin), point);
         }
         progress.advance(batch.quanta.size());
-      });
+        return Nothing();
+      },
+      [](const QuantaBatch&, Nothing&) {}, [](Nothing&) {});
   Refinement all(tree.overfull());
   for (const Refinement& counter : counters) all.merge(counter);
   std::erase_if(bins, [](const Bin& bin) { return bin.count > kBucketPoints; });
@@ -124,37 +129,15 @@ void refine(EnvironmentSource& environment, const Lattice& lattice, int threads,
 
 }  // namespace
 
-void for_each_batch(EnvironmentSource& environment, int threads, const Progress& progress,
-                    const std::function<void(const QuantaBatch&)>& in_order,
-                    const std::function<void(const QuantaBatch&)>& work) {
-  using Batch = std::shared_ptr<QuantaBatch>;
-  const ParallelScope scope;
-  const SerialStage input;
-  const auto read = piece_of(scope, input, [&](tbb::flow_control& flow) {
-    auto batch = std::make_shared<QuantaBatch>();
-    throw_if_stopped(progress);
-    if (environment.read(*batch)) {
-      in_order(*batch);
-    } else {
-      flow.stop();
-    }
-    return batch;
-  });
-  const auto worked = piece_of(scope, [&](const Batch& batch) { work(*batch); });
-  scope.begin();
-  tbb::parallel_pipeline(
-      2 * static_cast<std::size_t>(threads),
-      tbb::make_filter<void, Handed<Batch>>(tbb::filter_mode::serial_in_order, read) &
-          tbb::make_filter<Handed<Batch>, void>(tbb::filter_mode::parallel, worked));
-}
-
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
-                                     InputSurvey& survey, int threads, Progress& progress) {
+                                     InputSurvey& survey, FileHashes& files, int threads,
+                                     StageClocks& clocks, Progress& progress) {
   CountedEnvironment counted;
   PointsHash hash(environment.quantisation());
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  counted.bins = count_bins(environment, lattice, threads, hash, survey, counted.points, progress);
+  counted.bins = count_bins({environment, threads, &files, clocks, progress}, lattice, hash, survey,
+                            counted.points, progress);
   counted.input_points = environment.input_points();
   counted.points_hash = hash.digest(counted.input_points);
   progress.end();
@@ -162,7 +145,9 @@ CountedEnvironment count_environment(EnvironmentSource& environment, const Latti
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     if (tree.overfull().empty()) return counted;
     progress.begin("refine", counted.points, "points");
-    refine(environment, lattice, threads, tree, counted.bins, progress);
+    environment.rewind();
+    refine({environment, threads, nullptr, clocks, progress}, lattice, tree, counted.bins,
+           progress);
     progress.end();
   }
 }

@@ -1,23 +1,17 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "core/util/progress.hpp"
 #include "io/convert/checks/file_boxes.hpp"
 #include "io/convert/checks/same_place.hpp"
 #include "io/convert/inputs/environment_source.hpp"
+#include "io/convert/inputs/file_hashes.hpp"
 #include "io/convert/split_tree.hpp"
+#include "io/convert/stage_clocks.hpp"
 
 namespace clearway {
-
-/// Reads the environment once from its start, in order, and hands every batch to `work`, several
-/// threads at a time; `in_order` sees the batches first, one by one. Throws Interrupted when the
-/// progress asks to stop.
-void for_each_batch(EnvironmentSource& environment, int threads, const Progress& progress,
-                    const std::function<void(const QuantaBatch&)>& in_order,
-                    const std::function<void(const QuantaBatch&)>& work);
 
 /// What the counting pass notices besides, for warnings.
 struct InputSurvey {
@@ -32,8 +26,10 @@ struct CountedEnvironment {
   std::vector<Bin> bins;  ///< none with more than kBucketPoints points
 };
 
-/// The counting pass, and further ones while a bin is too full (docs/design/conversion.md).
+/// The counting pass, which also hashes the files, and further ones while a bin is too full
+/// (docs/design/conversion.md).
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
-                                     InputSurvey& survey, int threads, Progress& progress);
+                                     InputSurvey& survey, FileHashes& files, int threads,
+                                     StageClocks& clocks, Progress& progress);
 
 }  // namespace clearway

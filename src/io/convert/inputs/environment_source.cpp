@@ -4,31 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "core/util/shorten_notes.hpp"
 #include "io/convert/checks/choose_scale.hpp"
 #include "io/convert/checks/lost_digits.hpp"
+#include "io/convert/inputs/read_points.hpp"
 #include "io/convert/inputs/spooled_reader.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
-
-constexpr double kLeastQuantum = std::numeric_limits<std::int32_t>::min();
-constexpr double kGreatestQuantum = std::numeric_limits<std::int32_t>::max();
-
-bool is_finite(const Vec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
-Vec3 point_of(const PointBatch& batch, const CloudInfo& info, std::size_t i) {
-  if (!info.quantisation) return batch.positions[i];
-  const auto& q = batch.quanta[i];
-  return position(*info.quantisation, q[0], q[1], q[2]);
-}
 
 const EnvironmentOptions& checked(const EnvironmentOptions& options) {
   if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
@@ -72,13 +59,15 @@ EnvironmentSource::~EnvironmentSource() = default;
 
 void EnvironmentSource::open_inputs() {
   if (inputs_.are_a_stream()) {
-    stream_ = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
-                              options_.temporary_folder);
-    if (!stream_->can_rewind()) stream_ = spool(std::move(stream_), options_.temporary_folder);
+    auto stream = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
+                                  options_.temporary_folder);
+    if (!stream->can_rewind()) stream = spool(std::move(stream), options_.temporary_folder);
+    stream_ = std::move(stream);
   }
   declared_points_ = 0;
   for (std::size_t i = 0; i < files().size(); ++i) {
-    const CloudInfo& info = infos_.emplace_back(reader(i).info());
+    const CloudInfo& info = infos_.emplace_back(reader(i)->info());
+    in_pieces_.push_back(!stream_ && reader(i)->pieces() > 0);
     if (declared_points_ && info.declared_points) {
       *declared_points_ += *info.declared_points;
     } else {
@@ -122,14 +111,17 @@ std::vector<Message> EnvironmentSource::remarks() const {
 void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
   CoordinateRange range;
   progress.begin("range", declared_points_.value_or(0), "points");
-  while (next_batch(raw_)) {
+  RecordBatch records;
+  while (next(records)) {
     throw_if_stopped(progress);
-    const std::uint64_t first = file_points_ - raw_.size();
-    for (std::size_t i = 0; i < raw_.size(); ++i) {
-      const Vec3 p = point_of(raw_, infos_[file_], i);
+    if (records.reader) read_piece(records, nullptr);
+    const std::size_t count = records.points.size();
+    const std::uint64_t first = file_points_ - count;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 p = point_of(records.points, infos_[file_], i);
       if (is_finite(p)) range.add(p, file_, first + i);
     }
-    progress.advance(raw_.size());
+    progress.advance(count);
   }
   progress.end();
   rewind();
@@ -137,19 +129,19 @@ void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
   quantisation_ = choose_scale(range, options_.scale, files(), how_to_read_);
 }
 
-PointReader& EnvironmentSource::reader(std::size_t file) {
-  if (stream_) return *stream_;
+const std::shared_ptr<PointReader>& EnvironmentSource::reader(std::size_t file) {
+  if (stream_) return stream_;
   if (!current_ || open_file_ != file) {
     current_ = reading_one_of(files().size(),
                               [&] { return open_point_file(files()[file], how_to_read_); });
     open_file_ = file;
   }
-  return *current_;
+  return current_;
 }
 
 void EnvironmentSource::rewind() {
-  file_ = 0;
-  file_points_ = 0;
+  file_ = piece_ = 0;
+  file_points_ = next_source_ = 0;
   input_points_ = non_finite_points_ = absent_points_ = 0;
   largest_change_ = 0;
   points_of_files_.clear();
@@ -157,102 +149,61 @@ void EnvironmentSource::rewind() {
   current_.reset();
 }
 
-bool EnvironmentSource::next_batch(PointBatch& batch) {
-  for (; file_ < files().size(); ++file_, file_points_ = 0) {
-    PointReader& from = reader(file_);
-    if (!reading_one_of(files().size(), [&] { return from.read(batch); })) {
-      infos_[file_].remarks = from.info().remarks;
+bool EnvironmentSource::next(RecordBatch& records) {
+  for (; file_ < files().size(); ++file_, piece_ = 0, file_points_ = 0) {
+    const std::shared_ptr<PointReader>& from = reader(file_);
+    std::uint64_t count = 0;
+    if (piece_ < from->pieces()) {
+      records.reader = from;
+      records.piece = piece_++;
+      count = from->points_of_piece(records.piece);
+    } else if (from->pieces() == 0 &&
+               reading_one_of(files().size(), [&] { return from->read(records.points); })) {
+      records.reader.reset();
+      count = records.points.size();
+    } else {
+      infos_[file_].remarks = from->info().remarks;
       points_of_files_.push_back(file_points_);
       continue;
     }
-    file_points_ += batch.size();
+    records.file = file_;
+    records.first_source = next_source_;
+    file_points_ += count;
+    next_source_ += count;
     return true;
   }
   if (stream_ &&
       (infos_[0].crs_wkt != stream_->info().crs_wkt || infos_[0].unit != stream_->info().unit)) {
-    infos_[0] = stream_->info();  // a CRS may follow the points
+    infos_[0].crs_wkt = stream_->info().crs_wkt;  // it may follow the points
+    infos_[0].unit = stream_->info().unit;
+    infos_[0].unit_trouble = stream_->info().unit_trouble;
     find_crs();
   }
   return false;
 }
 
+void EnvironmentSource::read_piece(RecordBatch& records, PieceBytes* bytes) const {
+  reading_one_of(files().size(), [&] {
+    records.reader->read_piece(records.piece, records.points, bytes);
+    return true;
+  });
+}
+
+void EnvironmentSource::note(const QuantaBatch& batch) {
+  if (non_finite_points_ == 0) first_non_finite_ = batch.first_non_finite;
+  input_points_ += batch.records;
+  non_finite_points_ += batch.non_finite_points;
+  absent_points_ += batch.absent_points;
+  largest_change_ = std::max(largest_change_, batch.largest_change);
+}
+
 bool EnvironmentSource::read(QuantaBatch& batch) {
+  RecordBatch records;
   batch.quanta.clear();
-  batch.offsets.clear();
-  if (!next_batch(raw_)) return false;
-  batch.file = file_;
-  batch.first_source = input_points_;
-  if (shifts_.empty() || !infos_[file_].quantisation) {
-    append_rounded(raw_, batch);
-  } else {
-    append_kept(raw_, batch);
-  }
-  input_points_ += raw_.size();
+  if (!next(records)) return false;
+  convert(records, batch, false);
+  note(batch);
   return true;
-}
-
-void EnvironmentSource::append_kept(const PointBatch& batch, QuantaBatch& out) {
-  out.quanta = batch.quanta;
-  const Quantisation& own = *infos_[file_].quantisation;
-  if (own == quantisation_) return;
-  for (auto& q : out.quanta) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      const double before = coordinate(own, axis, q[k]);
-      const std::int64_t shifted = q[k] + shifts_[file_][k];
-      if (shifted < std::numeric_limits<std::int32_t>::min() ||
-          shifted > std::numeric_limits<std::int32_t>::max()) {
-        throw InputError(files()[file_].string() + ": too far from " + files()[0].string() +
-                             " for 32-bit integers of " + brief(own.scale[k]),
-                         Remedy::kScale);
-      }
-      q[k] = static_cast<std::int32_t>(shifted);
-      largest_change_ =
-          std::max(largest_change_, std::abs(coordinate(quantisation_, axis, q[k]) - before));
-    }
-  }
-}
-
-void EnvironmentSource::append_rounded(const PointBatch& batch, QuantaBatch& out) {
-  auto absent = batch.absent.begin();
-  for (std::size_t i = 0; i < batch.size(); ++i) {
-    const Vec3 p = point_of(batch, infos_[file_], i);
-    if (!is_finite(p)) {
-      if (absent != batch.absent.end() && *absent == i) {
-        ++absent_points_;
-        ++absent;
-      } else {
-        if (non_finite_points_++ == 0) first_non_finite_ = input_points_ + i;
-      }
-      if (out.offsets.empty()) {
-        for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
-        out.offsets.reserve(batch.size());
-      }
-      continue;
-    }
-    std::array<std::int32_t, 3> q;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      const double quantum =
-          std::nearbyint((p[axis] - quantisation_.offset[k]) / quantisation_.scale[k]);
-      if (quantum < kLeastQuantum || quantum > kGreatestQuantum) {
-        refuse_beyond_quanta();
-      }
-      q[k] = static_cast<std::int32_t>(quantum);
-      largest_change_ =
-          std::max(largest_change_, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
-    }
-    out.quanta.push_back(q);
-    // Identity until the first dropped point, also where that is the batch's very first one.
-    if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
-  }
-}
-
-void EnvironmentSource::refuse_beyond_quanta() const {
-  if (shifts_.empty()) refuse(files()[file_].string(), "changed while it was read");
-  refuse(files()[file_].string(),
-         "too far from the other files for 32-bit integers of " + brief(quantisation_.scale[0]),
-         Remedy::kScale);
 }
 
 EnvironmentSource::Place EnvironmentSource::place_of(std::uint64_t source) const {

@@ -48,8 +48,18 @@ class EnvironmentSource {
   /// Notes and warnings on the inputs; complete once read() has returned false.
   std::vector<Message> remarks() const;
 
-  /// The next batch in input order; false at the end.
+  /// Whether the points of a file are read in pieces.
+  const std::vector<bool>& in_pieces() const { return in_pieces_; }
+
+  /// The next batch in input order; false at the end. Three steps: next(), convert(), note().
   bool read(QuantaBatch& batch);
+  /// The next records in input order; false at the end.
+  bool next(RecordBatch& records);
+  /// Reads them where they are a piece, and makes them the store's integers. Several threads at
+  /// once. with_bytes: what a piece was read from is wanted too.
+  void convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const;
+  /// In input order: counts what was read.
+  void note(const QuantaBatch& batch);
   void rewind();
 
   /// A record of an input; known once read() has returned false.
@@ -81,29 +91,31 @@ class EnvironmentSource {
   void open_inputs();
   void find_crs();
   void choose_offset_and_scale(Progress& progress);
-  bool next_batch(PointBatch& batch);
-  PointReader& reader(std::size_t file);
-  void append_kept(const PointBatch& batch, QuantaBatch& out);
-  void append_rounded(const PointBatch& batch, QuantaBatch& out);
-  [[noreturn]] void refuse_beyond_quanta() const;
+  const std::shared_ptr<PointReader>& reader(std::size_t file);
+  void read_piece(RecordBatch& records, PieceBytes* bytes) const;
+  void append_kept(RecordBatch& records, QuantaBatch& out) const;
+  void append_rounded(const RecordBatch& records, QuantaBatch& out) const;
+  [[noreturn]] void refuse_beyond_quanta(std::size_t file) const;
 
   EnvironmentOptions options_;
   PointReadOptions how_to_read_;
   InputFiles inputs_;
   std::vector<CloudInfo> infos_;  // of the files
+  std::vector<bool> in_pieces_;
   Quantisation quantisation_{};
   std::vector<std::array<std::int64_t, 3>> shifts_;  // of the files' integers; empty: rounded anew
   CommonCrs crs_;
   std::vector<Message> range_warnings_;  // of the coordinates as they are
   std::optional<std::uint64_t> declared_points_;
 
-  std::unique_ptr<PointReader> stream_;   // standard input, spooled
-  std::unique_ptr<PointReader> current_;  // the open file
+  std::shared_ptr<PointReader> stream_;   // standard input, spooled
+  std::shared_ptr<PointReader> current_;  // the open file
   std::size_t open_file_ = 0;
   std::size_t file_ = 0;
+  std::size_t piece_ = 0;  // of that file
   std::uint64_t file_points_ = 0;
+  std::uint64_t next_source_ = 0;
   std::vector<std::uint64_t> points_of_files_;  // of those that were read to their end
-  PointBatch raw_;
   std::uint64_t input_points_ = 0;
   std::uint64_t non_finite_points_ = 0;
   std::uint64_t first_non_finite_ = 0;

@@ -43,7 +43,7 @@ void refuse_units(const std::filesystem::path& file, const CloudInfo& info) {
            info.unit_trouble + "; expected metres or feet for all of them. Convert the scan first",
            Remedy::kIgnoreCrs);
   }
-  if (info.unit != LengthUnit::kDegree) return;
+  if (info.unit != LengthUnit::kDegrees) return;
   refuse(file.string(),
          "its coordinate reference system is in degrees, expected lengths; project the scan first",
          Remedy::kIgnoreCrs);

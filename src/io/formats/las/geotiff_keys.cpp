@@ -55,10 +55,10 @@ StatedUnit plane_unit(std::span<const std::byte> keys) {
   const std::uint16_t model = value_of(keys, kModelType);
   const std::uint16_t unit = value_of(keys, kProjectedLinearUnit);
   const std::uint16_t projection = value_of(keys, kProjectedSystem);
-  if (model == 2) return {LengthUnit::kDegree, {}};
+  if (model == 2) return {LengthUnit::kDegrees, {}};
   if (model == 3) return unit_of(value_of(keys, kGeodeticLinearUnit));
   if (model == 0 && unit == 0 && projection == 0 && value_of(keys, kGeodeticSystem) != 0) {
-    return {LengthUnit::kDegree, {}};
+    return {LengthUnit::kDegrees, {}};
   }
   const bool has_unit = unit >= kFirstUnit && unit <= kLastUnit;
   if (!has_unit && projection != 0 && projection != kUserDefined) {

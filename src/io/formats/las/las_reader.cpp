@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/cloud/kd_order.hpp"
 #include "io/formats/las/las_header.hpp"
 #include "io/formats/las/las_records.hpp"
 #include "io/formats/laz/laz_reader.hpp"
@@ -47,9 +48,29 @@ class LasReader final : public PointReader {
       const auto bytes = wanted > 0 ? take_records(wanted) : take_more_records();
       if (bytes.empty()) break;
       append(bytes, batch.quanta);
+      next_ += wanted > 0 ? wanted : 1;
     }
     if (batch.quanta.empty()) finish();
     return !batch.quanta.empty();
+  }
+
+  std::size_t pieces() const override {
+    return input_.can_seek() ? divide_up(header_.points, piece_points()) : 0;
+  }
+
+  std::uint64_t points_of_piece(std::size_t piece) const override {
+    return std::min(piece_points(), header_.points - piece * piece_points());
+  }
+
+  void read_piece(std::size_t piece, PointBatch& batch, PieceBytes* bytes) override {
+    PieceBytes read;
+    read.first = header_.points_offset + piece * piece_points() * header_.record_bytes;
+    read.count = points_of_piece(piece) * header_.record_bytes;
+    read.bytes = std::make_unique_for_overwrite<std::byte[]>(read.count);
+    input_.read_at(read.first, read.span());
+    batch.quanta.clear();
+    append(read.span(), batch.quanta);
+    if (bytes) *bytes = std::move(read);
   }
 
   void rewind() override {
@@ -58,6 +79,12 @@ class LasReader final : public PointReader {
   }
 
  private:
+  static constexpr std::uint64_t kPieceBytes = std::uint64_t{2} << 20;
+
+  std::uint64_t piece_points() const {
+    return std::min<std::uint64_t>(kBatchPoints, kPieceBytes / header_.record_bytes);
+  }
+
   /// Whole records between the last declared one and `end`.
   std::uint64_t surplus(std::uint64_t end) const {
     return (end - std::min(end, header_.points_end())) / header_.record_bytes;
@@ -95,7 +122,8 @@ class LasReader final : public PointReader {
     return bytes;
   }
 
-  void append(std::span<const std::byte> bytes, std::vector<std::array<std::int32_t, 3>>& out) {
+  void append(std::span<const std::byte> bytes,
+              std::vector<std::array<std::int32_t, 3>>& out) const {
     const std::size_t stride = header_.record_bytes;
     const std::size_t records = bytes.size() / stride;
     out.resize(out.size() + records);
@@ -103,7 +131,6 @@ class LasReader final : public PointReader {
     const std::byte* record = bytes.data();
     const std::byte* const end = record + bytes.size();
     for (; record != end; record += stride) std::memcpy(point++, record, sizeof *point);
-    next_ += records;
   }
 
   void finish() {

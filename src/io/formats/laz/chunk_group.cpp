@@ -29,6 +29,14 @@ bool ChunkGroups::takes(const Chunk& chunk) const {
   return !one_at_a_time_ && chunk.points <= kMostPointsOfChunk;
 }
 
+void ChunkGroups::decode_alone(const InputBuffer& input, const Chunk& chunk,
+                               std::span<Quanta> points) {
+  ChunkDecoder& decoder = *decoders_.local();
+  decoder.begin(input, chunk);
+  decoder.decode(points);
+  decoder.finish();
+}
+
 std::size_t ChunkGroups::decode(const InputBuffer& input, std::span<const Chunk> chunks,
                                 std::size_t first, std::size_t count) {
   const std::uint64_t most = threads() * kPointsPerThread;
@@ -42,10 +50,7 @@ std::size_t ChunkGroups::decode(const InputBuffer& input, std::span<const Chunk>
   std::vector<std::optional<DamagedChunk>> damages(taken);
   const auto decode_one = [&](std::size_t i) {
     try {
-      ChunkDecoder& decoder = *decoders_.local();
-      decoder.begin(input, chunks[i]);
-      decoder.decode(std::span(points_).subspan(begins[i], chunks[i].points));
-      decoder.finish();
+      decode_alone(input, chunks[i], std::span(points_).subspan(begins[i], chunks[i].points));
     } catch (const DamagedChunk& damage) {
       damages[i] = damage;
     }

@@ -24,6 +24,8 @@ class ChunkGroups {
   /// one's index, for messages. Throws InputError for the first chunk that is damaged.
   std::size_t decode(const InputBuffer& input, std::span<const Chunk> chunks, std::size_t first,
                      std::size_t count);
+  /// Decodes one chunk that takes() accepts, several threads at once. Throws DamagedChunk.
+  void decode_alone(const InputBuffer& input, const Chunk& chunk, std::span<Quanta> points);
   std::span<const Quanta> points() const { return points_; }
 
  private:

@@ -23,7 +23,9 @@ class TabledReader final : public PointReader {
         chunks_(std::move(chunks)),
         info_(std::move(info)),
         scheme_(scheme),
-        groups_(scheme) {}
+        groups_(scheme) {
+    find_pieces();
+  }
 
   const CloudInfo& info() const override { return info_; }
 
@@ -53,7 +55,59 @@ class TabledReader final : public PointReader {
     ready_ = {};
   }
 
+  std::size_t pieces() const override { return piece_ends_.size(); }
+
+  std::uint64_t points_of_piece(std::size_t piece) const override {
+    std::uint64_t points = 0;
+    for (const Chunk& chunk : chunks_of(piece)) points += chunk.points;
+    return points;
+  }
+
+  void read_piece(std::size_t piece, PointBatch& batch, PieceBytes* bytes) override {
+    const std::span<const Chunk> chunks = chunks_of(piece);
+    batch.quanta.resize(points_of_piece(piece));
+    std::span<Quanta> room(batch.quanta);
+    for (const Chunk& chunk : chunks) {
+      try {
+        groups_.decode_alone(input_, chunk, room.first(chunk.points));
+      } catch (const laz::DamagedChunk& damage) {
+        const auto index = static_cast<std::uint64_t>(&chunk - chunks_.data());
+        laz::refuse_chunk(input_.name(), index, chunks_.size(), damage);
+      }
+      room = room.subspan(chunk.points);
+    }
+    if (!bytes) return;
+    bytes->first = chunks.front().begin;
+    bytes->count = chunks.back().end - chunks.front().begin;
+    bytes->bytes = std::make_unique_for_overwrite<std::byte[]>(bytes->count);
+    input_.read_at(bytes->first, bytes->span());
+  }
+
  private:
+  /// Pieces of some chunks each; none where a chunk is too large to be decoded as a whole.
+  void find_pieces() {
+    std::uint64_t points = 0, bytes = 0;
+    for (std::size_t i = 0; i < chunks_.size(); ++i) {
+      const std::uint64_t size = chunks_[i].end - chunks_[i].begin;
+      if (!groups_.takes(chunks_[i]) || size > kMostChunkBytes) {
+        piece_ends_.clear();
+        return;
+      }
+      points += chunks_[i].points;
+      bytes += size;
+      const bool full = points >= kBatchPoints / 2 || bytes >= kMostChunkBytes / 4;
+      if (!full && i + 1 < chunks_.size()) continue;
+      piece_ends_.push_back(i + 1);
+      points = bytes = 0;
+    }
+  }
+
+  std::span<const Chunk> chunks_of(std::size_t piece) const {
+    const std::size_t first = piece == 0 ? 0 : piece_ends_[piece - 1];
+    return std::span(chunks_).subspan(first, piece_ends_[piece] - first);
+  }
+
+  static constexpr std::uint64_t kMostChunkBytes = std::uint64_t{4} << 20;
   /// Appends points of a chunk too large for a group, as many as there is room for.
   void read_large(PointBatch& batch) {
     try {
@@ -78,6 +132,7 @@ class TabledReader final : public PointReader {
 
   InputBuffer input_;
   std::vector<Chunk> chunks_;
+  std::vector<std::size_t> piece_ends_;  ///< chunk behind each piece; empty: only read() can
   CloudInfo info_;
   Scheme scheme_;
   laz::ChunkGroups groups_;

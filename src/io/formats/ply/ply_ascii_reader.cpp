@@ -5,6 +5,7 @@
 
 #include "io/formats/ply/ply_body_reader.hpp"
 #include "io/formats/ply/ply_reader.hpp"
+#include "io/formats/text/point_blocks.hpp"
 #include "io/formats/text/point_line.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
@@ -24,13 +25,23 @@ class AsciiPlyReader final : public PlyBodyReader {
     batch.positions.clear();
     const PlyElement& vertices = header_.vertices();
     const std::uint64_t stop = std::min<std::uint64_t>(vertices.count, next_ + kBatchPoints);
-    for (; next_ < stop; ++next_) {
+    while (next_ < stop) {
+      const std::size_t taken =
+          blocks_.take(batch.positions, batch.positions.size() + stop - next_);
+      next_ += taken;
+      if (taken > 0 || read_blocks()) continue;
       Vec3 point{};
-      read_row(vertices, next_, &point);
+      read_row(vertices, next_++, &point);
       batch.positions.push_back(point);
     }
     if (batch.positions.empty()) check_end();
     return !batch.positions.empty();
+  }
+
+  void rewind() override {
+    PlyBodyReader::rewind();
+    blocks_.clear();
+    in_turn_ = 0;
   }
 
   std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
@@ -45,6 +56,39 @@ class AsciiPlyReader final : public PlyBodyReader {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     refuse_line(input_.name(), input_.line(), what);
+  }
+
+  /// Reads vertices ahead, but for those with lists, and where that did not go lately.
+  bool read_blocks() {
+    if (in_turn_ > 0) {
+      --in_turn_;
+      return false;
+    }
+    const PlyElement& vertices = header_.vertices();
+    const auto parse = PointBlocks::of_lines([this](std::string_view line, Vec3& point) {
+      if (is_blank_line(line)) return PointBlocks::Line::kNothing;
+      return parse_vertex(line, point) ? PointBlocks::Line::kPoint : PointBlocks::Line::kOther;
+    });
+    if (blocks_.read(input_, parse, vertices.count - next_)) return true;
+    in_turn_ = kBatchPoints;
+    return false;
+  }
+
+  /// False for a line that is no vertex, or one with a list.
+  bool parse_vertex(std::string_view line, Vec3& point) const {
+    const std::vector<PlyProperty>& properties = header_.vertices().properties;
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    for (std::size_t i = 0; i < properties.size(); ++i) {
+      at = skip_blanks(at, end);
+      double value = 0;
+      if (properties[i].list_count || !parse_number(at, end, value)) return false;
+      if (at != end && !is_blank(*at)) return false;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (header_.coordinates[axis] == i) point[axis] = value;
+      }
+    }
+    return skip_blanks(at, end) == end;
   }
 
   void skip_element(const PlyElement& element) override {
@@ -127,6 +171,9 @@ class AsciiPlyReader final : public PlyBodyReader {
     }
     for (double i = 0; i < count; ++i) next_number(at, end, property);
   }
+
+  PointBlocks blocks_;
+  std::size_t in_turn_ = 0;  ///< so many lines are read one by one
 };
 
 }  // namespace

@@ -54,6 +54,20 @@ void join_units(std::string_view line, std::vector<std::string_view>& fields) {
   fields = std::move(joined);
 }
 
+/// Where the field whose quotes open at `open` ends; 0 where they do not close right before that.
+std::size_t end_of_quoted(std::string_view line, std::size_t open, char separator) {
+  for (std::size_t at = line.find('"', open + 1); at != std::string_view::npos;
+       at = line.find('"', at + 1)) {
+    if (at + 1 < line.size() && line[at + 1] == '"') {
+      ++at;  // two stand for one
+      continue;
+    }
+    const std::size_t end = std::min(line.find_first_not_of(" \t", at + 1), line.size());
+    return end == line.size() || line[end] == separator ? end : 0;
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::optional<std::size_t> ColumnNames::find(std::span<const std::string_view> prefixes,
@@ -89,6 +103,21 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
   }
 }
 
+void split_quoted_fields(std::string_view line, char separator,
+                         std::vector<std::string_view>& fields) {
+  split_fields(line, separator, fields);
+  if (separator == ' ' || line.find('"') == std::string_view::npos) return;
+  fields.clear();
+  for (std::size_t start = 0;;) {
+    std::size_t end = std::min(line.find(separator, start), line.size());
+    const std::size_t open = std::min(line.find_first_not_of(" \t", start), line.size());
+    if (open < end && line[open] == '"') end = std::max(end, end_of_quoted(line, open, separator));
+    fields.push_back(line.substr(start, end - start));
+    if (end == line.size()) break;
+    start = end + 1;
+  }
+}
+
 ColumnNames parse_column_names(std::string_view line) {
   ColumnNames result;
   line = without_mark(line);
@@ -96,7 +125,7 @@ ColumnNames parse_column_names(std::string_view line) {
                      : line.find(',') != std::string_view::npos ? ','
                                                                 : ' ';
   std::vector<std::string_view> fields;
-  split_fields(line, result.separator, fields);
+  split_quoted_fields(line, result.separator, fields);
   if (result.separator == ' ') join_units(line, fields);
   for (const std::string_view field : fields) {
     result.names.push_back(name_in(field));

@@ -28,4 +28,8 @@ ColumnNames parse_column_names(std::string_view line);
 /// fields: views of `line`, blanks around them included; its capacity is kept.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
 
+/// The same of CSV (RFC 4180): no separator within a field in double quotes counts.
+void split_quoted_fields(std::string_view line, char separator,
+                         std::vector<std::string_view>& fields);
+
 }  // namespace clearway

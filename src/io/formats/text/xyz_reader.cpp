@@ -6,6 +6,7 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "io/formats/text/open_end.hpp"
+#include "io/formats/text/point_blocks.hpp"
 #include "io/formats/text/point_line.hpp"
 #include "io/formats/text/xyz_prologue.hpp"
 #include "io/system/input_error.hpp"
@@ -37,12 +38,9 @@ class XyzReader final : public PointReader {
     batch.quanta.clear();
     batch.absent.clear();
     batch.positions.clear();
-    std::string_view line;
-    while (batch.positions.size() < kBatchPoints && next_point_line(line)) {
-      Vec3 point{};
-      if (!line_.parse(line, point)) refuse_point(line);
-      batch.positions.push_back(point);
-      open_end_.see(input_, line);
+    while (batch.positions.size() < kBatchPoints) {
+      if (blocks_.take(batch.positions, kBatchPoints) > 0 || read_blocks()) continue;
+      if (!read_line(batch)) break;
     }
     if (batch.positions.size() < kBatchPoints) finish();
     return !batch.positions.empty();
@@ -69,6 +67,38 @@ class XyzReader final : public PointReader {
 
   bool is_counted() const { return first_.line > 0; }
 
+  bool read_line(PointBatch& batch) {
+    std::string_view line;
+    if (!next_point_line(line)) return false;
+    Vec3 point{};
+    if (!line_.parse(line, point)) refuse_point(line);
+    batch.positions.push_back(point);
+    open_end_.see(input_, line);
+    return true;
+  }
+
+  /// Reads ahead, but for the first line, and where that did not go lately.
+  bool read_blocks() {
+    if (in_turn_ > 0) {
+      --in_turn_;
+      return false;
+    }
+    const std::uint64_t most = is_counted() ? count_.points - next_ : ~std::uint64_t{0};
+    const auto parse =
+        PointBlocks::of_lines([line = line_](std::string_view text, Vec3& point) mutable {
+          text = without_leading_blanks(text);
+          if (is_text_comment(text)) return PointBlocks::Line::kNothing;
+          return line.parse(text, point) ? PointBlocks::Line::kPoint : PointBlocks::Line::kOther;
+        });
+    const auto read = blocks_.read(input_, parse, most);
+    if (!read) {
+      in_turn_ = kBatchPoints;
+      return false;
+    }
+    next_ += *read;
+    return true;
+  }
+
   void start() {
     count_ = first_;
     declared_ = first_.points;
@@ -76,6 +106,8 @@ class XyzReader final : public PointReader {
     next_ = 0;
     open_end_ = OpenEnd(is_counted());
     finished_ = false;
+    blocks_.clear();
+    in_turn_ = 1;
   }
 
   [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
@@ -162,6 +194,8 @@ class XyzReader final : public PointReader {
   std::uint64_t declared_ = 0;  ///< up to there
   std::uint64_t counts_ = 0;    ///< so many, this one included
   std::uint64_t next_ = 0;      ///< lines of points read behind the count
+  PointBlocks blocks_;
+  std::size_t in_turn_ = 1;  ///< so many lines are read one by one
   OpenEnd open_end_;
   bool finished_ = false;
 };

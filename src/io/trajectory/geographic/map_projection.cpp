@@ -1,7 +1,5 @@
 #include "io/trajectory/geographic/map_projection.hpp"
 
-#include <proj.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/geometry/angle.hpp"
+#include "io/formats/proj_objects.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -18,15 +17,6 @@ namespace {
 
 constexpr double kSemiMajor = 6378137;               // of WGS 84
 constexpr double kEccentricity2 = 6.69437999014e-3;  // squared, of WGS 84
-
-struct FreeContext {
-  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
-};
-struct FreeObject {
-  void operator()(PJ* object) const { proj_destroy(object); }
-};
-using Context = std::unique_ptr<PJ_CONTEXT, FreeContext>;
-using Object = std::unique_ptr<PJ, FreeObject>;
 
 /// The text that PROJ logs, rather than printing it.
 void keep_log(void* kept, int, const char* text) { *static_cast<std::string*>(kept) = text; }
@@ -47,28 +37,18 @@ bool names_files(std::string_view wkt) {
 
 struct MapProjection::Parts {
   std::string log;  ///< outlives the context
-  Context context;
-  Object transformation;
+  ProjContext context;
+  ProjObject transformation;
 
-  Object create(const std::string& text, bool from_file) {
+  ProjObject create(const std::string& text, bool from_file) {
     if (from_file) {
-      return Object(proj_create_from_wkt(context.get(), text.c_str(), nullptr, nullptr, nullptr));
+      return ProjObject(
+          proj_create_from_wkt(context.get(), text.c_str(), nullptr, nullptr, nullptr));
     }
     const bool proj_string = text.find("+proj=") != std::string::npos;
     const bool typed = text.find("+type=crs") != std::string::npos;
-    return Object(
+    return ProjObject(
         proj_create(context.get(), (proj_string && !typed ? text + " +type=crs" : text).c_str()));
-  }
-
-  /// Metres of a unit of the axis; 0 where there is no such axis.
-  double unit_of_axis(const PJ* crs, int axis) const {
-    const Object system(proj_crs_get_coordinate_system(context.get(), crs));
-    double unit = 0;
-    if (!system || proj_cs_get_axis_info(context.get(), system.get(), axis, nullptr, nullptr,
-                                         nullptr, &unit, nullptr, nullptr, nullptr) == 0) {
-      return 0;
-    }
-    return unit;
   }
 };
 
@@ -77,12 +57,8 @@ MapProjection::MapProjection(MapProjection&&) noexcept = default;
 MapProjection& MapProjection::operator=(MapProjection&&) noexcept = default;
 
 MapProjection::MapProjection(const TrajectoryOptions& options) : parts_(std::make_unique<Parts>()) {
-  parts_->context.reset(proj_context_create());
-  PJ_CONTEXT* context = parts_->context.get();
-  if (context == nullptr) throw ResourceError("PROJ cannot be started");
-  proj_context_set_enable_network(context, 0);
-  proj_log_func(context, &parts_->log, keep_log);
-
+  parts_->context = start_proj(keep_log, &parts_->log);
+  if (!parts_->context) throw ResourceError("PROJ cannot be started");
   const bool from_file = options.crs.empty();
   std::string crs = from_file ? options.default_crs : options.crs;
   constexpr std::string_view kEllipsoidal = "+ellipsoidal";
@@ -101,32 +77,32 @@ MapProjection::MapProjection(const TrajectoryOptions& options) : parts_(std::mak
 
 void MapProjection::open(const std::string& crs, bool from_file, const std::string& datum) {
   PJ_CONTEXT* context = parts_->context.get();
-  Object target = parts_->create(crs, from_file);
+  ProjObject target = parts_->create(crs, from_file);
   if (!target) throw InputError("PROJ does not know it (" + parts_->log + ")");
   if (proj_get_type(target.get()) == PJ_TYPE_BOUND_CRS) {
     target.reset(proj_get_source_crs(context, target.get()));
   }
   name_ = proj_get_name(target.get()) != nullptr ? proj_get_name(target.get()) : crs;
-  Object part;
+  ProjObject part;
   const PJ* horizontal = target.get();
   if (proj_get_type(target.get()) == PJ_TYPE_COMPOUND_CRS) {
     part.reset(proj_crs_get_sub_crs(context, target.get(), 0));
     horizontal = part.get();
-    const Object vertical(proj_crs_get_sub_crs(context, target.get(), 1));
-    vertical_unit_ = parts_->unit_of_axis(vertical.get(), 0);
+    const ProjObject vertical(proj_crs_get_sub_crs(context, target.get(), 1));
+    vertical_unit_ = unit_of_axis(context, vertical.get(), 0);
   } else {
-    vertical_unit_ = parts_->unit_of_axis(horizontal, 2);
+    vertical_unit_ = unit_of_axis(context, horizontal, 2);
   }
   if (proj_get_type(horizontal) != PJ_TYPE_PROJECTED_CRS) {
     throw InputError("expected a projected one, with easting and northing");
   }
-  unit_ = parts_->unit_of_axis(horizontal, 0);
+  unit_ = unit_of_axis(context, horizontal, 0);
   if (!(unit_ > 0)) throw InputError("its unit is not known");
 
-  const Object source = parts_->create(datum.empty() ? "EPSG:4979" : datum, false);
+  const ProjObject source = parts_->create(datum.empty() ? "EPSG:4979" : datum, false);
   if (!source) throw UsageError(excerpt(datum) + " is no geographic datum that PROJ knows");
   const std::array<const char*, 2> options{"ALLOW_BALLPARK=NO", nullptr};
-  const Object found(
+  const ProjObject found(
       proj_create_crs_to_crs_from_pj(context, source.get(), target.get(), nullptr, options.data()));
   if (found) parts_->transformation.reset(proj_normalize_for_visualization(context, found.get()));
   if (!parts_->transformation) {
@@ -186,7 +162,7 @@ double MapProjection::skew(double longitude, double latitude, double height) con
 }
 
 double MapProjection::accuracy() const {
-  const Object used(proj_trans_get_last_used_operation(parts_->transformation.get()));
+  const ProjObject used(proj_trans_get_last_used_operation(parts_->transformation.get()));
   if (!used) return -1;
   return proj_coordoperation_get_accuracy(parts_->context.get(), used.get());
 }

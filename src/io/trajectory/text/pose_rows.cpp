@@ -1,6 +1,7 @@
 #include "io/trajectory/text/pose_rows.hpp"
 
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "io/formats/text/text_number.hpp"
@@ -29,6 +30,22 @@ std::string_view bare_text(std::string_view field) {
   const std::size_t first = field.find_first_not_of(kAround);
   if (first == std::string_view::npos) return {};
   return field.substr(first, field.find_last_not_of(kAround) + 1 - first);
+}
+
+/// What a field says, without quotes around it; in quotes, two within stand for one (RFC 4180).
+std::string name_of_pose(std::string_view field) {
+  const std::size_t open = field.find('"'), close = field.rfind('"');
+  const bool quoted = open != close && bare_text(field.substr(0, open)).empty() &&
+                      bare_text(field.substr(close)).empty();
+  if (!quoted) return std::string(bare_text(field));
+  const std::string_view inner = field.substr(open + 1, close - open - 1);
+  if (inner.find("\"\"") == std::string_view::npos) return std::string(bare_text(field));
+  std::string name;
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    name += inner[i];
+    if (inner.substr(i).starts_with("\"\"")) ++i;
+  }
+  return name;
 }
 
 }  // namespace
@@ -85,6 +102,38 @@ Objection PoseRows::add(std::string_view line) {
   }
 }
 
+PoseRows PoseRows::for_lines(std::size_t lines) const {
+  PoseRows part(format_, columns_, options_, name_);
+  part.row_numbers_ = row_numbers_;
+  const bool angles = columns_ && columns_->rotation.size() == 3;
+  if (angles) {
+    part.angles_.reserve(lines);
+  } else {
+    part.poses_.reserve(lines);
+  }
+  if (!times_.empty()) part.times_.reserve(lines);
+  if (!names_.empty()) part.names_.reserve(lines);
+  return part;
+}
+
+void PoseRows::append(std::vector<PoseRows> parts) {
+  const auto append_all = [&parts](auto PoseRows::*list, auto& out) {
+    std::size_t all = out.size();
+    for (const PoseRows& part : parts) all += (part.*list).size();
+    out.reserve(all);
+    for (PoseRows& part : parts) {
+      auto& from = part.*list;
+      out.insert(out.end(), std::make_move_iterator(from.begin()),
+                 std::make_move_iterator(from.end()));
+      from = {};
+    }
+  };
+  append_all(&PoseRows::poses_, poses_);
+  append_all(&PoseRows::angles_, angles_);
+  append_all(&PoseRows::times_, times_);
+  append_all(&PoseRows::names_, names_);
+}
+
 void PoseRows::push(const Pose& pose) {
   poses_.push_back(pose);
   for (double& coordinate : poses_.back().translation) coordinate = in_metres_(coordinate);
@@ -132,7 +181,7 @@ Objection PoseRows::add_quaternion(std::string_view line) {
 }
 
 Objection PoseRows::add_columns(std::string_view line) {
-  split_fields(line, columns_->separator, fields_);
+  split_quoted_fields(line, columns_->separator, fields_);
   if (fields_.size() != columns_->fields) {
     return {std::to_string(fields_.size()) + " columns; expected " +
             std::to_string(columns_->fields) + " as before"};
@@ -180,7 +229,7 @@ void PoseRows::add_labels() {
     const auto time = parse_whole_number(fields_[*columns_->time]);
     if (time && std::isfinite(*time)) add_time(seconds_of(*time));
   }
-  if (columns_->name) names_.emplace_back(bare_text(fields_[*columns_->name]));
+  if (columns_->name) names_.push_back(name_of_pose(fields_[*columns_->name]));
 }
 
 Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {

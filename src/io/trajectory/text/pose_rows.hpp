@@ -29,6 +29,9 @@ class PoseRows {
 
   /// Why the line is no pose; without text where it is one.
   Objection add(std::string_view line);
+  /// For up to `lines` other lines of the file, behind the first; to be appended.
+  PoseRows for_lines(std::size_t lines) const;
+  void append(std::vector<PoseRows> parts);
   /// After the last line.
   void finish(TrajectoryFile& out);
 

@@ -1,11 +1,20 @@
 #include "io/trajectory/text/text_trajectory.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "core/util/tsan_annotations.hpp"
 #include "io/formats/text/column_names.hpp"
+#include "io/formats/text/line_blocks.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
 #include "io/trajectory/text/pose_rows.hpp"
@@ -19,8 +28,6 @@ bool starts_with_number(std::string_view line) {
   return parse_number(at, at + line.size(), value);
 }
 
-bool is_comment(std::string_view line) { return line.front() == '#' || line.starts_with("//"); }
-
 class TextTrajectory {
  public:
   TextTrajectory(InputBuffer input, const TrajectoryOptions& options)
@@ -30,18 +37,19 @@ class TextTrajectory {
     input_.skip_byte_order_mark();
     std::string_view line;
     while (input_.next_line(line)) {
-      const char* const end = line.data() + line.size();
-      line.remove_prefix(static_cast<std::size_t>(skip_blanks(line.data(), end) - line.data()));
+      line = without_leading_blanks(line);
       if (line.empty()) continue;
-      if (is_comment(line)) {
+      if (is_text_comment(line)) {
         if (!rows_ && reads_names()) note_header(line);
       } else if (!rows_ && !started_ && is_header(line)) {
         started_ = true;
       } else {
-        if (!rows_) start(line);
+        const bool first = !rows_;
+        if (first) start(line);
         const Objection objection = rows_->add(line);
         if (!objection.text.empty()) fail(objection);
         ends_in_number_ = !input_.line_terminated() && line.ends_with('.');
+        if (first && input_.can_seek() && read_blocks()) break;
       }
     }
     out.format = format_;
@@ -58,6 +66,39 @@ class TextTrajectory {
  private:
   [[noreturn]] void fail(const Objection& objection) const {
     refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
+  }
+
+  /// Reads all lines behind the first pose at the same time. False, and nothing read, where one is
+  /// refused or may be cut: who reads them in turn knows its number.
+  bool read_blocks() {
+    const LineBlocks blocks(input_);
+    if (blocks.count() < 2) return false;
+    std::vector<PoseRows> parts(blocks.count(), rows_->for_lines(0));
+    std::atomic<bool> good = true;
+    tbb::enumerable_thread_specific<std::vector<char>> rooms;
+    const auto read_one = [&](std::size_t i) {
+      if (!good) return;
+      const std::string_view block = blocks.read(i, rooms.local());
+      const auto lines = static_cast<std::size_t>(std::ranges::count(block, '\n')) + 1;
+      PoseRows part = rows_->for_lines(lines);
+      if (!add_lines(block, part)) good = false;
+      parts[i] = std::move(part);
+    };
+    const ParallelScope scope;
+    const auto piece = piece_of(scope, read_one);
+    scope.begin();
+    tbb::parallel_for(std::size_t{0}, parts.size(), piece);
+    if (good) rows_->append(std::move(parts));
+    return good;
+  }
+
+  static bool add_lines(std::string_view block, PoseRows& rows) {
+    std::string_view last;
+    const bool good = each_line(block, [&](std::string_view line) {
+      last = line = without_leading_blanks(line);
+      return is_text_comment(line) || rows.add(line).text.empty();
+    });
+    return good && (block.ends_with('\n') || !last.ends_with('.'));
   }
 
   bool reads_names() const {
@@ -85,7 +126,7 @@ class TextTrajectory {
   /// Settles the format by the first line of numbers.
   void start(std::string_view line) {
     std::vector<std::string_view> fields;
-    split_fields(line, columns_ ? columns_->separator : ',', fields);
+    split_quoted_fields(line, columns_ ? columns_->separator : ',', fields);
     if (format_ == TrajectoryFormat::kEuroc) {
       if (fields.size() < 8) {
         fail({std::to_string(fields.size()) +

@@ -144,7 +144,7 @@ TEST_CASE("well-known text counts more than what liblas repeats and than GeoTIFF
   las.vlrs.pop_back();
   CHECK(open_point_file(scratch.write("a.las", las.build()))->info().unit == LengthUnit::kFoot);
   las.vlrs.pop_back();
-  CHECK(open_point_file(scratch.write("a.las", las.build()))->info().unit == LengthUnit::kDegree);
+  CHECK(open_point_file(scratch.write("a.las", las.build()))->info().unit == LengthUnit::kDegrees);
 }
 
 TEST_CASE("GeoTIFF keys tell the unit") {
@@ -155,8 +155,8 @@ TEST_CASE("GeoTIFF keys tell the unit") {
   CHECK(unit_with_keys({{1024, 1}, {3072, 2227}}) == LengthUnit::kUsSurveyFoot);
   CHECK(unit_with_keys({{1024, 1}, {3072, 32767}}) == LengthUnit::kUnknown);
   CHECK(unit_with_keys({{1024, 1}, {3076, 9014}}) == LengthUnit::kUnknown);
-  CHECK(unit_with_keys({{1024, 2}, {2048, 4326}}) == LengthUnit::kDegree);
-  CHECK(unit_with_keys({{2048, 4326}}) == LengthUnit::kDegree);
+  CHECK(unit_with_keys({{1024, 2}, {2048, 4326}}) == LengthUnit::kDegrees);
+  CHECK(unit_with_keys({{2048, 4326}}) == LengthUnit::kDegrees);
   CHECK(unit_with_keys({{1024, 3}, {2052, 9001}}) == LengthUnit::kMetre);
   CHECK(unit_with_keys({}) == LengthUnit::kUnknown);
 }

@@ -91,7 +91,7 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
   CHECK(rows[0] ==
         "id,points,source,lo_x,lo_y,lo_z,hi_x,hi_y,hi_z,centroid_x,centroid_y,centroid_z,"
         "first_pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,"
-        "nearest_source,encroachment,side,group");
+        "nearest_source,encroachment,side,lateral,height,group");
   CHECK_THAT(rows[1], Catch::StartsWith("1," + all["conflicts"][0]["points"].dump() + "," +
                                         all["conflicts"][0]["source"].dump() + ","));
 }
@@ -151,12 +151,12 @@ TEST_CASE("GeoJSON and GeoPackage open in GDAL") {
   const std::string package = said_by("ogrinfo", "-so -al " + work.path("c.gpkg"), work);
   const std::string json_text = said_by("ogrinfo", "-so -al " + work.path("c.geojson"), work);
   if (package.empty() || json_text.empty()) return;
-  CHECK_THAT(package, Contains("Layer name: conflicts") && Contains("Geometry: 3D Point") &&
-                          Contains("Layer name: footprints") && Contains("Geometry: 3D Polygon") &&
-                          Contains("Layer name: stretches") &&
-                          Contains("Geometry: 3D Line String") &&
-                          Contains("Feature Count: " + count) && Contains("encroachment: Real") &&
-                          Contains("side: String"));
+  CHECK_THAT(package,
+             Contains("Layer name: conflicts") && Contains("Geometry: 3D Point") &&
+                 Contains("Layer name: footprints") && Contains("Geometry: 3D Polygon") &&
+                 Contains("Layer name: stretches") && Contains("Geometry: 3D Line String") &&
+                 Contains("Feature Count: " + count) && Contains("encroachment: Real") &&
+                 Contains("lateral: Real") && Contains("height: Real") && Contains("side: String"));
   CHECK_THAT(json_text, Contains("Feature Count: " + std::to_string(features["features"].size())) &&
                             !Contains("WGS 84"));
   const std::string first = said_by("ogrinfo", work.path("c.gpkg") + " conflicts -fid 1", work);
@@ -203,6 +203,11 @@ TEST_CASE("what conflicts cannot do is refused, and no output is left") {
   check_refused(work.conflicts("-o " + work.path("c.xml")), 2, "unknown output format");
   check_refused(work.conflicts("--gap 0"), 2, "--gap");
   check_refused(work.conflicts("--split=-1"), 2, "0 or more");
+  check_refused(work.conflicts("--split 1e-308"), 2, "or more, or 0 for none");
+  check_refused(work.conflicts("--min-points 1.5"), 2,
+                "--min-points: 1.5: expected a whole number from 1");
+  check_refused(work.conflicts("--min-points 0"), 2, "expected a whole number from 1");
+  check_refused(work.conflicts("--chainage-start far"), 2, "--chainage-start");
   check_refused(work.conflicts("--forward +z"), 2, "same axis");
   check_refused(work.conflicts("--date 2025-02-30 -o " + work.path("c.bcf")), 2, "--date");
   check_refused(work.conflicts("--memory 1M"), 4, "--memory");
@@ -264,6 +269,7 @@ TEST_CASE("compare --conflicts tells new, gone and the same, and exits with 1 on
   const Outcome equal = compare("out.h5", "out.h5", "");
   CHECK(equal.exit_code == 0);
   CHECK_THAT(equal.out, Contains("no new conflicts"));
+  CHECK(compare("out.h5", "out.h5", "--gap 1e-300").exit_code == 0);
   const Outcome small = work.run("compare " + work.path("fewer.h5") + " " + work.path("out.h5") +
                                  " --conflicts --trajectory " + (work.hall / "trajectory.txt") +
                                  " --min-points 1000000");

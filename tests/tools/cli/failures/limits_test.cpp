@@ -151,6 +151,7 @@ void write_line(const std::filesystem::path& path, std::uint32_t points,
   append_packed_chunk<std::int32_t>(zero, packed.chunks[1]);
   append_packed_chunk<std::int32_t>(zero, packed.chunks[2]);
   append_packed_chunk<std::uint64_t>(sources, packed.chunks[3]);
+  hash_chunks(packed);
   StoreWriter writer(path, metadata, 1);
   writer.append(packed);
   writer.finish({{0, 1, 0}});

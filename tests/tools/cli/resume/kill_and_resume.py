@@ -2,11 +2,12 @@
 done: the file must be, byte for byte, that of a run that nobody disturbed. Now and then another
 process starts on the same output: one of the two is refused.
 
-kill_and_resume.py PROGRAM [--kills N] [--seed S] [--only PART-OF-A-CASE]
+kill_and_resume.py PROGRAM [--kills N] [--seed S] [--only PART-OF-A-CASE] [--while-writing]
                    [--device cuda] [--points N] [--poses N]
 
 --kills: SIGKILLs of every case; SIGTERMs come on top. On a GPU, where runs are short, --points and
---poses make them long enough to be killed while they search.
+--poses make them long enough to be killed while they search. --while-writing: runs of which most
+points are part of the result, killed while it is being written.
 """
 
 import argparse
@@ -19,6 +20,9 @@ import tempfile
 import time
 
 
+# With all tables, and in several passes.
+WRITTEN = {"all tables": ["--first-pose", "--clearance", "3", "--profile", "3"],
+           "small memory": ["--first-pose", "--memory", "160M"]}
 MOST_KILLED = 5  # in a row; starting again may take longer than is left until the next kill
 
 
@@ -34,6 +38,7 @@ def expect(condition, what):
 class Scene:
     def __init__(self, program, work, device, points, poses):
         self.program, self.work, self.device = program, work, device
+        self.radius = "0.1"
         made = run([program, "scene", "hall", "--points", str(points), "--model-points", "10000",
                     "--poses", str(poses), "-o", str(work / "hall")])
         expect(made.returncode == 0, made.stdout)
@@ -44,7 +49,7 @@ class Scene:
     def run_command(self, options, output):
         return [self.program, "run", "--env", str(self.work / "site.h5"), "--model",
                 str(self.work / "hall/model.ply"), "--trajectory",
-                str(self.work / "hall/trajectory.txt"), "--radius", "0.1", "--device",
+                str(self.work / "hall/trajectory.txt"), "--radius", self.radius, "--device",
                 self.device, "-o", str(output)] + options
 
     def convert_command(self, options, output):
@@ -100,6 +105,49 @@ def lasts(process, seconds):
         return True
 
 
+def wait_for_writing(process, output, bytes_written):
+    """Until that much of the result is in its temporary file, or it is done."""
+    partial = output.with_name(output.name + ".partial")
+    while process.poll() is None and not output.exists():
+        try:
+            if partial.stat().st_size >= bytes_written:
+                return
+        except FileNotFoundError:
+            pass
+        time.sleep(0.0002)
+
+
+def attempt_writing(command, output, whole, draw, tally):
+    """A process that is killed when it has written some part of the result's bytes."""
+    process = start(command)
+    wait_for_writing(process, output, max(1, draw.random() * whole))
+    stop(process, signal.SIGKILL, tally)
+
+
+def torment_writing(name, command, reference, output, kills, draw):
+    """Kills at any moment of the writing and resumes until `kills` SIGKILLs were made."""
+    done = run(command([], reference))
+    expect(done.returncode == 0, done.stdout)
+    whole = reference.stat().st_size
+    tally = Tally()
+    while tally.kills < kills:
+        output.unlink(missing_ok=True)
+        for _ in range(MOST_KILLED):
+            attempt_writing(command(["--resume"], output), output, whole, draw, tally)
+            expect(not output.exists() or output.read_bytes() == reference.read_bytes(),
+                   f"{name}: the result differs")
+            if output.exists():
+                break
+        last = run(command(["--resume"], output))
+        expect(last.returncode == 0, last.stdout)
+        expect(output.read_bytes() == reference.read_bytes(), f"{name}: the result differs")
+        left = [p.name for p in output.parent.iterdir()]
+        expect(left == [output.name], f"{name}: left behind: {left}")
+        tally.finished += 1
+    print(f"{name}, {whole} bytes: {tally.kills} SIGKILLs while writing, {tally.inherited} of the "
+          f"runs went on from finished work, {tally.finished} results, all equal", flush=True)
+
+
 def attempt(command, usual, draw, tally):
     """One process that is killed, or two of which one is."""
     process = start(command)
@@ -153,6 +201,7 @@ def main():
     parser.add_argument("--kills", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="")
+    parser.add_argument("--while-writing", action="store_true")
     parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu")
     parser.add_argument("--points", type=int, default=1000000)
     parser.add_argument("--poses", type=int, default=2000)
@@ -170,6 +219,15 @@ def main():
                       arguments.poses)
         output = work / "out" / "out.h5"
         output.parent.mkdir()
+        if arguments.while_writing:
+            scene.radius = "3"
+            for name, options in WRITTEN.items():
+                if arguments.only not in name:
+                    continue
+                torment_writing(name, lambda more, to: scene.run_command(options + more, to),
+                                work / "reference.h5", output, arguments.kills, draw)
+                (work / "reference.h5").unlink()
+            return
         for name, options in cases.items():
             if arguments.only not in name:
                 continue

@@ -1,4 +1,4 @@
-#include "stream/write_profile.hpp"
+#include "stream/write/write_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,11 @@ Vec3 position_of(const StoreReader& store, std::uint64_t entry) {
 
 }  // namespace
 
-void write_profile(const StoreReader& store, const ProfileSet& profile,
-                   std::span<const double> chainage, ResultWriter& writer, Progress& progress) {
+std::optional<FoundPlace> write_profile(const StoreReader& store, const ProfileSet& profile,
+                                        std::span<const double> chainage, ResultWriter& writer,
+                                        Progress& progress) {
   constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  std::optional<FoundPlace> least;
   std::vector<double> distance;
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
@@ -37,9 +39,12 @@ void write_profile(const StoreReader& store, const ProfileSet& profile,
       source.push_back(point.source);
       xyz.push_back(point.found() ? position_of(store, point.entry)
                                   : Vec3{kNowhere, kNowhere, kNowhere});
+      if (!point.found() || (least && least->distance <= distance.back())) continue;
+      least = {point.source, static_cast<std::uint32_t>(pose), xyz.back(), distance.back()};
     }
     writer.append_profile(distance, source, xyz, chainage.subspan(first, end - first));
   }
+  return least;
 }
 
 }  // namespace clearway

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+#include "clearway/vec3.hpp"
+
+namespace clearway {
+
+/// An environment point of the answer, and the pose at which it counts.
+struct FoundPlace {
+  std::uint64_t source = 0;
+  std::uint32_t pose = 0;
+  Vec3 xyz{};
+  double distance = 0;  ///< metres, where one was asked for
+  friend bool operator==(const FoundPlace&, const FoundPlace&) = default;
+};
+
+}  // namespace clearway

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/geometry/model_tree.hpp"
+#include "core/sweep/model_field_ref.hpp"
+
+namespace clearway {
+
+/// Finds the nearest model points of all nodes of a brick together. Model points that are the
+/// nearest of no position within a part of the brick are left out for all of its nodes at once.
+/// Allocates nothing. Large: some 100 kB.
+class BrickNearest {
+ public:
+  /// The tree is not empty and outlives it.
+  explicit BrickNearest(const ModelTree& tree) : tree_(tree) {}
+
+  /// corner: the brick's first node; voxel: from a node to the next, metres. For each node
+  /// [z][y][x] the squared distance, rounded down to float, and a nearest point
+  /// (ModelFieldRef::kBrickNodes of both).
+  void find(const Vec3& corner, double voxel, float* squared, std::uint32_t* nearest);
+
+ private:
+  /// Nodes first[k] to last[k] of each axis.
+  struct Part {
+    std::uint32_t first[3], last[3];
+  };
+  struct Candidate {
+    Vec3 point;
+    std::uint32_t index;
+  };
+  /// All positions within `half` of `centre` along each axis.
+  struct Place {
+    Vec3 centre, half;
+  };
+
+  static constexpr std::uint32_t kMostGathered = 1024;
+  static constexpr std::uint32_t kLevels = 3;  ///< of parts: 9, 5 and 3 nodes along an axis
+
+  void find_in(const Part& part, std::span<const Candidate> candidates, std::uint32_t level);
+  bool gather(const Place& place, std::span<const Candidate>& out);
+  std::span<const Candidate> narrowed(const Place& place, std::span<const Candidate> candidates,
+                                      std::uint32_t level);
+  void find_among(const Part& part, std::span<const Candidate> candidates);
+  void find_in_tree(const Part& part);
+  Vec3 node(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
+  Place place_of(const Part& part) const;
+  void keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared,
+            std::uint32_t nearest);
+
+  const ModelTree& tree_;
+  Vec3 corner_{};
+  double voxel_ = 0;
+  float* squared_ = nullptr;
+  std::uint32_t* nearest_ = nullptr;
+  std::uint32_t near_ = 0;  ///< a point near the last place
+  std::array<std::array<Candidate, kMostGathered>, kLevels> kept_;
+};
+
+/// Not above the true square: one rounding to float and a few in double are taken off.
+float rounded_down(double squared);
+
+}  // namespace clearway

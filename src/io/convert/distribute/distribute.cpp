@@ -1,0 +1,119 @@
+#include "io/convert/distribute/distribute.hpp"
+
+#include <span>
+
+#include "clearway/error.hpp"
+#include "io/convert/inputs/for_each_batch.hpp"
+#include "io/convert/points_hash.hpp"
+
+namespace clearway {
+namespace {
+
+/// A batch's points grouped by unit, each group in source order.
+struct GroupedBatch {
+  struct Group {
+    std::uint32_t unit;
+    std::uint32_t begin, end;
+    std::uint64_t first = 0;  ///< place of its points among the unit's
+  };
+  std::vector<DistributedPoint> points;
+  std::vector<Group> groups;
+};
+
+class Grouper {
+ public:
+  Grouper(const Lattice& lattice, const SplitTree& tree) : lattice_(lattice), tree_(tree) {}
+
+  GroupedBatch operator()(const QuantaBatch& batch) const {
+    const std::size_t n = batch.quanta.size();
+    std::vector<std::uint32_t> unit(n);
+    std::vector<std::uint32_t> ends(tree_.units().size() + 1, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::uint32_t node = tree_.descend(lattice_(batch.quanta[i], batch.source(i)));
+      unit[i] = static_cast<std::uint32_t>(tree_.nodes()[node].unit);
+      ++ends[unit[i] + 1];
+    }
+    GroupedBatch out;
+    for (std::uint32_t u = 0; u + 1 < ends.size(); ++u) {
+      if (ends[u + 1] > 0) out.groups.push_back({u, ends[u], ends[u] + ends[u + 1]});
+      ends[u + 1] += ends[u];
+    }
+    out.points.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& q = batch.quanta[i];
+      const std::uint64_t source = batch.source(i);
+      out.points[ends[unit[i]]++] = {
+          {q[0], q[1], q[2]},
+          {static_cast<std::uint32_t>(source), static_cast<std::uint32_t>(source >> 32)}};
+    }
+    return out;
+  }
+
+ private:
+  const Lattice& lattice_;
+  const SplitTree& tree_;
+};
+
+[[noreturn]] void refuse_change(const EnvironmentSource& environment) {
+  environment.refuse_changed();
+  throw InputError("the input changed between two passes over it, expected the same points");
+}
+
+/// Gives every group its place: batch by batch, in their order.
+class Places {
+ public:
+  Places(const EnvironmentSource& environment, const Distribution& distribution)
+      : environment_(environment), distribution_(distribution), next_(distribution.units()) {}
+
+  void assign(GroupedBatch& batch) {
+    for (GroupedBatch::Group& group : batch.groups) {
+      group.first = next_[group.unit];
+      next_[group.unit] += group.end - group.begin;
+      if (next_[group.unit] > distribution_.points(group.unit)) refuse_change(environment_);
+    }
+  }
+
+  void finish() const {
+    for (std::size_t unit = 0; unit < next_.size(); ++unit) {
+      if (next_[unit] != distribution_.points(unit)) refuse_change(environment_);
+    }
+  }
+
+ private:
+  const EnvironmentSource& environment_;
+  const Distribution& distribution_;
+  std::vector<std::uint64_t> next_;  // place in each unit
+};
+
+}  // namespace
+
+void distribute(EnvironmentSource& environment, std::uint64_t points_hash, const Lattice& lattice,
+                const SplitTree& tree, PlaceCounter& places, Distribution& distribution,
+                int threads, StageClocks& clocks, Progress& progress) {
+  const Grouper group(lattice, tree);
+  PointsHash hash(environment.quantisation());
+  Places order(environment, distribution);
+  environment.rewind();
+  for_each_batch<GroupedBatch>(
+      {environment, threads, nullptr, clocks, progress},
+      [&](const QuantaBatch& batch) {
+        const auto running = clocks.measure(Stage::kGroup);
+        places.add(batch);
+        return group(batch);
+      },
+      [&](const QuantaBatch& batch, GroupedBatch& grouped) {
+        hash.add(batch);
+        order.assign(grouped);
+      },
+      [&](const GroupedBatch& grouped) {
+        const auto running = clocks.measure(Stage::kDistribute);
+        for (const auto& [unit, begin, end, first] : grouped.groups) {
+          distribution.put(unit, first, std::span(grouped.points).subspan(begin, end - begin));
+        }
+        progress.advance(grouped.points.size());
+      });
+  order.finish();
+  if (hash.digest(environment.input_points()) != points_hash) refuse_change(environment);
+}
+
+}  // namespace clearway

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "io/hdf5/hdf5.hpp"
+#include "io/hdf5/stored_chunk.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+
+/// Rows of some columns that are read together: their chunks by the thread that calls HDF5, then
+/// checked, decoded and hashed by many. It tells whether all is well, never what is not: who finds
+/// something amiss reads the rows again one after the other, so that messages are always the same.
+class ParallelRead {
+ public:
+  /// first: a row that begins a chunk. check(first row, values) throws InputError for rows that are
+  /// wrong; thread safe. False where the chunks cannot be had.
+  template <typename Number, typename Value, typename Check>
+  bool add(const hdf5::Rows<Number>& dataset, std::uint64_t first, std::span<Value> out,
+           Xxh64Stream& hash, Check check) {
+    Chunks& chunks = chunks_.emplace_back();
+    if (!dataset.read_chunks(first, out.size(), chunks)) return false;
+    const std::uint64_t rows = dataset.chunk_rows();
+    pieces_.emplace_back([&chunks, out, &hash] {
+      std::size_t left = out.size_bytes();
+      for (const std::vector<std::byte>& chunk : chunks) {
+        const std::size_t used = std::min(left, chunk.size() - hdf5::kChecksumBytes);
+        hash.update(std::span(chunk).first(used));
+        left -= used;
+      }
+      return true;
+    });
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      const std::size_t from = i * rows;
+      const std::span<Value> part = out.subspan(from, std::min(rows, out.size() - from));
+      pieces_.emplace_back([&chunk = chunks[i], part, check, row = first + from] {
+        if (!hdf5::is_sealed(chunk)) return false;
+        std::memcpy(part.data(), chunk.data(), part.size_bytes());
+        return passes(check, row, std::span<const Value>(part));
+      });
+    }
+    return true;
+  }
+
+  /// Whether all rows are intact and pass their checks; they and the hashes are complete then.
+  bool run() const;
+
+ private:
+  using Chunks = std::vector<std::vector<std::byte>>;
+
+  template <typename Check, typename Value>
+  static bool passes(const Check& check, std::uint64_t row, std::span<const Value> values) {
+    try {
+      check(row, values);
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
+  }
+
+  std::deque<Chunks> chunks_;  // whose places stay
+  std::vector<std::function<bool()>> pieces_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,37 @@
+#include "search/choice/device_estimate.hpp"
+
+#include <algorithm>
+
+#include "search/choice/cpu_estimate.hpp"
+
+namespace clearway {
+namespace {
+
+// Measured as docs/design/pipeline.md says ("Start and end of a GPU").
+
+/// What a GPU adds to a run, seconds: of its start and end, what nothing runs beside.
+constexpr double kStart = 0.5;
+/// Cores that search as fast as a GPU does.
+constexpr double kCores = 350;
+/// How much longer a search on the CPU takes with distances beyond the radius.
+constexpr double kDistances = 11;
+/// Environment points that a core searches in a second.
+constexpr double kPointsPerCore = 13e6;
+
+}  // namespace
+
+DeviceEstimate estimate_devices(const Workload& work, const QueryParameters& query, Engine engine,
+                                int threads) {
+  const bool distances = query.clearance > 0 || query.profile > 0;
+  const CpuEstimate on_cpu = estimate_on_cpu(work, threads);
+  const bool may_be_kdtree = engine == Engine::kAuto && !distances;
+  const double set = may_be_kdtree ? std::min(on_cpu.sweep, on_cpu.kdtree) : on_cpu.sweep;
+  const double cpu = (distances ? kDistances : 1) * set;
+  return {cpu, kStart + cpu * threads / kCores};
+}
+
+std::uint64_t surely_many_points(int threads) {
+  return static_cast<std::uint64_t>(kStart * kPointsPerCore * std::max(threads, 1));
+}
+
+}  // namespace clearway

@@ -1,0 +1,135 @@
+#include "search/choice/workload.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/geometry/point_box.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kSampledPoses = 16;
+
+Box widened(Box box, double by) {
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= by;
+    box.hi[k] += by;
+  }
+  return box;
+}
+
+Vec3 middle_of(const Box& box) {
+  return {(box.lo.x + box.hi.x) / 2, (box.lo.y + box.hi.y) / 2, (box.lo.z + box.hi.z) / 2};
+}
+
+bool overlap(const Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k) {
+    if (a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k]) return false;
+  }
+  return true;
+}
+
+bool contains(const Box& box, const Vec3& x) { return overlap(box, {x, x}); }
+
+/// Of a box that a pose moves.
+Box moved(const Pose& pose, const Box& box) {
+  std::vector<Vec3> corners;
+  corners.reserve(8);
+  for (int i = 0; i < 8; ++i) {
+    corners.push_back(
+        transform(pose, {(i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
+                         (i & 4) != 0 ? box.hi.z : box.lo.z}));
+  }
+  return box_of(corners);
+}
+
+/// Into the model's frame, of a pose that is rigid.
+Vec3 moved_back(const Pose& pose, const Vec3& e) {
+  Vec3 out{};
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) {
+      out[k] += pose.rotation[3 * i + k] * (e[i] - pose.translation[i]);
+    }
+  }
+  return out;
+}
+
+/// Points of the blocks whose middle is in the model's box at a pose.
+class NearPoints {
+ public:
+  NearPoints(const PackedCloud& cloud, const Box& model, const Pose& pose)
+      : cloud_(cloud), model_(model), reach_(moved(pose, model)), pose_(pose) {
+    if (!cloud.tree().empty()) descend(0);
+  }
+
+  double count() const { return count_; }
+
+ private:
+  void descend(std::uint32_t index) {
+    const TreeNode& node = cloud_.tree()[index];
+    if (!overlap(reach_, position_box(cloud_.quantisation(), node.box))) return;
+    if (node.right == 0) {
+      look_at(node.first_cell);
+      return;
+    }
+    descend(index + 1);
+    descend(node.right);
+  }
+
+  void look_at(std::uint32_t index) {
+    const Cell& cell = cloud_.cells()[index];
+    const auto blocks = static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
+    const std::size_t first = std::size_t{index} * cloud_.blocks_per_cell();
+    for (std::uint32_t block = 0; block < blocks; ++block) {
+      const QuantumBox box = decode_block_box(cell.box, cloud_.blocks()[first + block]);
+      const Vec3 middle = middle_of(position_box(cloud_.quantisation(), box));
+      if (!contains(reach_, middle) || !contains(model_, moved_back(pose_, middle))) continue;
+      count_ += std::min(kBlockPoints, cell.count - block * kBlockPoints);
+    }
+  }
+
+  const PackedCloud& cloud_;
+  const Box& model_;
+  const Box reach_;
+  const Pose& pose_;
+  double count_ = 0;
+};
+
+double path_length_of(const std::vector<Pose>& poses) {
+  double length = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const double(&from)[3] = poses[i - 1].translation, (&to)[3] = poses[i].translation;
+    length += std::sqrt(squared_length(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+  }
+  return length;
+}
+
+}  // namespace
+
+Workload workload_of(const PackedCloud& cloud, const Query& query) {
+  Workload work;
+  work.model_points = static_cast<double>(query.model.size());
+  work.poses = static_cast<double>(query.poses.size());
+  work.radius = std::max({query.radius, query.clearance, query.profile});
+  if (query.model.empty() || query.poses.empty()) return work;
+  const Box model = box_of(query.model);
+  double length = 2 * work.radius;
+  for (int k = 0; k < 3; ++k) {
+    length = std::max(length, model.hi[k] - model.lo[k] + 2 * work.radius);
+  }
+  const Box reach = widened(model, work.radius);
+  const std::size_t samples = std::min(kSampledPoses, query.poses.size());
+  double near_points = 0;  // of a pose
+  for (std::size_t i = 0; i < samples; ++i) {
+    const std::size_t pose = (2 * i + 1) * query.poses.size() / (2 * samples);
+    near_points +=
+        NearPoints(cloud, reach, query.poses[pose]).count() / static_cast<double>(samples);
+  }
+  // A model that goes on by its length meets as many points again.
+  const double places = std::min(work.poses, 1 + path_length_of(query.poses) / length);
+  work.reached_points = std::min(static_cast<double>(cloud.point_count()), near_points * places);
+  return work;
+}
+
+}  // namespace clearway

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "clearway/found_place.hpp"
+#include "core/query/profile_set.hpp"
+#include "core/util/progress.hpp"
+#include "io/result/result.hpp"
+#include "io/store/store_reader.hpp"
+
+namespace clearway {
+
+/// Appends the nearest points of all poses, and gives the nearest of them. chainage: of every pose,
+/// metres. Throws InputError for a damaged cell, ResourceError for a full disk, Interrupted when
+/// the progress asks to stop.
+std::optional<FoundPlace> write_profile(const StoreReader& store, const ProfileSet& profile,
+                                        std::span<const double> chainage, ResultWriter& writer,
+                                        Progress& progress);
+
+}  // namespace clearway

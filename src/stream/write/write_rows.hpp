@@ -1,0 +1,67 @@
+#pragma once
+
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "clearway/found_place.hpp"
+#include "core/util/progress.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway {
+
+/// Encoded rows, and of their points the one that matters most, where that is asked for.
+template <typename Encoded>
+struct WritePiece {
+  explicit WritePiece(Encoded encoded) : rows(std::move(encoded)) {}
+
+  Encoded rows;
+  std::optional<FoundPlace> place;
+};
+
+/// Encodes rows, kEncodedRows at a time, on many threads, and hashes and writes them in order.
+/// at_once: how many pieces are in memory at the most. encode(rows) gives a shared pointer to a
+/// piece of sealed rows; done(piece) is called for each in order. Throws as ResultWriter does, and
+/// Interrupted when the progress asks to stop.
+template <typename Encoded, typename Row, typename Encode, typename Done>
+void write_rows(ResultWriter& writer, std::span<const Row> rows, std::size_t at_once,
+                Progress& progress, Encode encode, Done done) {
+  using Piece = std::shared_ptr<WritePiece<Encoded>>;
+  std::size_t next = 0;
+  const ParallelScope scope;
+  const SerialStage input, hashed, output;
+  const auto take = piece_of(scope, input, [&](tbb::flow_control& flow) {
+    throw_if_stopped(progress);
+    const std::size_t first = next;
+    next = std::min(rows.size(), first + kEncodedRows);
+    if (first == next) flow.stop();
+    return rows.subspan(first, next - first);
+  });
+  const auto encode_rows =
+      piece_of(scope, [&](std::span<const Row> piece) -> Piece { return encode(piece); });
+  const auto hash = piece_of(scope, hashed, [&](const Piece& piece) {
+    writer.hash(piece->rows);
+    return piece;
+  });
+  const auto write = piece_of(scope, output, [&](const Piece& piece) {
+    writer.write(piece->rows);
+    done(*piece);
+    progress.advance(piece->rows.size());
+  });
+  constexpr auto kInOrder = tbb::filter_mode::serial_in_order;
+  scope.begin();
+  tbb::parallel_pipeline(
+      at_once, tbb::make_filter<void, std::span<const Row>>(kInOrder, take) &
+                   tbb::make_filter<std::span<const Row>, Handed<Piece>>(tbb::filter_mode::parallel,
+                                                                         encode_rows) &
+                   tbb::make_filter<Handed<Piece>, Handed<Piece>>(kInOrder, hash) &
+                   tbb::make_filter<Handed<Piece>, void>(kInOrder, write));
+}
+
+}  // namespace clearway

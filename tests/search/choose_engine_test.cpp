@@ -1,0 +1,90 @@
+#include "search/choice/choose_engine.hpp"
+
+#include <catch2/catch.hpp>
+#include <optional>
+
+#include "search/choice/cpu_estimate.hpp"
+#include "support/store_fixture.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+
+namespace {
+
+/// A line of points, and a model of two points that goes along it.
+class Asked {
+ public:
+  explicit Asked(int poses) {
+    std::vector<Quantum> points;
+    for (std::int32_t i = 0; i < 2000; ++i) points.push_back({10 * i, 0, 0});
+    write_las(folder_ / "line.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
+    convert_quietly(conversion_of({folder_ / "line.las"}, folder_ / "line.h5"));
+    store.emplace(folder_ / "line.h5");
+    for (int i = 0; i < poses; ++i) {
+      query.poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {20.0 * i / poses, 0, 0}});
+    }
+    options.threads = 2;
+  }
+
+  Engine chosen(Engine earlier = Engine::kAuto, bool on_gpu = false) {
+    SearchOptions resolved = options;
+    report = {};
+    const MessageCallback keep = [this](const Message& message) { note = message.text; };
+    const MessageLog log(keep, report.warnings);
+    choose_engine(*store, query, earlier, on_gpu, resolved, report, log);
+    return resolved.engine;
+  }
+
+ private:
+  ScratchFolder folder_;
+
+ public:
+  std::optional<StoreReader> store;
+  Query query{{{0, 0, 0}, {0.1, 0.1, 0.1}}, {}, {.radius = 0.1}};
+  SearchOptions options;
+  SearchReport report;
+  std::string note;
+};
+
+}  // namespace
+
+TEST_CASE("auto takes the engine of the smaller estimate and says both") {
+  for (const int poses : {3, 20'000}) {
+    Asked asked(poses);
+    const Engine engine = asked.chosen();
+    const CpuEstimate estimate = estimate_on_cpu(workload_of(*asked.store, asked.query), 2);
+    REQUIRE(asked.report.engine_estimate);
+    CHECK(asked.report.engine_estimate->sweep_seconds == estimate.sweep);
+    CHECK(asked.report.engine_estimate->kdtree_seconds == estimate.kdtree);
+    CHECK((engine == Engine::kKdtree) == (estimate.kdtree < estimate.sweep));
+    CHECK((engine == Engine::kKdtree) == (poses == 3));
+    CHECK_THAT(asked.note, Contains(name_of(engine)));
+  }
+}
+
+TEST_CASE("auto leaves to the sweep what the k-d tree cannot do") {
+  Asked asked(3);
+  REQUIRE(asked.chosen() == Engine::kKdtree);
+  SECTION("clearances") { asked.query.clearance = 0.2; }
+  SECTION("a profile") { asked.query.profile = 1; }
+  SECTION("a tolerance") { asked.query.tolerance = 0.01; }
+  SECTION("motion between poses") { asked.query.between_poses = true; }
+  SECTION("a field voxel") { asked.options.field_voxel = 0.1; }
+  SECTION("little memory") { asked.options.memory_bytes = 1 << 20; }
+  CHECK(asked.chosen() == Engine::kSweep);
+  CHECK_FALSE(asked.report.engine_estimate);
+}
+
+TEST_CASE("auto goes on with the engine of the run that is resumed") {
+  Asked asked(3);
+  CHECK(asked.chosen(Engine::kSweep) == Engine::kSweep);
+  CHECK(asked.chosen(Engine::kKdtree) == Engine::kKdtree);
+  CHECK_FALSE(asked.report.engine_estimate);
+  asked.options.engine = Engine::kGrid;
+  CHECK(asked.chosen() == Engine::kGrid);
+}
+
+TEST_CASE("a GPU takes the sweep") {
+  CHECK(Asked(3).chosen(Engine::kAuto, true) == Engine::kSweep);
+}

@@ -1,0 +1,46 @@
+// The choice between CPU and GPU, by estimate.
+#include "search/choice/device_estimate.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace clearway;
+
+namespace {
+
+Workload work_of(double reached_points) {
+  Workload work;
+  work.reached_points = reached_points;
+  work.model_points = 50'000;
+  work.poses = 10'000;
+  work.radius = 0.1;
+  return work;
+}
+
+bool pays(const Workload& work, const QueryParameters& query, int threads) {
+  const DeviceEstimate estimate = estimate_devices(work, query, Engine::kSweep, threads);
+  return estimate.cuda < estimate.cpu;
+}
+
+}  // namespace
+
+TEST_CASE("a GPU pays for many points and not for few") {
+  const QueryParameters set{.radius = 0.1};
+  CHECK_FALSE(pays(work_of(1000), set, 16));
+  CHECK(pays(work_of(1e9), set, 16));
+}
+
+TEST_CASE("a GPU pays earlier with fewer threads and with clearances") {
+  QueryParameters query{.radius = 0.1};
+  Workload work = work_of(1000);
+  while (!pays(work, query, 2)) work.reached_points *= 1.1;
+  CHECK_FALSE(pays(work, query, 64));
+  work.reached_points /= 1.2;
+  CHECK_FALSE(pays(work, query, 2));
+  query.clearance = 0.1;
+  CHECK(pays(work, query, 2));
+}
+
+TEST_CASE("more threads need more points before a GPU is started ahead") {
+  CHECK(surely_many_points(16) > surely_many_points(2));
+  CHECK(surely_many_points(0) > 0);
+}

@@ -1,0 +1,64 @@
+"""Small scenes with their results and pages, made by the program. Standard library only."""
+
+import json
+import subprocess
+
+PROGRAM = None
+DATE = "2026-01-02 03:04 UTC"
+
+
+def clearway(*arguments, code=0):
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+    if done.returncode != code:
+        raise AssertionError(f"{arguments}: exit code {done.returncode}\n{done.stderr}")
+    return done.stdout if code == 0 else done.stderr
+
+
+class Scene:
+    """Store, model, trajectory and result in a folder of their own."""
+
+    def __init__(self, folder, *query):
+        self.folder, self.model = folder, f"{folder}/model.ply"
+        self.trajectory, self.store = f"{folder}/trajectory.txt", f"{folder}/site.h5"
+        self.query = query
+
+    def search(self, name, *options):
+        result = f"{self.folder}/{name}.h5"
+        clearway("run", "--env", self.store, "--model", self.model, "--trajectory",
+                 self.trajectory, *options, "-o", result, "--force")
+        return result
+
+    def report(self, result, name, *options, code=0):
+        page = f"{self.folder}/{name}.html"
+        text = clearway("report", result, "--env", self.store, "--model", self.model,
+                        "--trajectory", self.trajectory, "-o", page, "--force", "--json",
+                        "--date", DATE, *options, code=code)
+        return page, json.loads(text) if code == 0 else text
+
+
+def make_hall(folder):
+    clearway("scene", "hall", "--points", 60000, "--poses", 400, "--model-points", 5000, "-o",
+             folder, "--force")
+    hall = Scene(folder)
+    clearway("convert", f"{folder}/environment.las", "-o", hall.store, "--force")
+    return hall
+
+
+def make_empty(folder):
+    """A box that is carried one metre above a floor."""
+    scene = Scene(folder)
+    scene.model = f"{folder}/model.xyz"
+    with open(f"{folder}/floor.xyz", "w") as file:
+        for x in range(0, 200):
+            for y in range(-20, 21):
+                file.write(f"{x / 10} {y / 10} 0\n")
+    with open(scene.model, "w") as file:
+        for x in (-0.5, 0.5):
+            for y in (-0.5, 0.5):
+                for z in (0, 1):
+                    file.write(f"{x} {y} {z}\n")
+    with open(scene.trajectory, "w") as file:
+        for i in range(100):
+            file.write(f"1 0 0 {5 + i / 10} 0 1 0 0 0 0 1 {1 + abs(i - 30) / 100}\n")
+    clearway("convert", f"{folder}/floor.xyz", "-o", scene.store, "--force")
+    return scene
