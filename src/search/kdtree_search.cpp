@@ -23,7 +23,7 @@ std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
                                   const SearchOptions& options) {
   return kept_by_kdtree(store, query, options.threads) +
          std::max(kdtree_memory_bytes(store, query, options.threads),
-                  search_result_bytes(store, query) + least_write_bytes());
+                  search_result_bytes(store, query) + least_write_bytes(store));
 }
 
 Found search_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options,

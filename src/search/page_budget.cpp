@@ -29,10 +29,10 @@ std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t leas
   return out;
 }
 
-/// While the trees over model and poses are built: 48 bytes a model point, and 168 a pose. Choosing
+/// While the trees over model and poses are built: 52 bytes a model point, and 168 a pose. Choosing
 /// what a tolerance keeps takes less.
 std::uint64_t tree_building_bytes(const Query& query) {
-  return 48 * query.model.size() + 168 * query.poses.size();
+  return 52 * query.model.size() + 168 * query.poses.size();
 }
 
 std::uint64_t most_poses_of(const MotionTree& motion, const std::vector<PlannedCell>& cells) {
@@ -130,7 +130,7 @@ bool PageBudget::fits(const SlotLayout& layout, std::uint64_t planned, std::uint
   const std::uint64_t searching = planned + kind_.host_bytes(layout, most_poses);
   const std::uint64_t kept = kept_bytes(layout);
   layout_ = layout;
-  needed_bytes_ = kept + std::max(searching, least_write_bytes());
+  needed_bytes_ = kept + std::max(searching, least_write_bytes(store_));
   const std::uint64_t budget = std::max(needed_bytes_, kept + building);
   const std::uint64_t on_device = kind_.device_bytes(layout);
   const bool device_fits = on_device <= kind_.needs().most_device_bytes;

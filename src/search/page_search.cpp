@@ -55,10 +55,10 @@ void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
 }
 
 /// Where memory is scarce, writing waits for that of the engines.
-Found ended(const PageEngineKind& kind, PageEngines engines, Found found,
+Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines engines, Found found,
             std::uint64_t pinned_bytes) {
   found.engine_end = kind.end(std::move(engines));
-  if (found.write_bytes / 2 >= pinned_bytes + least_write_bytes()) {
+  if (found.write_bytes / 2 >= pinned_bytes + least_write_bytes(store)) {
     found.write_bytes -= pinned_bytes;
   } else {
     found.engine_end.clear();
@@ -97,7 +97,7 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
                                   stages, &journal);
   report_stages(stages, report.seconds);
   kind.report_search(engines, report, log);
-  return ended(kind, std::move(engines), {std::move(result), budget.write_bytes()},
+  return ended(store, kind, std::move(engines), {std::move(result), budget.write_bytes()},
                report.pinned_bytes);
 }
 

@@ -41,6 +41,10 @@ constexpr std::size_t kLeastRows = kEncodedRows + SourceParts::kMostRows;
 /// What one thread gathers with.
 constexpr std::uint64_t kLeastThreadBytes = std::uint64_t{1} << 20;
 
+std::uint64_t thread_bytes(const StoreReader& store) {
+  return CellRows::most_bytes(store) + 8 * SourceParts(store).count();
+}
+
 /// How a table is written in the memory that there is.
 struct WritePlan {
   std::size_t rows;    ///< of a pass
@@ -52,8 +56,8 @@ struct WritePlan {
 template <typename Row>
 WritePlan plan_of(const StoreReader& store, std::uint64_t memory_bytes) {
   const int threads = tbb::this_task_arena::max_concurrency();
-  const std::uint64_t left = std::max(memory_bytes, least_write_bytes()) - kWriterBytes;
-  const std::uint64_t for_thread = CellRows::most_bytes(store) + 8 * SourceParts(store).count();
+  const std::uint64_t left = std::max(memory_bytes, least_write_bytes(store)) - kWriterBytes;
+  const std::uint64_t for_thread = thread_bytes(store);
   WritePlan plan{};
   plan.pieces = std::clamp<std::uint64_t>(left / 4 / kPieceBytes, 1, 2 * threads);
   plan.threads = static_cast<int>(std::clamp<std::uint64_t>(left / 8 / for_thread, 1, threads));
@@ -282,8 +286,10 @@ WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
       [&] { return write_tables(store, answer, header, path, memory_bytes, progress, chainage); });
 }
 
-std::uint64_t least_write_bytes() {
-  return kWriterBytes + kPieceBytes + kLeastThreadBytes +
+std::uint64_t least_write_bytes(const StoreReader& store) {
+  // The rows of all parts are counted once, and once more while they are put in place.
+  return kWriterBytes + kPieceBytes + std::max(kLeastThreadBytes, thread_bytes(store)) +
+         16 * SourceParts(store).count() +
          kLeastRows * std::max(sizeof(CollisionRow), sizeof(ClearanceRow));
 }
 

@@ -33,6 +33,6 @@ WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
                            std::span<const double> chainage = {}, int threads = 0);
 
 /// The least memory in which write_result works, bytes.
-std::uint64_t least_write_bytes();
+std::uint64_t least_write_bytes(const StoreReader& store);
 
 }  // namespace clearway

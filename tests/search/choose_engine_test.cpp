@@ -80,6 +80,8 @@ TEST_CASE("auto goes on with the engine of the run that is resumed") {
   Asked asked(3);
   CHECK(asked.chosen(Engine::kSweep) == Engine::kSweep);
   CHECK(asked.chosen(Engine::kKdtree) == Engine::kKdtree);
+  asked.options.memory_bytes = 1 << 20;  // too little: that is said, and nothing of another engine
+  CHECK(asked.chosen(Engine::kKdtree) == Engine::kKdtree);
   CHECK_FALSE(asked.report.engine_estimate);
   asked.options.engine = Engine::kGrid;
   CHECK(asked.chosen() == Engine::kGrid);

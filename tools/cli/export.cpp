@@ -81,8 +81,8 @@ Exported export_table(const ResultReader& result, ExportOptions& options) {
     return {result.clearances(), "clearance"};
   }
   if (options.what == "profile") {
-    options.trajectory_options.environment_unit = metres_of_crs(result.header().crs_wkt);
-    options.lengths.convert(options.trajectory_options.environment_unit);
+    options.trajectory_options.environment_unit =
+        options.lengths.convert_for(options.result.string(), result.header().crs_wkt);
     export_profile(result, labels_for(result, options), options.chainage_start, options.output,
                    options.force, progress);
     return {result.profile_rows(), "pose"};

@@ -97,7 +97,8 @@ void run_report(ReportCommand& options) {
   const Result result(options.result);
   const Store store(options.environment);
   const double unit = metres_of_unit(store.length_unit()).value_or(1);
-  take_unit(unit, options);
+  options.lengths.convert(unit);
+  options.trajectory_options.environment_unit = unit;
   options.model_options.environment_unit = unit;
   for (const ParsedLength& length : options.classes) {
     options.report.classes.push_back(length.in_units_of(unit));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -206,6 +207,12 @@ void print_verdict(const std::string& sentence) {
   }
 }
 
+/// The pages of the engine grid take very different times, and should not wait for each other's. To
+/// CUDA that is said before it starts.
+void prepare_device(const SearchOptions& options) {
+  if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
+}
+
 /// Whether no point collides.
 bool run(RunOptions& options) {
   const Stopwatch total;
@@ -215,6 +222,7 @@ bool run(RunOptions& options) {
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
+  prepare_device(options.search);
   options.search.started = start_devices(options.search);
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "core/util/macros.hpp"
+
 namespace clearway {
 namespace {
 
@@ -25,6 +27,106 @@ Header<Value> header_for(Value minimum, Value maximum) {
   if (range > std::numeric_limits<Unsigned>::max() - 2) return {kValueBits<Value>, 0};
   return {static_cast<std::uint32_t>(std::bit_width(range)), minimum};  // ceil(log2(range + 1))
 }
+
+template <std::integral Value>
+struct Range {
+  Value least, greatest;
+};
+
+/// Without branches, so that it takes full vectors.
+CLEARWAY_SIMD_CLONES
+Range<std::int32_t> range_of(const std::int32_t* values, std::size_t n) {
+  Range<std::int32_t> range{values[0], values[0]};
+  for (std::size_t i = 1; i < n; ++i) {
+    range.least = values[i] < range.least ? values[i] : range.least;
+    range.greatest = values[i] > range.greatest ? values[i] : range.greatest;
+  }
+  return range;
+}
+
+CLEARWAY_SIMD_CLONES
+Range<std::uint64_t> range_of(const std::uint64_t* values, std::size_t n) {
+  Range<std::uint64_t> range{values[0], values[0]};
+  for (std::size_t i = 1; i < n; ++i) {
+    range.least = values[i] < range.least ? values[i] : range.least;
+    range.greatest = values[i] > range.greatest ? values[i] : range.greatest;
+  }
+  return range;
+}
+
+constexpr unsigned kMostJoinedBits = 57;  // with 7 pending bits they fill a word
+
+/// Packs values in `minbits` bits, most significant bit first.
+template <std::integral Value>
+class BitPacker {
+ public:
+  using Unsigned = std::make_unsigned_t<Value>;
+
+  BitPacker(Value minimum, unsigned minbits, std::byte* to, const std::byte* end)
+      : minimum_(static_cast<Unsigned>(minimum)), minbits_(minbits), to_(to), end_(end) {}
+
+  void pack(std::span<const Value> values) {
+    if (4 * minbits_ <= kMostJoinedBits) {
+      values = pack_joined<4>(values);
+    } else if (2 * minbits_ <= kMostJoinedBits) {
+      values = pack_joined<2>(values);
+    } else if (minbits_ <= kMostJoinedBits) {
+      values = pack_joined<1>(values);
+    }
+    for (const Value value : values) {
+      pending_ = (pending_ << minbits_) | delta(value);
+      pending_bits_ += minbits_;
+      while (pending_bits_ >= 8) {
+        pending_bits_ -= 8;
+        *to_++ = static_cast<std::byte>(static_cast<unsigned char>(pending_ >> pending_bits_));
+      }
+    }
+    if (pending_bits_ > 0) {
+      *to_ = static_cast<std::byte>(static_cast<unsigned char>(pending_ << (8 - pending_bits_)));
+    }
+  }
+
+ private:
+  __extension__ using Window = unsigned __int128;  // up to 7 pending bits and 63 new ones
+
+  Unsigned delta(Value value) const {
+    return static_cast<Unsigned>(static_cast<Unsigned>(value) - minimum_);
+  }
+
+  /// kJoined values at a time, a whole word at each store, as long as there is room for a word; the
+  /// values left.
+  template <unsigned kJoined>
+  std::span<const Value> pack_joined(std::span<const Value> values) {
+    const unsigned bits = kJoined * minbits_;
+    std::uint64_t word = 0;  // the pending bits are its highest
+    unsigned used = 0;
+    std::byte* to = to_;
+    std::size_t i = 0;
+    for (; i + kJoined <= values.size() && end_ - to >= 8; i += kJoined) {
+      std::uint64_t joined = 0;
+      for (unsigned k = 0; k < kJoined; ++k) joined = joined << minbits_ | delta(values[i + k]);
+      word |= joined << (64 - bits - used);
+      const std::uint64_t big_endian = __builtin_bswap64(word);
+      std::memcpy(to, &big_endian, 8);
+      used += bits;
+      const unsigned whole = used / 8;
+      to += whole;
+      word = whole == 8 ? 0 : word << 8 * whole;
+      used %= 8;
+    }
+    to_ = to;
+    pending_ = used > 0 ? word >> (64 - used) : 0;
+    pending_bits_ = used;
+    return values.subspan(i);
+  }
+
+  Unsigned minimum_;
+  unsigned minbits_;
+  std::byte* to_;
+  const std::byte* end_;
+  Window pending_ = 0;
+  unsigned pending_bits_ = 0;
+};
 
 }  // namespace
 
@@ -62,8 +164,8 @@ PackedChunk<Value>::PackedChunk(std::span<const std::byte> bytes, std::uint32_t 
 
 template <std::integral Value>
 void append_packed_chunk(std::span<const Value> values, std::vector<std::byte>& out) {
-  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
-  const auto [minbits, minimum] = header_for(*least, *greatest);
+  const auto [least, greatest] = range_of(values.data(), values.size());
+  const auto [minbits, minimum] = header_for(least, greatest);
   const std::size_t start = out.size();
   out.resize(start + packed_bytes<Value>(values.size(), minbits));
   std::byte* to = out.data() + start;
@@ -84,23 +186,7 @@ void append_packed_chunk(std::span<const Value> values, std::vector<std::byte>& 
     return;
   }
   if (minbits == 0) return;
-  using Unsigned = std::make_unsigned_t<Value>;
-  __extension__ using Window = unsigned __int128;  // up to 7 pending bits and 63 new ones
-  Window pending = 0;
-  unsigned pending_bits = 0;
-  for (const Value value : values) {
-    const auto delta =
-        static_cast<Unsigned>(static_cast<Unsigned>(value) - static_cast<Unsigned>(minimum));
-    pending = (pending << minbits) | delta;
-    pending_bits += minbits;
-    while (pending_bits >= 8) {
-      pending_bits -= 8;
-      *to++ = static_cast<std::byte>(static_cast<unsigned char>(pending >> pending_bits));
-    }
-  }
-  if (pending_bits > 0) {
-    *to = static_cast<std::byte>(static_cast<unsigned char>(pending << (8 - pending_bits)));
-  }
+  BitPacker<Value>(minimum, minbits, to, out.data() + out.size()).pack(values);
 }
 
 template class PackedChunk<std::int32_t>;

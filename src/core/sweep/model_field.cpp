@@ -43,8 +43,8 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
     bricks_ = mark_bricks(band, threads);
     if (bricks_ * kBrickBytes <= options.most_bytes) break;
   }
-  distances_ = std::make_unique_for_overwrite<float[]>(bricks_ * kBrickNodes);
-  nearest_ = std::make_unique_for_overwrite<std::uint32_t[]>(bricks_ * kBrickNodes);
+  distances_ = std::make_unique_for_overwrite<float[]>(std::size_t{bricks_} * kBrickNodes);
+  nearest_ = std::make_unique_for_overwrite<std::uint32_t[]>(std::size_t{bricks_} * kBrickNodes);
   if (!by_need_) make_all(threads);
 }
 
@@ -63,7 +63,7 @@ void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
   const double wanted = chosen / options.fineness;
   // A field much finer than the model's points, or than their rounding, serves nobody.
   const double least = 1e-7 * (length(extent) + length(box.hi) + length(box.lo)) + 1e-100;
-  voxel_ = options.voxel > 0 ? options.voxel : std::max(wanted, least);
+  voxel_ = std::max(options.voxel > 0 ? options.voxel : wanted, least);
   const auto coarse_bytes = [&] {
     double nodes = 1;
     for (int k = 0; k < 3; ++k) {

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <future>
+#include <limits>
 #include <optional>
 
 #include "clearway/error.hpp"
@@ -111,10 +113,23 @@ void check_disk(const std::filesystem::path& folder, const DiskNeed& need) {
                       mostly_padding ? Remedy::kFewerCellPoints : Remedy::kNone);
 }
 
-/// Half of the machine's memory; the rest is for inputs and the store on their way.
+/// What a group of processes may take, as a container's do; the greatest number where that is not
+/// bounded.
+std::uint64_t group_memory_bytes() {
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (const char* file :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::uint64_t bytes = 0;
+    if (std::ifstream(file) >> bytes) least = std::min(least, bytes);
+  }
+  return least;
+}
+
+/// Half of the memory; the rest is for inputs and the store on their way.
 std::uint64_t most_waiting_bytes() {
-  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) / 2 *
-         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  const std::uint64_t of_machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                                   static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return std::min(of_machine, group_memory_bytes()) / 2;
 }
 
 class Conversion {
@@ -240,7 +255,7 @@ class Conversion {
       const auto running = clocks_.measure(Stage::kWrite);
       writer.finish(top);
     }
-    auto synced = std::async(std::launch::async, [this] {
+    auto synced = std::async(std::launch::async | std::launch::deferred, [this] {
       const auto running = clocks_.measure(Stage::kSync);
       output_.sync();
     });

@@ -3,131 +3,107 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
-#include <limits>
-#include <vector>
 
 #include "core/cloud/kd_order.hpp"
-#include "core/util/macros.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "io/convert/quantum_bounds.hpp"
+#include "io/convert/select_split.hpp"
 
 namespace clearway {
 namespace {
 
-/// Points from which a histogram finds the median's bin.
-constexpr std::size_t kHistogramFrom = 1024;
-constexpr unsigned kHistogramBits = 10;
 constexpr std::size_t kParallelFrom = 1 << 16;
+/// Points parted before the boxes of the two sides are brought up to date: they are in cache then.
+constexpr std::size_t kPartedAtOnce = 1024;
 
-struct Bounds {
-  std::int32_t lo[4];  // the fourth lane is the index, unused
-  std::int32_t hi[4];
-};
-
-CLEARWAY_SIMD_CLONES
-Bounds bounds_of(const BucketPoint* points, std::size_t n) {
-  static_assert(sizeof(BucketPoint) == 4 * sizeof(std::int32_t));
-  Bounds b;
-  std::fill_n(b.lo, 4, std::numeric_limits<std::int32_t>::max());
-  std::fill_n(b.hi, 4, std::numeric_limits<std::int32_t>::min());
-  for (std::size_t i = 0; i < n; ++i) {
-    std::int32_t lanes[4];
-    std::memcpy(lanes, points + i, sizeof lanes);
-    for (int k = 0; k < 4; ++k) {
-      b.lo[k] = lanes[k] < b.lo[k] ? lanes[k] : b.lo[k];
-      b.hi[k] = lanes[k] > b.hi[k] ? lanes[k] : b.hi[k];
-    }
-  }
-  return b;
-}
-
-std::uint32_t extent(const Bounds& b, int axis) {
-  return static_cast<std::uint32_t>(b.hi[axis]) - static_cast<std::uint32_t>(b.lo[axis]);
-}
-
-int longest_side(const Bounds& b, const double* scale) {
+int longest_side(const QuantumBounds& b, const double* scale) {
+  const auto side = [&](int k) {
+    return (static_cast<std::uint32_t>(b.hi[k]) - static_cast<std::uint32_t>(b.lo[k])) * scale[k];
+  };
   int longest = 0;
-  double length = extent(b, 0) * scale[0];
   for (int axis = 1; axis < 3; ++axis) {
-    const double side = extent(b, axis) * scale[axis];
-    if (side > length) {
-      length = side;
-      longest = axis;
-    }
+    if (side(axis) > side(longest)) longest = axis;
   }
   return longest;
 }
 
-/// Orders points by coordinate, then by position: points are in source order, so ties go by source
-/// index. One 64-bit comparison.
-class SplitKey {
+/// Copies the points left of a split to the front of `to` and the others behind them, each side in
+/// the order they come: points are in source order, so ties go by source index.
+class Parting {
  public:
-  SplitKey(int axis, std::int32_t lowest) : axis_(axis), lowest_(lowest) {}
-  std::uint32_t distance(const BucketPoint& p) const {
-    return static_cast<std::uint32_t>(p.q[axis_]) - static_cast<std::uint32_t>(lowest_);
+  Parting(BucketPoint* to, std::size_t left, int axis, KdSplit split)
+      : to_(to), right_(left), axis_(axis), split_(split) {}
+
+  void add(const BucketPoint* points, std::size_t n) {
+    const std::size_t left = left_;
+    const std::size_t right = right_;
+    if (split_.equal == 0) {
+      add<false>(points, n);
+    } else {
+      add<true>(points, n);
+    }
+    bounds_[0].extend({to_ + left, left_ - left});
+    bounds_[1].extend({to_ + right, right_ - right});
   }
-  std::uint64_t operator()(const BucketPoint& p, std::size_t at) const {
-    return std::uint64_t{distance(p)} << 32 | at;
-  }
+
+  const QuantumBounds& left_bounds() const { return bounds_[0]; }
+  const QuantumBounds& right_bounds() const { return bounds_[1]; }
 
  private:
-  int axis_;
-  std::int32_t lowest_;
-};
-
-/// The key of rank `rank` among `n` points.
-std::uint64_t select(const BucketPoint* points, std::size_t n, std::size_t rank, SplitKey key,
-                     std::uint32_t side) {
-  static thread_local std::vector<std::uint64_t> keys;
-  keys.clear();
-  if (n < kHistogramFrom) {
-    for (std::size_t i = 0; i < n; ++i) keys.push_back(key(points[i], i));
-  } else {
-    const auto bits = static_cast<unsigned>(std::bit_width(side));
-    const unsigned shift = bits > kHistogramBits ? bits - kHistogramBits : 0;
-    std::array<std::uint32_t, std::size_t{1} << kHistogramBits> histogram{};
-    for (std::size_t i = 0; i < n; ++i) ++histogram[key.distance(points[i]) >> shift];
-    std::uint32_t bin = 0;
-    while (rank >= histogram[bin]) rank -= histogram[bin++];
+  /// Without a branch that depends on a point. One store: a store to both sides would write beyond
+  /// a side that is full.
+  template <bool kTies>
+  void add(const BucketPoint* points, std::size_t n) {
+    std::size_t left = left_;
+    std::size_t right = right_;
+    std::size_t equal = split_.equal;
     for (std::size_t i = 0; i < n; ++i) {
-      if (key.distance(points[i]) >> shift == bin) keys.push_back(key(points[i], i));
+      const std::int32_t q = points[i].q[axis_];
+      std::size_t is_left = q < split_.value ? 1 : 0;
+      if constexpr (kTies) {
+        const std::size_t tie = (q == split_.value ? 1u : 0u) & (equal != 0 ? 1u : 0u);
+        is_left += tie;
+        equal -= tie;
+      }
+      to_[is_left != 0 ? left : right] = points[i];
+      left += is_left;
+      right += 1 - is_left;
     }
+    left_ = left;
+    right_ = right;
+    split_.equal = equal;
   }
-  std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(rank), keys.end());
-  return keys[rank];
-}
 
-/// Copies the points below `pivot` to the front of `to` and the others behind them, each side in
-/// the order they come.
-void partition_stably(const BucketPoint* from, BucketPoint* to, std::size_t n, std::size_t left,
-                      SplitKey key, std::uint64_t pivot) {
-  BucketPoint* out[2] = {to + left, to};
-  for (std::size_t i = 0; i < n; ++i) {
-    const bool below = key(from[i], i) < pivot;
-    *out[below] = from[i];
-    ++out[below];
-  }
-}
+  BucketPoint* to_;
+  std::size_t left_ = 0;
+  std::size_t right_;
+  int axis_;
+  KdSplit split_;
+  QuantumBounds bounds_[2];
+};
 
 class BucketOrder {
  public:
   BucketOrder(std::uint32_t cell_points, const double* scale, StageClocks& clocks)
       : cell_points_(cell_points), scale_(scale), clocks_(clocks) {}
 
-  /// Orders n points of `from`; the outcome goes to `result`, which is `from` or `other`.
-  void order(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n) const {
+  /// Orders n points of `from` within `bounds`; the outcome goes to `result`, which is `from` or
+  /// `other`.
+  void order(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n,
+             const QuantumBounds& bounds) const {
     if (n < kParallelFrom) {
       const auto running = clocks_.measure(Stage::kOrder);
-      order_alone(from, other, result, n);
+      order_alone(from, other, result, n, bounds);
       return;
     }
-    const std::size_t left = split_measured(from, other, n);
+    const Parts parts = split_measured(from, other, n, bounds);
+    const std::size_t left = parts.left;
     const ParallelScope scope;
-    const auto order_left = piece_of(scope, [=, this] { order(other, from, result, left); });
-    const auto order_right =
-        piece_of(scope, [=, this] { order(other + left, from + left, result + left, n - left); });
+    const auto order_left =
+        piece_of(scope, [&, this] { order(other, from, result, left, parts.bounds[0]); });
+    const auto order_right = piece_of(scope, [&, this] {
+      order(other + left, from + left, result + left, n - left, parts.bounds[1]);
+    });
     scope.begin();
     tbb::parallel_invoke(order_left, order_right);
   }
@@ -135,31 +111,40 @@ class BucketOrder {
  private:
   static_assert(kParallelFrom > kBlockPoints);
 
+  struct Parts {
+    std::size_t left;
+    QuantumBounds bounds[2];
+  };
+
   /// On one thread.
-  void order_alone(BucketPoint* from, BucketPoint* other, BucketPoint* result,
-                   std::size_t n) const {
+  void order_alone(BucketPoint* from, BucketPoint* other, BucketPoint* result, std::size_t n,
+                   const QuantumBounds& bounds) const {
     if (n <= kBlockPoints) {
       if (result != from) std::copy(from, from + n, result);
       return;
     }
-    const std::size_t left = split(from, other, n);
-    order_alone(other, from, result, left);
-    order_alone(other + left, from + left, result + left, n - left);
+    const auto [left, halves] = split(from, other, n, bounds);
+    order_alone(other, from, result, left, halves[0]);
+    order_alone(other + left, from + left, result + left, n - left, halves[1]);
   }
 
-  std::size_t split_measured(const BucketPoint* from, BucketPoint* to, std::size_t n) const {
+  Parts split_measured(const BucketPoint* from, BucketPoint* to, std::size_t n,
+                       const QuantumBounds& bounds) const {
     const auto running = clocks_.measure(Stage::kOrder);
-    return split(from, to, n);
+    return split(from, to, n, bounds);
   }
 
-  /// Parts n > kBlockPoints points; how many of them are left.
-  std::size_t split(const BucketPoint* from, BucketPoint* to, std::size_t n) const {
+  /// Parts n > kBlockPoints points.
+  Parts split(const BucketPoint* from, BucketPoint* to, std::size_t n,
+              const QuantumBounds& bounds) const {
     const std::size_t left = left_count(n, n > cell_points_ ? cell_points_ : kBlockPoints);
-    const Bounds bounds = bounds_of(from, n);
     const int axis = longest_side(bounds, scale_);
-    const SplitKey key(axis, bounds.lo[axis]);
-    partition_stably(from, to, n, left, key, select(from, n, left, key, extent(bounds, axis)));
-    return left;
+    const CoordinateRange range{bounds.lo[axis], bounds.hi[axis]};
+    Parting parting(to, left, axis, select_split({from, n}, left, axis, range, to));
+    for (std::size_t at = 0; at < n; at += kPartedAtOnce) {
+      parting.add(from + at, std::min(kPartedAtOnce, n - at));
+    }
+    return {left, {parting.left_bounds(), parting.right_bounds()}};
   }
 
   std::uint64_t cell_points_;
@@ -171,8 +156,13 @@ class BucketOrder {
 
 void order_bucket(std::span<BucketPoint> points, std::span<BucketPoint> scratch,
                   std::uint32_t cell_points, const double (&scale)[3], StageClocks& clocks) {
+  QuantumBounds bounds;
+  {
+    const auto running = clocks.measure(Stage::kOrder);
+    bounds.extend(points);
+  }
   BucketOrder(cell_points, scale, clocks)
-      .order(points.data(), scratch.data(), points.data(), points.size());
+      .order(points.data(), scratch.data(), points.data(), points.size(), bounds);
 }
 
 }  // namespace clearway

@@ -9,57 +9,63 @@
 #include "core/cloud/packed_chunk.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/convert/kd_partition.hpp"
+#include "io/convert/quantum_bounds.hpp"
 
 namespace clearway {
 namespace {
 
-/// The points of a unit: as loaded (in source order) and as they are put in order.
+/// The points of a unit: as loaded (in source order), and in order.
 class Unit {
  public:
-  Unit(Distribution& distribution, std::size_t unit, StageClocks& clocks) {
+  Unit(Distribution& distribution, std::size_t unit, UnitBuffers& buffers, StageClocks& clocks)
+      : buffers_(buffers) {
     const auto running = clocks.measure(Stage::kLoad);
     loaded_ = distribution.take(unit);
-    points_ = std::make_unique_for_overwrite<BucketPoint[]>(loaded_.count);
-    scratch_ = std::make_unique_for_overwrite<BucketPoint[]>(loaded_.count);
+    points_ = buffers.take();
     for (std::size_t i = 0; i < loaded_.count; ++i) {
       const auto& q = loaded_.points[i].q;
       points_[i] = {{q[0], q[1], q[2]}, static_cast<std::uint32_t>(i)};
     }
   }
 
+  ~Unit() { buffers_.give_back(std::move(points_)); }
+  Unit(const Unit&) = delete;
+  Unit& operator=(const Unit&) = delete;
+
   std::uint64_t source(const BucketPoint& p) const {
     return loaded_.points[p.index].source_index();
   }
   std::span<BucketPoint> points() { return {points_.get(), loaded_.count}; }
-  std::span<BucketPoint> scratch() { return {scratch_.get(), loaded_.count}; }
 
  private:
+  UnitBuffers& buffers_;
   UnitPoints loaded_;
-  std::unique_ptr<BucketPoint[]> points_;
-  std::unique_ptr<BucketPoint[]> scratch_;
+  UnitBuffers::Buffer points_;
 };
 
 QuantumBox box_of(std::span<const BucketPoint> points) {
-  QuantumBox box{{points[0].q[0], points[0].q[1], points[0].q[2]},
-                 {points[0].q[0], points[0].q[1], points[0].q[2]}};
-  for (const BucketPoint& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p.q[k]);
-      box.hi[k] = std::max(box.hi[k], p.q[k]);
-    }
+  QuantumBounds bounds;
+  bounds.extend(points);
+  return {{bounds.lo[0], bounds.lo[1], bounds.lo[2]}, {bounds.hi[0], bounds.hi[1], bounds.hi[2]}};
+}
+
+void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
+  std::vector<QuantumBox> boxes;
+  boxes.reserve(divide_up(points.size(), kBlockPoints));
+  for (std::size_t first = 0; first < points.size(); first += kBlockPoints) {
+    boxes.push_back(
+        box_of(points.subspan(first, std::min<std::size_t>(kBlockPoints, points.size() - first))));
   }
-  return box;
+  QuantumBox all = boxes.front();
+  for (const QuantumBox& box : boxes) all = united(all, box);
+  cell.cell = {static_cast<std::uint32_t>(points.size()), all};
+  for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
 }
 
 PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
                      std::uint32_t cell_points) {
   PackedCell cell;
-  cell.cell = {static_cast<std::uint32_t>(points.size()), box_of(points)};
-  for (std::size_t first = 0; first < points.size(); first += kBlockPoints) {
-    const auto block =
-        points.subspan(first, std::min<std::size_t>(kBlockPoints, points.size() - first));
-    cell.blocks.push_back(encode_block_box(cell.cell.box, box_of(block)));
-  }
+  append_boxes(points, cell);
   std::vector<std::int32_t> values(cell_points);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[axis];
@@ -120,19 +126,21 @@ struct OrderedUnit::State {
 
 OrderedUnit::OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
                          const Lattice& lattice, const Quantisation& quantisation,
-                         std::uint32_t cell_points, StageClocks& clocks)
-    : state_(new State{clocks, Unit(distribution, unit, clocks), cell_points, {}}) {
+                         std::uint32_t cell_points, UnitBuffers& buffers, StageClocks& clocks)
+    : state_(new State{clocks, {distribution, unit, buffers, clocks}, cell_points, {}}) {
   Unit& loaded = state_->unit;
+  UnitBuffers::Buffer scratch = buffers.take();
   for (const std::span<BucketPoint> bucket :
        UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
     const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
-    order_bucket(bucket, loaded.scratch().subspan(first, bucket.size()), cell_points,
-                 quantisation.scale, clocks);
+    order_bucket(bucket, {scratch.get() + first, bucket.size()}, cell_points, quantisation.scale,
+                 clocks);
     for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
       state_->cells.emplace_back(
           bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
     }
   }
+  buffers.give_back(std::move(scratch));
 }
 
 OrderedUnit::~OrderedUnit() = default;

@@ -8,6 +8,7 @@
 #include "io/convert/distribute/distribution.hpp"
 #include "io/convert/split_tree.hpp"
 #include "io/convert/stage_clocks.hpp"
+#include "io/convert/unit_buffers.hpp"
 #include "io/store/store_writer.hpp"
 
 namespace clearway {
@@ -22,7 +23,7 @@ class OrderedUnit {
  public:
   OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
               const Lattice& lattice, const Quantisation& quantisation, std::uint32_t cell_points,
-              StageClocks& clocks);
+              UnitBuffers& buffers, StageClocks& clocks);
   ~OrderedUnit();
 
   /// The next cells, with padding at most kBucketPoints points but at least a cell; empty at the

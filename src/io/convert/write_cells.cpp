@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_pipeline.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -37,6 +38,11 @@ void write_unit(UnitInFlight& unit, StoreWriter& writer, StageClocks& clocks, Pr
 void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, std::size_t units_in_flight, StoreWriter& writer,
                  StageClocks& clocks, Progress& progress) {
+  std::size_t largest = 0;
+  for (std::size_t unit = 0; unit < distribution.units(); ++unit) {
+    largest = std::max<std::size_t>(largest, distribution.points(unit));
+  }
+  UnitBuffers buffers(largest);
   using Flying = std::shared_ptr<UnitInFlight>;
   std::size_t next = 0;
   const ParallelScope scope;
@@ -49,7 +55,7 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
   const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
     auto flying = std::make_shared<UnitInFlight>();
     flying->rest.emplace(distribution, unit, tree, lattice, metadata.quantisation,
-                         metadata.cell_points, clocks);
+                         metadata.cell_points, buffers, clocks);
     flying->packed = flying->rest->pack_next();
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;

@@ -7,16 +7,26 @@
 #include "core/util/tsan_annotations.hpp"
 
 namespace clearway {
+namespace {
+
+template <typename Visit>
+void for_each_index(std::size_t count, Visit visit) {
+  const ParallelScope scope;
+  const auto piece = piece_of(scope, visit);
+  scope.begin();
+  tbb::parallel_for(std::size_t{0}, count, piece);
+}
+
+}  // namespace
 
 bool ParallelRead::run() const {
   std::atomic<bool> well = true;
-  const ParallelScope scope;
-  const auto run_piece = piece_of(scope, [&](std::size_t i) {
+  for_each_index(pieces_.size(), [&](std::size_t i) {
     if (!pieces_[i]()) well = false;
   });
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, pieces_.size(), run_piece);
-  return well;
+  if (!well) return false;
+  for_each_index(columns_.size(), [&](std::size_t i) { columns_[i](); });
+  return true;
 }
 
 }  // namespace clearway

@@ -160,8 +160,9 @@ void File::reserve(std::uint64_t bytes) const {
 void File::reserve_ahead(std::uint64_t bytes) const {
   if (bytes == 0) return;
   while (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) != 0) {
-    if (errno == EOPNOTSUPP || errno == ENOSYS) return;
-    if (errno != EINTR) fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());
+    if (errno == EINTR) continue;
+    if (errno != ENOSPC && errno != EDQUOT && errno != EFBIG) return;
+    fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace clearway {
@@ -26,8 +27,12 @@ void GrowingFile::written(std::uint64_t end) {
     const std::lock_guard lock(mutex_);
     written_ = end;
   }
-  if (!writing_back_.joinable()) {
-    writing_back_ = std::jthread([this](const std::stop_token& stop) { write_back(stop); });
+  if (may_write_back_ && !writing_back_.joinable()) {
+    try {
+      writing_back_ = std::jthread([this](const std::stop_token& stop) { write_back(stop); });
+    } catch (const std::system_error&) {
+      may_write_back_ = false;  // no thread is to be had; the sync at the end does it all
+    }
   }
   grown_.notify_one();
 }

@@ -34,7 +34,7 @@ class GrowingFile {
   std::filesystem::path folder_;
   File file_;
   std::uint64_t reserved_ = 0;
-  bool may_reserve_ = true;
+  bool may_reserve_ = true, may_write_back_ = true;
   std::mutex mutex_;
   std::condition_variable_any grown_;
   std::uint64_t written_ = 0;  // guarded by mutex_

@@ -19,7 +19,9 @@ function profileY(distance) {
 }
 
 function profileLength() {
-  return Math.max(page.facts.inputs.trajectory.length, 1e-3);
+  const { chainage } = page.poses;  // rounded: the last one may lie behind the end
+  const last = chainage.length > 0 ? chainage[chainage.length - 1] - profileStart() : 0;
+  return Math.max(page.facts.inputs.trajectory.length, last, 1e-3);
 }
 
 /** The chainage of the first pose. */

@@ -20,11 +20,12 @@ void choose_engine(const StoreReader& store, const Query& query, Engine earlier,
                    SearchOptions& options, SearchReport& report, const MessageLog& log) {
   if (options.engine != Engine::kAuto) return;
   options.engine = Engine::kSweep;
-  if (on_gpu || earlier == Engine::kSweep || !may_be_kdtree(store, query, options)) return;
-  if (earlier == Engine::kKdtree) {
+  if (on_gpu || earlier == Engine::kSweep) return;
+  if (earlier == Engine::kKdtree && options.field_voxel == 0) {
     options.engine = earlier;
     return;
   }
+  if (!may_be_kdtree(store, query, options)) return;
   const CpuEstimate estimate = estimate_on_cpu(workload_of(store, query), options.threads);
   if (estimate.kdtree < estimate.sweep) options.engine = Engine::kKdtree;
   report.engine_estimate = {estimate.sweep, estimate.kdtree};

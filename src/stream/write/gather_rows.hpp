@@ -45,6 +45,7 @@ class GatherRows {
   template <typename RowsOf>
   void gather(std::size_t first, std::size_t end, std::span<Row> rows, bool without_copy,
               RowsOf rows_of) {
+    threads_.clear();                              // other threads may come than before
     std::vector<std::uint64_t> next(end - first);  // place in each part
     for (std::size_t part = first, at = 0; part < end; at += counts_[part++]) {
       next[part - first] = at;

@@ -50,6 +50,7 @@ class CellRows {
     for (const std::size_t part : parts_) counts_[part] = 0;
     parts_.clear();
     rows_.clear();
+    rows_.reserve(store.cell_entries());
     const PackedChunk<std::uint64_t> sources = store.sources(cell);
     if (SourceParts::of(sources.minimum()) >= end_part && end_part < counts_.size()) return;
     for_each_entry(store, set, cell, [&](std::uint64_t entry, std::uint32_t i) {

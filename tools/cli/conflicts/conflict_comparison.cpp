@@ -159,7 +159,8 @@ bool compare_conflicts(ConflictComparison& options, const std::filesystem::path&
   if (options.trajectory.empty()) {
     throw UsageError("--conflicts needs --trajectory, the trajectory of the runs");
   }
-  take_unit(metres_of_crs(Result(a).reader().header().crs_wkt), options);
+  options.trajectory_options.environment_unit =
+      options.lengths.convert_for(a.string(), Result(a).reader().header().crs_wkt);
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();

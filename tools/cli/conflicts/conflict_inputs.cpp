@@ -52,11 +52,6 @@ void add_axis_options(CLI::App& command, ConflictOptions& options) {
            "Axis of the model that points up, for example -z (default: +z)");
 }
 
-void take_unit(double metres, ConflictCommand& options) {
-  options.lengths.convert(metres);
-  options.trajectory_options.environment_unit = metres;
-}
-
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result) {
   options.default_crs = result.reader().header().crs_wkt;

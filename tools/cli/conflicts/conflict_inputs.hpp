@@ -29,9 +29,6 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options);
 /// --forward and --up.
 void add_axis_options(CLI::App& command, ConflictOptions& options);
 
-/// Lengths that were given with a unit, and poses of a known one, become units of so many metres.
-void take_unit(double metres, ConflictCommand& options);
-
 /// The poses of a result. Warnings are told.
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result);

@@ -65,8 +65,9 @@ void run_conflicts(ConflictsCommand& options) {
   const Outputs outputs = open_outputs(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
-  const double unit = metres_of_crs(result.reader().header().crs_wkt);
-  take_unit(unit, options);
+  const double unit =
+      options.lengths.convert_for(options.result.string(), result.reader().header().crs_wkt);
+  options.trajectory_options.environment_unit = unit;
   options.model_options.environment_unit = unit;
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };

@@ -1,5 +1,7 @@
 #include "cli/support/lengths.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -195,6 +197,18 @@ void LengthOptions::set(double& length, const ParsedLength& parsed) {
 
 void LengthOptions::convert(double metres) const {
   for (const auto& [length, parsed] : with_unit_) *length = parsed.in_units_of(metres);
+}
+
+double LengthOptions::convert_for(const std::string& result, const std::string& crs_wkt) const {
+  const double metres = metres_of_crs(crs_wkt);
+  if (crs_wkt.empty() && !with_unit_.empty()) {
+    spdlog::warn(
+        "{}: has no CRS, so its coordinates are taken for metres; where the scan is in "
+        "feet, give lengths without a unit",
+        result);
+  }
+  convert(metres);
+  return metres;
 }
 
 void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start) {

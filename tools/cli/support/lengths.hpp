@@ -58,6 +58,9 @@ class LengthOptions {
 
   /// Turns those that were given with a unit into units of `metres` metres.
   void convert(double metres) const;
+  /// The same for a result, whose unit its CRS tells. Gives metres of the unit. Warns where there
+  /// is no CRS and a length was given with a unit: the scan may have a unit all the same.
+  double convert_for(const std::string& result, const std::string& crs_wkt) const;
 
  private:
   void set(double& length, const ParsedLength& parsed);

@@ -13,6 +13,11 @@ std::uint64_t hash_of(const std::array<std::uint64_t, 3>& key) {
   return h ^ (h >> 29);
 }
 
+/// What std::array compares by a call of memcmp.
+bool same(const std::array<std::uint64_t, 3>& a, const std::array<std::uint64_t, 3>& b) {
+  return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
+}
+
 }  // namespace
 
 BinCounter::BinCounter(unsigned least_shift, std::size_t most_bins)
@@ -23,7 +28,7 @@ BinCounter::BinCounter(unsigned least_shift, std::size_t most_bins)
 BinCounter::Slot& BinCounter::find(const Key& key) {
   const std::size_t mask = slots_.size() - 1;
   std::size_t at = hash_of(key) & mask;
-  while (slots_[at].count != 0 && slots_[at].key != key) at = (at + 1) & mask;
+  while (slots_[at].count != 0 && !same(slots_[at].key, key)) at = (at + 1) & mask;
   return slots_[at];
 }
 
@@ -40,7 +45,7 @@ void BinCounter::add_key(const Key& key, std::uint64_t count) {
 void BinCounter::add(const LatticePoint& point, std::uint64_t count) {
   const Key key{point[0] >> shift_, point[1] >> shift_, point[2] >> shift_};
   Slot& last = slots_[last_];
-  if (last.count != 0 && last.key == key) {
+  if (last.count != 0 && same(last.key, key)) {
     last.count += count;
     return;
   }

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "io/convert/kd_partition.hpp"
+
+namespace clearway {
+
+/// The box of points, as vectors take it: the fourth lane is the index, unused.
+struct QuantumBounds {
+  static constexpr std::size_t kLanes = 4;
+
+  std::int32_t lo[kLanes];
+  std::int32_t hi[kLanes];
+
+  /// Of no points.
+  QuantumBounds() {
+    std::fill_n(lo, kLanes, std::numeric_limits<std::int32_t>::max());
+    std::fill_n(hi, kLanes, std::numeric_limits<std::int32_t>::min());
+  }
+
+  void extend(std::span<const BucketPoint> points);
+};
+
+}  // namespace clearway
