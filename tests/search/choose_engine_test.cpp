@@ -53,11 +53,11 @@ TEST_CASE("auto takes the engine of the smaller estimate and says both") {
   for (const int poses : {3, 20'000}) {
     Asked asked(poses);
     const Engine engine = asked.chosen();
-    const CpuEstimate estimate = estimate_on_cpu(workload_of(*asked.store, asked.query), 2);
+    const EngineEstimate estimate = estimate_on_cpu(workload_of(*asked.store, asked.query), 2);
     REQUIRE(asked.report.engine_estimate);
-    CHECK(asked.report.engine_estimate->sweep_seconds == estimate.sweep);
-    CHECK(asked.report.engine_estimate->kdtree_seconds == estimate.kdtree);
-    CHECK((engine == Engine::kKdtree) == (estimate.kdtree < estimate.sweep));
+    CHECK(asked.report.engine_estimate->sweep_seconds == estimate.sweep_seconds);
+    CHECK(asked.report.engine_estimate->kdtree_seconds == estimate.kdtree_seconds);
+    CHECK((engine == Engine::kKdtree) == (estimate.kdtree_seconds < estimate.sweep_seconds));
     CHECK((engine == Engine::kKdtree) == (poses == 3));
     CHECK_THAT(asked.note, Contains(name_of(engine)));
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/sweep/model_field.hpp"
+#include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
 #include "stream/plan.hpp"
 #include "support/memory_cloud.hpp"

@@ -33,10 +33,10 @@ struct Range {
   Value least, greatest;
 };
 
-/// Without branches, so that it takes full vectors.
-CLEARWAY_SIMD_CLONES
-Range<std::int32_t> range_of(const std::int32_t* values, std::size_t n) {
-  Range<std::int32_t> range{values[0], values[0]};
+/// Without branches, so that it takes full vectors. Inlined, as templates cannot be cloned.
+template <std::integral Value>
+[[gnu::always_inline]] inline Range<Value> find_range(const Value* values, std::size_t n) {
+  Range<Value> range{values[0], values[0]};
   for (std::size_t i = 1; i < n; ++i) {
     range.least = values[i] < range.least ? values[i] : range.least;
     range.greatest = values[i] > range.greatest ? values[i] : range.greatest;
@@ -45,13 +45,13 @@ Range<std::int32_t> range_of(const std::int32_t* values, std::size_t n) {
 }
 
 CLEARWAY_SIMD_CLONES
+Range<std::int32_t> range_of(const std::int32_t* values, std::size_t n) {
+  return find_range(values, n);
+}
+
+CLEARWAY_SIMD_CLONES
 Range<std::uint64_t> range_of(const std::uint64_t* values, std::size_t n) {
-  Range<std::uint64_t> range{values[0], values[0]};
-  for (std::size_t i = 1; i < n; ++i) {
-    range.least = values[i] < range.least ? values[i] : range.least;
-    range.greatest = values[i] > range.greatest ? values[i] : range.greatest;
-  }
-  return range;
+  return find_range(values, n);
 }
 
 constexpr unsigned kMostJoinedBits = 57;  // with 7 pending bits they fill a word

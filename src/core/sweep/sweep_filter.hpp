@@ -8,7 +8,7 @@
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/model_tree.hpp"
 #include "core/page/pose_reach.hpp"
-#include "core/sweep/model_field.hpp"
+#include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "core/trajectory/motion_chords.hpp"
 #include "core/trajectory/motion_tree.hpp"

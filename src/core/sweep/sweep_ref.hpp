@@ -4,7 +4,7 @@
 
 #include "core/geometry/model_tree_ref.hpp"
 #include "core/geometry/sweep_bounds.hpp"
-#include "core/sweep/model_field_ref.hpp"
+#include "core/sweep/field/model_field_ref.hpp"
 #include "core/sweep/swept_step.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
 

@@ -26,12 +26,12 @@ void choose_engine(const StoreReader& store, const Query& query, Engine earlier,
     return;
   }
   if (!may_be_kdtree(store, query, options)) return;
-  const CpuEstimate estimate = estimate_on_cpu(workload_of(store, query), options.threads);
-  if (estimate.kdtree < estimate.sweep) options.engine = Engine::kKdtree;
-  report.engine_estimate = {estimate.sweep, estimate.kdtree};
+  const EngineEstimate estimate = estimate_on_cpu(workload_of(store, query), options.threads);
+  if (estimate.kdtree_seconds < estimate.sweep_seconds) options.engine = Engine::kKdtree;
+  report.engine_estimate = estimate;
   log.note("engine " + std::string(name_of(options.engine)) +
-           " is taken: by estimate sweep needs " + format_brief(estimate.sweep) + " s and kdtree " +
-           format_brief(estimate.kdtree) + " s");
+           " is taken: by estimate sweep needs " + format_brief(estimate.sweep_seconds) +
+           " s and kdtree " + format_brief(estimate.kdtree_seconds) + " s");
 }
 
 }  // namespace clearway

@@ -25,7 +25,7 @@ double kdtree_ratio(const Workload& work) {
 
 }  // namespace
 
-CpuEstimate estimate_on_cpu(const Workload& work, int threads) {
+EngineEstimate estimate_on_cpu(const Workload& work, int threads) {
   if (work.model_points == 0 || work.poses == 0) return {};
   const double sweep = sweep_seconds(work, threads);
   return {sweep, sweep * kdtree_ratio(work)};

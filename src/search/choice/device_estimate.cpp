@@ -23,9 +23,10 @@ constexpr double kPointsPerCore = 13e6;
 DeviceEstimate estimate_devices(const Workload& work, const QueryParameters& query, Engine engine,
                                 int threads) {
   const bool distances = query.clearance > 0 || query.profile > 0;
-  const CpuEstimate on_cpu = estimate_on_cpu(work, threads);
+  const EngineEstimate on_cpu = estimate_on_cpu(work, threads);
   const bool may_be_kdtree = engine == Engine::kAuto && !distances;
-  const double set = may_be_kdtree ? std::min(on_cpu.sweep, on_cpu.kdtree) : on_cpu.sweep;
+  const double set =
+      may_be_kdtree ? std::min(on_cpu.sweep_seconds, on_cpu.kdtree_seconds) : on_cpu.sweep_seconds;
   const double cpu = (distances ? kDistances : 1) * set;
   return {cpu, kStart + cpu * threads / kCores};
 }

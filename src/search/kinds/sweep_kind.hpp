@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/sweep/model_field.hpp"
+#include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
@@ -12,8 +12,8 @@ namespace clearway {
 /// What the sweep engine's forms share: the model field and the filter over it.
 class SweepKind : public PageEngineKind {
  public:
-  /// options.threads is not 0. fineness: of the field (core/sweep/model_field.hpp). All references
-  /// outlive it.
+  /// options.threads is not 0. fineness: of the field (core/sweep/field/model_field.hpp). All
+  /// references outlive it.
   SweepKind(PageEngineNeeds needs, const StoreReader& store, const Query& query,
             const SearchOptions& options, double fineness)
       : PageEngineKind(std::move(needs)),

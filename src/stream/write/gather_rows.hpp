@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -57,8 +58,9 @@ class GatherRows {
  private:
   using Range = tbb::blocked_range<std::size_t>;
 
-  template <typename Visit>
-  void for_each_cell(std::size_t first, std::size_t end, Visit visit) {
+  /// By std::function, as the thread sanitizer knows no types with names of thousands of letters.
+  void for_each_cell(std::size_t first, std::size_t end,
+                     const std::function<void(std::uint32_t, const CellRows&)>& visit) {
     const ParallelScope scope;
     const auto cells = piece_of(scope, [&](const Range& range) {
       CellRows& rows = threads_.local();

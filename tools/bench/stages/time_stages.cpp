@@ -7,7 +7,7 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/page/page_pool.hpp"
-#include "core/sweep/model_field.hpp"
+#include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/query_trees.hpp"

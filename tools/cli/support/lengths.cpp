@@ -102,6 +102,12 @@ std::array<ParsedLength, 3> parse_three(const std::string& option, const std::st
                                          "1.2,0,1.5, or with units, for example 120cm,0,1.5m");
 }
 
+/// Metres of the unit that well-known text names; 1 where it names none.
+double metres_of_crs(const std::string& wkt) {
+  const double metres = metres_of(units_of_wkt(wkt).horizontal);
+  return metres > 0 ? metres : 1;
+}
+
 }  // namespace
 
 double ParsedLength::in_units_of(double metres) const {
@@ -128,11 +134,6 @@ ParsedLength parse_length(const std::string& option, const std::string& text, Le
 std::optional<double> metres_of_unit(const std::string& length_unit) {
   const double metres = metres_of(length_unit_of(length_unit));
   return metres > 0 && metres != 1 ? std::optional(metres) : std::nullopt;
-}
-
-double metres_of_crs(const std::string& wkt) {
-  const double metres = metres_of(units_of_wkt(wkt).horizontal);
-  return metres > 0 ? metres : 1;
 }
 
 CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,

@@ -35,9 +35,6 @@ ParsedLength parse_length(const std::string& option, const std::string& text,
 /// Metres of the unit of a store's coordinates, by its name there; none where it is the metre.
 std::optional<double> metres_of_unit(const std::string& length_unit);
 
-/// Metres of the unit that well-known text names; 1 where it names none.
-double metres_of_crs(const std::string& wkt);
-
 /// An option that takes the name of a unit of a file. metres: receives its length.
 CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,
                              const std::string& description);

@@ -1,4 +1,4 @@
-#include "core/sweep/model_field.hpp"
+#include "core/sweep/field/model_field.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/geometry/predicate.hpp"
-#include "core/sweep/brick_nearest.hpp"
+#include "core/sweep/field/brick_nearest.hpp"
 
 using namespace clearway;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/geometry/model_tree.hpp"
-#include "core/sweep/model_field_ref.hpp"
+#include "core/sweep/field/model_field_ref.hpp"
 
 namespace clearway {
 

@@ -1,4 +1,4 @@
-#include "core/sweep/model_field.hpp"
+#include "core/sweep/field/model_field.hpp"
 
 #include <omp.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <thread>
 
-#include "core/sweep/brick_nearest.hpp"
+#include "core/sweep/field/brick_nearest.hpp"
 
 namespace clearway {
 namespace {

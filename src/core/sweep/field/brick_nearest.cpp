@@ -1,4 +1,4 @@
-#include "core/sweep/brick_nearest.hpp"
+#include "core/sweep/field/brick_nearest.hpp"
 
 #include <algorithm>
 #include <cmath>
