@@ -206,7 +206,7 @@ void add_convert(py::module_& module) {
       "columns"_a = std::vector<std::string>{}, "skip_unreadable"_a = false, "strict"_a = false,
       "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
       "message"_a = py::none(), "stop"_a = py::none(),
-      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, ignore_crs=False, columns=[], skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
+      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, ignore_crs=False, columns=(), skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.

@@ -151,7 +151,7 @@ void add_searches(py::module_& module) {
       "input_warnings"_a = py::tuple(), "end_gpus"_a = false,
       "journal_interval_seconds"_a = SearchOptions{}.journal_interval_seconds,
       "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
-      R"(search(store, query, output, *, engine='auto', device='auto', gpus=[], threads=0, memory_bytes=4294967296, device_memory_bytes=0, field_voxel=0.0, grid_cell=0.0, float_precision=False, overwrite=False, resume=False, strict=False, input_warnings=(), end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
+      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, field_voxel=0.0, grid_cell=0.0, float_precision=False, overwrite=False, resume=False, strict=False, input_warnings=(), end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
 --
 
 Find every point of the store within the query's radius of the moving model.

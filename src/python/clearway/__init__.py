@@ -1,4 +1,4 @@
-"""Clearway: which points of a scanned environment lie within the search radius of a moving model?
+"""Clearway: does this vehicle pass through this scanned environment without touching it?
 
     import clearway
 
@@ -9,9 +9,52 @@
     print(report, report.warnings)
     points = clearway.Result("out.h5").xyz()
 
-Lengths are in metres, unless the scans are in feet. Points are arrays of n x 3 float64.
-Poses are arrays of n x 4 x 4 float64.
+Points are arrays of n x 3 float64, poses arrays of n x 4 x 4 float64.
+Lengths are in metres, or in the unit of the scans where that is another one.
 """
 
-from ._clearway import *  # noqa: F403
-from ._clearway import __version__  # noqa: F401
+from ._clearway import (
+    METRES_PER_CENTIMETRE,
+    METRES_PER_FOOT,
+    METRES_PER_INCH,
+    METRES_PER_MILLIMETRE,
+    Box,
+    Clearances,
+    Conflict,
+    Conflicts,
+    ConvertReport,
+    DeviceEstimate,
+    EngineEstimate,
+    Error,
+    FoundPlace,
+    InputError,
+    Interrupted,
+    Message,
+    PoseLabels,
+    Profile,
+    ProgressUpdate,
+    Query,
+    QueryParameters,
+    ReportSummary,
+    ResourceError,
+    Result,
+    SearchReport,
+    SearchSeconds,
+    Store,
+    ToleranceReport,
+    UsageError,
+    __version__,
+    convert,
+    find_conflicts,
+    read_model,
+    read_trajectory,
+    search,
+    write_report,
+)
+
+__all__ = [name for name in dir() if not name.startswith("_")]
+
+for _name in __all__:
+    if hasattr(globals()[_name], "__module__"):
+        globals()[_name].__module__ = __name__  # not that of the compiled part
+del _name
