@@ -51,6 +51,7 @@ void Watch::finish() {
 }
 
 void Watch::run_thread(const std::function<void()>& work) {
+  guarded([&] { look(); });
   const Joined thread(std::thread([this, &work] {
                         work();
                         finish();
