@@ -92,7 +92,7 @@ const char* name_of(Remedy remedy) {
 struct Classes {
   PyObject *error, *usage, *input, *resource, *interrupted;
 };
-Classes classes{};
+Classes error_classes{};
 
 PyObject* add_class(py::module_& module, const char* name, const char* doc, py::tuple bases) {
   PyObject* made = PyErr_NewExceptionWithDoc((std::string("clearway.") + name).c_str(), doc,
@@ -113,15 +113,15 @@ void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const UsageError& error) {
-    raise(classes.usage, error);
+    raise(error_classes.usage, error);
   } catch (const InputError& error) {
-    raise(classes.input, error);
+    raise(error_classes.input, error);
   } catch (const ResourceError& error) {
-    raise(classes.resource, error);
+    raise(error_classes.resource, error);
   } catch (const Interrupted& error) {
-    raise(classes.interrupted, error);
+    raise(error_classes.interrupted, error);
   } catch (const Error& error) {
-    raise(classes.error, error);
+    raise(error_classes.error, error);
   }
 }
 
@@ -129,25 +129,25 @@ void translate(std::exception_ptr thrown) {
 
 void add_errors(py::module_& module) {
   const py::handle plain = PyExc_Exception, value = PyExc_ValueError;
-  classes.error = add_class(
+  error_classes.error = add_class(
       module, "Error",
       "What the world does wrong. The text says what happened and where.\n\n"
       "remedy: what would help, such as 'overwrite' or 'more_memory'; None: nothing is known.\n"
       "amount: a number of the remedy, such as the bytes that are enough; 0: none.",
       py::make_tuple(plain));
-  const py::handle error = classes.error;
+  const py::handle error = error_classes.error;
   error.attr("remedy") = py::none();
   error.attr("amount") = 0.0;
-  classes.usage = add_class(module, "UsageError",
-                            "Options that contradict each other, or ask for what cannot be done.",
-                            py::make_tuple(error, value));
-  classes.input =
+  error_classes.usage = add_class(
+      module, "UsageError", "Options that contradict each other, or ask for what cannot be done.",
+      py::make_tuple(error, value));
+  error_classes.input =
       add_class(module, "InputError", "An input that is malformed, damaged or not supported.",
                 py::make_tuple(error));
-  classes.resource = add_class(module, "ResourceError",
-                               "A file cannot be read or written, or memory or a GPU is not there.",
-                               py::make_tuple(error));
-  classes.interrupted =
+  error_classes.resource = add_class(
+      module, "ResourceError", "A file cannot be read or written, or memory or a GPU is not there.",
+      py::make_tuple(error));
+  error_classes.interrupted =
       add_class(module, "Interrupted",
                 "Stopped on request. What a journal holds is not lost: the same call with "
                 "resume=True goes on.",
