@@ -100,7 +100,7 @@ std::vector<Vec3> points_of(const Doubles& array, const char* name) {
 
 std::vector<Pose> poses_of(const Doubles& array, const char* name) {
   const std::span<const double> numbers = all_of(array);
-  const std::size_t of_one = static_cast<std::size_t>(4 * array.shape(1));
+  const auto of_one = static_cast<std::size_t>(4 * array.shape(1));
   require_finite(numbers, of_one, name, "pose");
   std::vector<Pose> poses(numbers.size() / of_one);
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -147,14 +147,10 @@ py::array to_array(const Vec3& point) {
 
 py::array to_array(std::vector<Vec3> points) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  auto owner = std::make_unique<std::vector<Vec3>>(std::move(points));
-  const auto& kept = *owner;
-  const auto* first = reinterpret_cast<const double*>(kept.data());
-  py::capsule capsule(owner.get(),
-                      [](void* held) { delete static_cast<std::vector<Vec3>*>(held); });
-  owner.release();
-  return py::array_t<double>({static_cast<py::ssize_t>(kept.size()), py::ssize_t{3}}, first,
-                             capsule);
+  const py::capsule owner = keep(std::move(points));
+  const auto& kept = *owner.get_pointer<std::vector<Vec3>>();
+  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(kept.size()), 3};
+  return py::array_t<double>(shape, reinterpret_cast<const double*>(kept.data()), owner);
 }
 
 }  // namespace clearway::python

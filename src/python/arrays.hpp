@@ -35,15 +35,22 @@ void require_rigid(const std::vector<Pose>& poses);
 py::array to_array(const std::vector<Pose>& poses);
 py::array to_array(const Vec3& point);  ///< 3
 
+/// Python owns the vector.
+template <typename Value>
+py::capsule keep(std::vector<Value> values) {
+  using Values = std::vector<Value>;
+  auto kept = std::make_unique<Values>(std::move(values));
+  py::capsule owner(kept.get(), [](void* held) { delete static_cast<Values*>(held); });
+  (void)kept.release();
+  return owner;
+}
+
 /// An array that owns the vector.
 template <typename Number>
 py::array to_array(std::vector<Number> values) {
-  auto owner = std::make_unique<std::vector<Number>>(std::move(values));
-  const auto& kept = *owner;
-  py::capsule capsule(owner.get(),
-                      [](void* held) { delete static_cast<std::vector<Number>*>(held); });
-  owner.release();
-  return py::array_t<Number>(static_cast<py::ssize_t>(kept.size()), kept.data(), capsule);
+  const py::capsule owner = keep(std::move(values));
+  const auto& kept = *owner.get_pointer<std::vector<Number>>();
+  return py::array_t<Number>(static_cast<py::ssize_t>(kept.size()), kept.data(), owner);
 }
 
 /// n x 3, likewise.

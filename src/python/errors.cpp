@@ -109,7 +109,7 @@ void raise(PyObject* type, const Error& error) {
   PyErr_SetObject(type, raised.ptr());
 }
 
-void translate(std::exception_ptr thrown) {
+void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param)
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const UsageError& error) {
