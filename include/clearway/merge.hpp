@@ -12,6 +12,7 @@
 namespace clearway {
 
 struct MergeOptions {
+  int threads = 0;  ///< 0: all cores
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   bool overwrite = false;  ///< an existing result
   ProgressCallback progress = nullptr;

@@ -3,6 +3,7 @@
 #include "core/util/callback_progress.hpp"
 #include "io/merge/merge_parts.hpp"
 #include "io/system/pending_file.hpp"
+#include "search/threads.hpp"
 
 namespace clearway {
 
@@ -12,7 +13,9 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
   PendingFile pending(output, options.overwrite);
   CallbackProgress progress(options.progress, options.stop);
   const PartSet set(parts);
-  const MergedResult merged = merge_parts(set, pending.partial(), options.memory_bytes, progress);
+  const MergedResult merged = in_threads(options.threads, [&] {
+    return merge_parts(set, pending.partial(), options.memory_bytes, progress);
+  });
   pending.publish();
   const ResultHeader& header = set.header();
   return {.parameters = header,

@@ -89,6 +89,7 @@ void add_merge(CLI::App& program, int& exit_code) {
   command->add_option("-o,--output", options->output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
+  add_threads_option(*command, options->merge.threads);
   add_memory_option(*command, options->merge.memory_bytes);
   command->add_flag("--force", options->merge.overwrite, "Overwrite an existing result");
   command->add_flag("--fail-on-collision", options->fail_on_collision,
