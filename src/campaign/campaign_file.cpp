@@ -198,6 +198,15 @@ void read_outputs(const KeyReader& file, Campaign& campaign) {
   }
 }
 
+void read_shard_seconds(const KeyReader& limits, Campaign& campaign) {
+  if (!limits.has("shard_seconds")) return;
+  const KeyReader at = limits.at("shard_seconds");
+  if (!at.value().is_number() || !(at.value().get<double>() > 0)) {
+    at.refuse("expected seconds above 0, as 600");
+  }
+  campaign.shard_seconds = at.value().get<double>();
+}
+
 /// Options that the script sets itself.
 bool is_of_script(const std::string& option) {
   static constexpr std::array kOwn{"--array",      "--signal", "--requeue",
@@ -235,9 +244,10 @@ Campaign read_campaign(const fs::path& path) {
   }
   read_outputs(file, campaign);
   if (file.has("limits")) {
-    file.at("limits").allow(names_of(kLimitKeys, names_of(kSearchKeys, {})));
+    file.at("limits").allow(names_of(kLimitKeys, names_of(kSearchKeys, {"shard_seconds"})));
     campaign.search_limits = arguments_of(file.at("limits"), kSearchKeys);
     campaign.limits = arguments_of(file.at("limits"), kLimitKeys);
+    read_shard_seconds(file.at("limits"), campaign);
   }
   if (file.has("slurm")) read_slurm(file.at("slurm"), campaign);
   return campaign;

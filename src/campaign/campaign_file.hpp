@@ -38,6 +38,7 @@ struct Campaign {
   Arguments conflicts;  ///< options of conflicts and reports alike
   Arguments classes;
   Arguments search_limits, limits;  ///< of clearway run alone, of all commands
+  double shard_seconds = 0;         ///< a run that is estimated longer is divided; 0: none is
   std::vector<std::string> slurm;   ///< options of sbatch
 };
 

@@ -51,8 +51,9 @@ class CampaignPage {
  public:
   CampaignPage(const Plan& plan, const std::vector<TaskLook>& looks, const std::string& date)
       : plan_(plan), looks_(looks), date_(date), routes_(names_in(plan, &Task::route)) {
-    for (const Task& task : plan.tasks) {
-      at_[{task.vehicle, task.route, task.radius}] = task.number;
+    for (std::size_t i = 0; i < plan.tasks.size(); ++i) {
+      const Task& task = plan.tasks[i];
+      at_[{task.vehicle, task.route, task.radius}] = i;
       environment_of_[task.route] = task.environment;
     }
   }
@@ -145,9 +146,9 @@ class CampaignPage {
     return " " + plan_.tasks[0].unit;
   }
 
-  void cell(std::size_t number) {
-    const Task& task = plan_.tasks[number];
-    const TaskLook& look = looks_[number];
+  void cell(std::size_t index) {
+    const Task& task = plan_.tasks[index];
+    const TaskLook& look = looks_[index];
     const CellLook& kind = look_of(kind_of(look));
     const std::string link = cell_link(task, look), distance = cell_distance(task, look);
     text_ += std::string("<td class=\"") + kind.name + "\" title=\"" +
@@ -165,8 +166,9 @@ class CampaignPage {
     text_ +=
         "<section>\n<h2>Failed</h2>\n<table class=\"list\">\n<thead><tr><th scope=\"col\">task</th>"
         "<th scope=\"col\">run</th><th scope=\"col\">what happened</th></tr></thead>\n<tbody>\n";
-    for (const Task& task : plan_.tasks) {
-      const TaskLook& look = looks_[task.number];
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      const Task& task = plan_.tasks[i];
+      const TaskLook& look = looks_[i];
       if (kind_of(look) != CellKind::kFailed) continue;
       text_ += "<tr><td>" + std::to_string(task.number) + "</td><td><a href=\"" +
                cell_link(task, look) + "\">" + html_text(task.name()) + "</a></td><td>" +
@@ -178,7 +180,7 @@ class CampaignPage {
   void unfinished() {
     TaskList tasks;
     for (std::size_t i = 0; i < looks_.size(); ++i) {
-      if (kind_of(looks_[i]) == CellKind::kUnfinished) tasks.push_back(i);
+      if (kind_of(looks_[i]) == CellKind::kUnfinished) tasks.push_back(plan_.tasks[i].number);
     }
     if (tasks.empty()) return;
     text_ += "<section>\n<h2>Not done</h2>\n<p>Tasks " + task_list_text(tasks) +
@@ -207,13 +209,33 @@ class CampaignPage {
 
 }  // namespace
 
+RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks) {
+  RunLooks runs{{plan.name, {}}, {}};
+  std::optional<TaskLook> failed;  // of the shards before their run
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (plan.tasks[i].shard) {
+      if (looks[i].status == TaskStatus::kFailed && !failed) {
+        failed = looks[i];
+        failed->shard = plan.tasks[i].shard->number;
+      }
+      continue;
+    }
+    const bool done = looks[i].status == TaskStatus::kDone;
+    runs.plan.tasks.push_back(plan.tasks[i]);
+    runs.looks.push_back(failed && !done ? *failed : looks[i]);
+    failed.reset();
+  }
+  return runs;
+}
+
 ordered_json page_facts(const Plan& plan, const std::vector<TaskLook>& looks,
                         const std::string& date) {
   ordered_json out{{"campaign", plan.name}, {"date", date}, {"tasks", plan.tasks.size()}};
   for (const CellKind kind : kCellKinds) out[look_of(kind).name] = cells_of(looks, kind);
   out["runs"] = ordered_json::array();
-  for (const Task& task : plan.tasks) {
-    const TaskLook& look = looks[task.number];
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const Task& task = plan.tasks[i];
+    const TaskLook& look = looks[i];
     ordered_json run{{"task", task.number},
                      {"vehicle", task.vehicle},
                      {"route", task.route},

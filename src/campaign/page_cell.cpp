@@ -83,7 +83,8 @@ std::string cell_distance(const Task& task, const TaskLook& look) {
 
 std::string cell_details(const Task& task, const TaskLook& look) {
   if (look.status == TaskStatus::kFailed) {
-    return "exit code " + std::to_string(look.state->exit_code) + ": " + look.state->message;
+    return (look.shard > 0 ? "shard " + std::to_string(look.shard) + ": " : "") + "exit code " +
+           std::to_string(look.state->exit_code) + ": " + look.state->message;
   }
   if (look.status != TaskStatus::kDone) return name_of(look.status);
   const ordered_json& facts = look.state->facts;
@@ -98,7 +99,10 @@ std::string cell_details(const Task& task, const TaskLook& look) {
 
 std::string cell_link(const Task& task, const TaskLook& look) {
   const std::string folder = task.folder().string() + "/";
-  if (look.status == TaskStatus::kFailed) return link_text(folder + "log.txt");
+  if (look.status == TaskStatus::kFailed) {
+    const std::string of = look.shard > 0 ? "shards/" + std::to_string(look.shard) + "/" : "";
+    return link_text(folder + of + "log.txt");
+  }
   if (look.status != TaskStatus::kDone) return "";
   const bool report = std::ranges::find(task.outputs, kReportName) != task.outputs.end();
   return link_text(folder + (report ? kReportName : "run.json"));

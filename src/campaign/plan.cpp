@@ -93,13 +93,32 @@ Command with_arguments(Command command, const Arguments& arguments, const Argume
   return command;
 }
 
+/// Of a run, or of the shards of a run that is divided: what its commands begin with.
+Command run_words(const Task& task) {
+  Command words{"run", "--resume", "--json", std::string("--output=") + task.result()};
+  if (task.shard) words.push_back("--shard=" + to_string(*task.shard));
+  return words;
+}
+
+/// "--memory" and "--threads".
+Command merge_words(const Task& task, const Arguments& limits) {
+  Command words{"merge", "--force", std::string("--output=") + task.result()};
+  for (std::uint32_t number = 1; number <= task.shards; ++number) {
+    words.push_back("shards/" + std::to_string(number) + "/" + kPartName);
+  }
+  words += limits;
+  return words;
+}
+
+/// The run finds its result merged: it says what is in it.
 Task make_task(const Campaign& campaign, const PlannedRun& run, const RunFacts& facts) {
   Task task;
   task.question = facts.question;
   task.unit = facts.unit;
+  task.shards = facts.shards > 1 ? facts.shards : 0;
   auto made = nlohmann::ordered_json::array();
-  task.commands.push_back(with_arguments(
-      {"run", "--resume", "--json", std::string("--output=") + kResultName}, run.arguments, {}));
+  if (task.shards > 0) task.commands.push_back(merge_words(task, campaign.limits));
+  task.commands.push_back(with_arguments(run_words(task), run.arguments, {}));
   for (const auto& [command, arguments] : run.outputs) {
     made.push_back(with_arguments(command, arguments, {}));
     task.commands.push_back(with_arguments(command, arguments, campaign.limits));
@@ -108,9 +127,34 @@ Task make_task(const Campaign& campaign, const PlannedRun& run, const RunFacts& 
   return task;
 }
 
+void add_tasks(Task task, const PlannedRun& run, Plan& plan) {
+  for (std::uint32_t number = 1; number <= task.shards; ++number) {
+    Task shard = shard_of(task, number);
+    shard.number = plan.tasks.size();
+    shard.commands.push_back(with_arguments(run_words(shard), run.arguments, {}));
+    plan.tasks.push_back(std::move(shard));
+  }
+  task.number = plan.tasks.size();
+  plan.tasks.push_back(std::move(task));
+}
+
 }  // namespace
 
 std::string Task::question_id() const { return id_of(question); }
+
+Task shard_of(const Task& merge, std::uint32_t number) {
+  Task shard;
+  shard.vehicle = merge.vehicle;
+  shard.route = merge.route;
+  shard.environment = merge.environment;
+  shard.radius = merge.radius;
+  shard.unit = merge.unit;
+  shard.shard = Shard{number, merge.shards};
+  shard.question = merge.question;
+  shard.question["shard"] = to_string(*shard.shard);
+  shard.outputs_id = id_of(nlohmann::ordered_json::array());
+  return shard;
+}
 
 Plan make_plan(const Campaign& campaign,
                const std::function<RunFacts(const PlannedRun&)>& facts_of) {
@@ -127,13 +171,12 @@ Plan make_plan(const Campaign& campaign,
                              commands.run() + campaign.search_limits + campaign.limits,
                              commands.outputs()};
         Task task = make_task(campaign, run, facts_of(run));
-        task.number = plan.tasks.size();
         task.vehicle = vehicle.name;
         task.route = route.name;
         task.environment = environment.name;
         task.radius = campaign.radius_names[i];
         task.outputs = commands.files();
-        plan.tasks.push_back(std::move(task));
+        add_tasks(std::move(task), run, plan);
       }
     }
   }

@@ -15,17 +15,20 @@ constexpr int kFormat = 1;
 constexpr std::string_view kEnd = "]}";
 
 ordered_json json_of(const Task& task) {
-  return {{"task", task.number},
-          {"vehicle", task.vehicle},
-          {"route", task.route},
-          {"environment", task.environment},
-          {"radius", task.radius},
-          {"unit", task.unit},
-          {"folder", task.folder().string()},
-          {"question", task.question},
-          {"outputs", task.outputs},
-          {"outputs_id", task.outputs_id},
-          {"commands", task.commands}};
+  ordered_json line{{"task", task.number},
+                    {"vehicle", task.vehicle},
+                    {"route", task.route},
+                    {"environment", task.environment},
+                    {"radius", task.radius},
+                    {"unit", task.unit},
+                    {"folder", task.folder().string()}};
+  if (task.shard) line["shard"] = {task.shard->number, task.shard->count};
+  if (task.shards > 0) line["shards"] = task.shards;
+  line["question"] = task.question;
+  line["outputs"] = task.outputs;
+  line["outputs_id"] = task.outputs_id;
+  line["commands"] = task.commands;
+  return line;
 }
 
 Task task_of(const ordered_json& line) {
@@ -36,6 +39,11 @@ Task task_of(const ordered_json& line) {
   line.at("environment").get_to(task.environment);
   line.at("radius").get_to(task.radius);
   line.at("unit").get_to(task.unit);
+  if (line.contains("shard")) {
+    const ordered_json& shard = line["shard"];
+    task.shard = Shard{shard.at(0).get<std::uint32_t>(), shard.at(1).get<std::uint32_t>()};
+  }
+  if (line.contains("shards")) line["shards"].get_to(task.shards);
   task.question = line.at("question");
   line.at("outputs").get_to(task.outputs);
   line.at("outputs_id").get_to(task.outputs_id);

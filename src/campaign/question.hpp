@@ -7,7 +7,8 @@
 
 namespace clearway::campaign {
 
-/// What tells the questions of results apart: parameters, and sizes and hashes of the inputs.
+/// What tells the questions of results apart: parameters, sizes and hashes of the inputs, and of a
+/// part which one it is.
 nlohmann::ordered_json question_of(const ResultHeader& header);
 
 /// Whether the file is a complete result of that question. Its rows are not read.

@@ -48,32 +48,50 @@ exit $code
 )sh";
 
 constexpr const char* kSubmitScript = R"sh(
-# Numbers of an array stay below MaxArraySize: more tasks become several arrays.
 set -euo pipefail
 most=$(scontrol show config | awk '/^MaxArraySize/ {print $3}')
-numbers=()
-IFS=, read -ra parts <<< "$list"
-for part in "${parts[@]}"; do
-  numbers+=($(seq "${part%-*}" "${part#*-}"))
-done
-jobs=
-first=0
-while [ ${#numbers[@]} -gt 0 ]; do
-  array= rest=()
-  for number in "${numbers[@]}"; do
-    if [ "$number" -lt $((first + most)) ]; then
-      array+=${array:+,}$((number - first))
-    else
-      rest+=("$number")
-    fi
+
+numbers_of() {  # 3,7-9: a number a line
+  local part parts
+  IFS=, read -ra parts <<< "$1"
+  for part in ${parts[@]+"${parts[@]}"}; do
+    seq "${part%-*}" "${part#*-}"
   done
-  if [ -n "$array" ]; then
-    job=$(CLEARWAY_FIRST=$first sbatch --parsable --export=ALL --array="$array" "$folder/campaign.sbatch")
-    jobs+=:${job%%;*}
-  fi
-  numbers=(${rest[@]+"${rest[@]}"})
-  first=$((first + most))
+}
+
+# Numbers of an array stay below MaxArraySize: more tasks become several arrays.
+submit() {  # numbers and options of sbatch in the variables of these names: adds to jobs
+  local first=0 array rest number job
+  while [ ${#numbers[@]} -gt 0 ]; do
+    array= rest=()
+    for number in "${numbers[@]}"; do
+      if [ "$number" -lt $((first + most)) ]; then
+        array+=${array:+,}$((number - first))
+      else
+        rest+=("$number")
+      fi
+    done
+    if [ -n "$array" ]; then
+      job=$(CLEARWAY_FIRST=$first sbatch --parsable --export=ALL --array="$array" \
+        ${options[@]+"${options[@]}"} "$folder/campaign.sbatch")
+      jobs+=:${job%%;*}
+    fi
+    numbers=(${rest[@]+"${rest[@]}"})
+    first=$((first + most))
+  done
+}
+
+declare -A is_merge=()
+for number in $(numbers_of "$merges"); do is_merge[$number]=1; done
+runs=() later=()
+for number in $(numbers_of "$list"); do
+  if [ -n "${is_merge[$number]:-}" ]; then later+=("$number"); else runs+=("$number"); fi
 done
+jobs= options=() numbers=(${runs[@]+"${runs[@]}"})
+submit
+if [ -n "$jobs" ]; then options=(--dependency="afterany$jobs"); fi
+numbers=(${later[@]+"${later[@]}"})
+submit
 report=$(sbatch --parsable --dependency="afterany$jobs" --job-name="$name-report" \
   --output="$folder/slurm/report.log" "${report_options[@]}" \
   --wrap="exec $(printf '%q ' "$program" campaign report "$folder" --force)")
@@ -116,7 +134,8 @@ std::string submit_text(const SlurmJob& job) {
   return "#!/usr/bin/env bash\n"
          "# Submits a campaign to Slurm: submit.sh [TASKS], for example\n"
          "#   submit.sh \"$(clearway campaign status DIR --missing)\"\n" +
-         variables(job) + "list=${1:-0-" + last + "}\n" + options + ")" + kSubmitScript;
+         variables(job) + "list=${1:-0-" + last + "}\nmerges=" + task_list_text(job.merges) +
+         "  # wait for their shards\n" + options + ")" + kSubmitScript;
 }
 
 }  // namespace clearway::campaign

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "campaign/task_list.hpp"
+
 namespace clearway::campaign {
 
 /// What the scripts of a campaign are made of.
@@ -13,6 +15,7 @@ struct SlurmJob {
   std::string name;
   std::filesystem::path program, folder;  ///< absolute
   std::size_t tasks = 0;
+  TaskList merges;                 ///< of them, those that wait for their shards
   std::uint64_t memory_bytes = 0;  ///< of --memory
   int threads = 0;                 ///< 0: not said
   bool gpu = false;
@@ -22,7 +25,8 @@ struct SlurmJob {
 /// campaign.sbatch: one element of the array is one task.
 std::string sbatch_text(const SlurmJob& job);
 
-/// submit.sh: submits all tasks, or those of a list, and the report after them.
+/// submit.sh: submits all tasks, or those of a list, the merges after the shards, and the report
+/// after all.
 std::string submit_text(const SlurmJob& job);
 
 }  // namespace clearway::campaign

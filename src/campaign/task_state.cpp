@@ -57,7 +57,7 @@ bool is_done(const Task& task, const fs::path& campaign, const std::optional<Tas
   std::error_code unknown;
   return std::ranges::all_of(
              task.outputs, [&](const auto& name) { return fs::exists(folder / name, unknown); }) &&
-         answers(folder / kResultName, task.question);
+         answers(folder / task.result(), task.question);
 }
 
 TaskLook look_at(const Task& task, const fs::path& campaign) {

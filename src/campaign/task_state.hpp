@@ -21,6 +21,7 @@ const char* name_of(TaskStatus status);
 struct TaskLook {
   TaskStatus status = TaskStatus::kMissing;
   std::optional<TaskState> state;  ///< of the last try of this plan
+  std::uint32_t shard = 0;         ///< whose look it is, where it stands for its run; 0: of none
 };
 
 /// campaign: its folder. Changes nothing.

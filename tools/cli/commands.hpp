@@ -5,11 +5,13 @@ class App;
 }
 
 /// One function a subcommand: adds its options to `program` and sets the callback that runs it. A
-/// callback sets `exit_code` where success is not 0 (run, compare, verify, campaign run) and throws otherwise.
+/// callback sets `exit_code` where success is not 0 (run, compare, verify, campaign run) and throws
+/// otherwise.
 namespace clearway::tool {
 
 void add_convert(CLI::App& program);
 void add_run(CLI::App& program, int& exit_code);
+void add_merge(CLI::App& program, int& exit_code);
 void add_export(CLI::App& program);
 void add_conflicts(CLI::App& program);
 void add_compare(CLI::App& program, int& exit_code);

@@ -11,6 +11,7 @@ namespace {
 void add_commands(CLI::App& program, int& exit_code) {
   add_convert(program);
   add_run(program, exit_code);
+  add_merge(program, exit_code);
   add_export(program);
   add_conflicts(program);
   add_compare(program, exit_code);

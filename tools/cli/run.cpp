@@ -193,8 +193,10 @@ std::string unit_of(const Store& store) {
 }
 
 Verdict find_verdict(const SearchReport& report, const Query& query, const RunOptions& options) {
-  if (report.was_finished) return verdict_of(ResultReader(options.output), query.poses);
-  return verdict_of(report, query, options.search.float_precision);
+  if (report.was_finished) {
+    return verdict_of(ResultReader(options.output, Parts::kAccepted), query.poses);
+  }
+  return verdict_of(report, query, options.search);
 }
 
 /// Without --json the result itself is the answer: that nobody reads the sentence is no failure.
@@ -250,7 +252,7 @@ bool run(RunOptions& options) {
   } else {
     print_verdict(sentence);
   }
-  return answer.verdict.is_clear();
+  return !answer.verdict.is_conflict();
 }
 
 }  // namespace
@@ -275,8 +277,8 @@ void add_run(CLI::App& program, int& exit_code) {
       "out.h5");
   command->callback([options, &exit_code] {
     run_stoppable(options->output, kHowToResume, [&] {
-      const bool clear = run(*options);
-      if (!clear && options->fail_on_collision) exit_code = kDiffers;
+      const bool no_conflict = run(*options);
+      if (!no_conflict && options->fail_on_collision) exit_code = kDiffers;
     });
   });
 }

@@ -37,14 +37,18 @@ std::string limit_of(const campaign::Arguments& limits, const std::string& optio
 }
 
 campaign::SlurmJob slurm_job(const campaign::Campaign& asked, const fs::path& folder,
-                             std::size_t tasks) {
+                             const campaign::Plan& plan) {
   campaign::SlurmJob job{.name = asked.name,
                          .program = fs::read_symlink("/proc/self/exe"),
                          .folder = fs::absolute(folder).lexically_normal(),
-                         .tasks = tasks,
+                         .tasks = plan.tasks.size(),
+                         .merges = {},
                          .memory_bytes = SearchOptions{}.memory_bytes,
                          .gpu = limit_of(asked.search_limits, "--device") == "cuda",
                          .options = asked.slurm};
+  for (const campaign::Task& task : plan.tasks) {
+    if (task.shards > 0) job.merges.push_back(task.number);
+  }
   const std::string memory = limit_of(asked.limits, "--memory");
   if (!memory.empty()) job.memory_bytes = parse_size("--memory", memory);
   const std::string threads = limit_of(asked.limits, "--threads");
@@ -67,8 +71,8 @@ void write_script(const fs::path& path, const std::string& text) {
 campaign::Plan plan_of(const campaign::Campaign& asked, const fs::path& file) {
   ConsoleProgress progress;
   const std::size_t tasks = asked.vehicles.size() * asked.routes.size() * asked.radii.size();
-  progress.begin("Reading inputs", tasks, "tasks");
-  QuestionReader questions(file);
+  progress.begin("Reading inputs", tasks, "runs");
+  QuestionReader questions(file, asked.shard_seconds);
   campaign::Plan plan = campaign::make_plan(asked, [&](const campaign::PlannedRun& run) {
     if (progress.stop_requested()) throw Interrupted("");
     progress.advance(1);
@@ -95,7 +99,7 @@ void run_plan(const CampaignPlanOptions& options) {
                      "of the same questions stay");
   } else {
     make_folder(options.folder / "slurm");
-    const campaign::SlurmJob job = slurm_job(asked, options.folder, plan.tasks.size());
+    const campaign::SlurmJob job = slurm_job(asked, options.folder, plan);
     write_script(options.folder / "campaign.sbatch", campaign::sbatch_text(job));
     write_script(options.folder / "submit.sh", campaign::submit_text(job));
     campaign::replace_file(planned, text);

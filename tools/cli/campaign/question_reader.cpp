@@ -10,6 +10,7 @@
 #include "cli/input_roles.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
+#include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/formats/length_unit.hpp"
 #include "io/store/store_reader.hpp"
@@ -69,7 +70,7 @@ void tell(const std::string& key, const std::vector<Message>& messages) {
 
 /// The same kind of error, with file and key in front.
 template <typename Call>
-auto QuestionReader::named(const std::string& key, const Call& call) const {
+decltype(auto) QuestionReader::named(const std::string& key, const Call& call) const {
   const auto text = [&](const Error& error) {
     return file_.string() + ": " + key + ": " + error.what();
   };
@@ -98,13 +99,16 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   options.trajectory_options.default_crs = store.header.crs_wkt;
   ResultHeader header = store.header;
   static_cast<QueryParameters&>(header) = options.query;
-  const Hashed points = model(run, options);
+  const ReadModel& points = model(run, options);
   header.model_points = points.count;
   header.model_hash = points.hash;
-  const Hashed poses = trajectory(run, options);
+  const ReadTrajectory& poses = trajectory(run, options);
   header.poses = poses.count;
   header.trajectory_hash = poses.hash;
-  return {campaign::question_of(header), store.unit};
+  const std::uint32_t shards = named(run.environment.key, [&] {
+    return estimate_.shards(options, points.box, points.count, poses.poses);
+  });
+  return {campaign::question_of(header), store.unit, shards};
 }
 
 void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
@@ -186,32 +190,37 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
   return facts;
 }
 
-QuestionReader::Hashed QuestionReader::model(const PlannedRun& run, const RunOptions& options) {
+const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
+                                                       const RunOptions& options) {
   const ModelOptions how = with_spacing(options.model_options, options.query.radius);
   const std::string id = run.vehicle.name + '\n' + format_number(how.spacing) + '\n' +
                          format_number(how.environment_unit);
   const auto known = models_.find(id);
   if (known != models_.end()) return known->second;
-  return named(run.vehicle.key, [&] {
+  return named(run.vehicle.key, [&]() -> const ReadModel& {
     check_is_model(options.model);
     std::vector<Message> messages;
     const std::vector<Vec3> points = read_model(options.model, how, &messages);
     tell(run.vehicle.key, messages);
-    return models_[id] = {points.size(), hash_of_model(points)};
+    return models_[id] = {points.size(), hash_of_model(points),
+                          points.empty() ? Box{} : box_of(points)};
   });
 }
 
-QuestionReader::Hashed QuestionReader::trajectory(const PlannedRun& run,
-                                                  const RunOptions& options) {
+const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRun& run,
+                                                                 const RunOptions& options) {
   const auto known = trajectories_.find(run.route.name);
   if (known != trajectories_.end()) return known->second;
-  return named(run.route.key, [&] {
+  return named(run.route.key, [&]() -> const ReadTrajectory& {
     check_is_trajectory(options.trajectory);
     std::vector<Message> messages;
-    const std::vector<Pose> poses =
+    std::vector<Pose> poses =
         read_trajectory(options.trajectory, options.trajectory_options, &messages);
     tell(run.route.key, messages);
-    return trajectories_[run.route.name] = {poses.size(), hash_of_trajectory(poses)};
+    ReadTrajectory& read = trajectories_[run.route.name];
+    read = {poses.size(), hash_of_trajectory(poses)};
+    if (estimate_.is_asked_for()) read.poses = std::move(poses);
+    return read;
   });
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "campaign/plan.hpp"
+#include "cli/campaign/run_estimate.hpp"
 #include "cli/run_options.hpp"
 #include "io/result/result.hpp"
 
@@ -16,7 +17,9 @@ namespace clearway::tool {
 /// campaign.json.
 class QuestionReader {
  public:
-  explicit QuestionReader(std::filesystem::path campaign_file) : file_(std::move(campaign_file)) {}
+  /// shard_seconds: of Campaign.
+  QuestionReader(std::filesystem::path campaign_file, double shard_seconds)
+      : file_(std::move(campaign_file)), estimate_(shard_seconds) {}
 
   /// Throws InputError, and ResourceError where an input cannot be read.
   campaign::RunFacts facts_of(const campaign::PlannedRun& run);
@@ -27,8 +30,13 @@ class QuestionReader {
     std::optional<double> metres;
     std::string unit;
   };
-  struct Hashed {
+  struct ReadModel {
     std::uint64_t count = 0, hash = 0;
+    Box box{};
+  };
+  struct ReadTrajectory {
+    std::uint64_t count = 0, hash = 0;
+    std::vector<Pose> poses{};  ///< for the estimate only
   };
 
   void parse(const campaign::PlannedRun& run, RunOptions& options) const;
@@ -36,15 +44,17 @@ class QuestionReader {
   void check_classes(const campaign::PlannedRun& run, const RunOptions& options,
                      double metres) const;
   const Environment& environment(const campaign::Entry& entry);
-  Hashed model(const campaign::PlannedRun& run, const RunOptions& options);
-  Hashed trajectory(const campaign::PlannedRun& run, const RunOptions& options);
+  const ReadModel& model(const campaign::PlannedRun& run, const RunOptions& options);
+  const ReadTrajectory& trajectory(const campaign::PlannedRun& run, const RunOptions& options);
 
   template <typename Call>
-  auto named(const std::string& key, const Call& call) const;
+  decltype(auto) named(const std::string& key, const Call& call) const;
 
   std::filesystem::path file_;
   std::map<std::string, Environment> environments_;
-  std::map<std::string, Hashed> models_, trajectories_;
+  std::map<std::string, ReadModel> models_;
+  std::map<std::string, ReadTrajectory> trajectories_;
+  RunEstimate estimate_;
   std::set<std::string> checked_;
 };
 

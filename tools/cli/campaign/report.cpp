@@ -42,10 +42,11 @@ void write_campaign_page(CampaignReportOptions& options) {
     if (stop_requested()) throw Interrupted("");
     looks.push_back(campaign::look_at(task, options.folder));
   }
-  const std::string page = campaign::page_text(plan, looks, options.date);
+  const campaign::RunLooks runs = campaign::run_looks(plan, looks);
+  const std::string page = campaign::page_text(runs.plan, runs.looks, options.date);
   File::create(pending.partial()).write(std::as_bytes(std::span(page)));
   pending.publish();
-  const auto facts = campaign::page_facts(plan, looks, options.date);
+  const auto facts = campaign::page_facts(runs.plan, runs.looks, options.date);
   spdlog::info("{}: {} conflict, {} clear, {} not done", (options.folder / kPageName).string(),
                facts["conflict"].dump(), facts["clear"].dump(), facts["not_done"].dump());
   if (options.json) print(text_of_json(facts));

@@ -22,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using campaign::Ending;
-using campaign::kResultName;
 
 constexpr std::uintmax_t kMostLogBytes = 1 << 20, kKeptLogBytes = 1 << 16;
 
@@ -91,7 +90,7 @@ TaskFolder::TaskFolder(const campaign::Task& task, const fs::path& campaign)
 
 void TaskFolder::refuse_foreign_result() {
   std::error_code unknown;
-  const fs::path result = path_ / kResultName;
+  const fs::path result = path_ / task_.result();
   if (!fs::exists(result, unknown) || campaign::answers(result, task_.question)) return;
   state_.ending = Ending::kFailed;
   state_.exit_code = kBadInput;
@@ -103,9 +102,9 @@ void TaskFolder::refuse_foreign_result() {
 }
 
 void TaskFolder::remove_others() {
-  if (!campaign::answers(path_ / kResultName, task_.question)) {
-    remove_if_there(path_ / kResultName);
-    remove_if_there(path_ / (std::string(kResultName) + ".journal"));
+  if (!campaign::answers(path_ / task_.result(), task_.question)) {
+    remove_if_there(path_ / task_.result());
+    remove_if_there(path_ / (std::string(task_.result()) + ".journal"));
   }
   for (const std::string& output : task_.outputs) remove_if_there(path_ / output);
 }
@@ -140,7 +139,7 @@ const campaign::TaskState& TaskFolder::end(int code) {
 
 /// The inputs may have changed since they were planned.
 void TaskFolder::judge_result() {
-  if (campaign::answers(path_ / kResultName, task_.question)) {
+  if (campaign::answers(path_ / task_.result(), task_.question)) {
     state_.facts = campaign::task_facts(run_output());
     return;
   }

@@ -44,19 +44,23 @@ TaskQueue::TaskQueue(const campaign::Plan& plan, std::filesystem::path campaign,
       campaign_(std::move(campaign)),
       jobs_(static_cast<std::size_t>(jobs)),
       tries_again_(tries_again) {
-  for (const campaign::Task& task : plan.tasks) waiting_.push_back(&task);
+  for (const campaign::Task& task : plan.tasks) {
+    waiting_.push_back(&task);
+    unfinished_.insert(task.number);
+  }
 }
 
 int TaskQueue::run() {
   block_signals();
   while (!working_.empty() || (!waiting_.empty() && !stopping_)) {
-    if (working_.size() == jobs_ || waiting_.empty() || stopping_) {
+    const auto next = working_.size() == jobs_ || stopping_ ? waiting_.end() : next_task();
+    if (next == waiting_.end()) {
       wait();
       continue;
     }
-    const campaign::Task* task = waiting_.front();
-    waiting_.pop_front();
-    begin(*task);
+    const campaign::Task& task = **next;
+    waiting_.erase(next);
+    begin(task);
     look();
   }
   return interrupted_ || (stopping_ && !waiting_.empty()) ? int{kInterrupted} : code_;
@@ -73,17 +77,33 @@ void TaskQueue::block_signals() {
   ::sigprocmask(SIG_BLOCK, &waited_, &before_);
 }
 
+/// The first one that waits for no other of this queue. The tasks before a merge are its shards.
+std::deque<const campaign::Task*>::iterator TaskQueue::next_task() {
+  return std::ranges::find_if(waiting_, [this](const campaign::Task* task) {
+    const auto first = unfinished_.lower_bound(task->number - task->shards);
+    return first == unfinished_.end() || *first >= task->number;
+  });
+}
+
+/// Of a merge.
+void TaskQueue::check_shards(const campaign::Task& task) const {
+  for (std::uint32_t number = 1; number <= task.shards; ++number) {
+    const campaign::Task shard = campaign::shard_of(task, number);
+    const auto state = campaign::read_state(campaign_ / shard.folder());
+    if (campaign::is_done(shard, campaign_, state)) continue;
+    throw ResourceError(task.name() + ": waits for " + shard.name() + ", which is not done");
+  }
+}
+
 void TaskQueue::begin(const campaign::Task& task) {
   try {
     const auto folder = campaign_ / task.folder();
-    if (campaign::is_done(task, campaign_, campaign::read_state(folder))) {
-      ++ended_;
-      return;
-    }
+    if (campaign::is_done(task, campaign_, campaign::read_state(folder))) return end(task);
+    check_shards(task);
     const auto work = working_.emplace(working_.end(), TaskFolder(task, campaign_));
     try {
       if (!work->folder.is_done()) return start_command(*work, 0);
-      ++ended_;
+      end(task);
       working_.erase(work);
     } catch (const ResourceError&) {
       working_.erase(work);
@@ -99,10 +119,11 @@ void TaskQueue::begin(const campaign::Task& task) {
 void TaskQueue::start_command(Work& work, std::size_t number) {
   TaskFolder& folder = work.folder;
   folder.begin_command(number);
-  ChildCommand command{.words = with_threads(folder.task().commands[number], jobs_),
+  const campaign::Command& words = folder.task().commands[number];
+  ChildCommand command{.words = with_threads(words, jobs_),
                        .folder = folder.path(),
                        .log = folder.log(),
-                       .output = number == 0 ? folder.run_output() : std::filesystem::path(),
+                       .output = words[0] == "run" ? folder.run_output() : std::filesystem::path(),
                        .foreign = {},
                        .signals = before_};
   for (const Work& other : working_) {
@@ -161,7 +182,7 @@ void TaskQueue::end_task(TaskFolder& folder, int code) {
   const campaign::Task& task = folder.task();
   const campaign::TaskState& state = folder.end(code);
   if (state.ending == campaign::Ending::kDone) {
-    ++ended_;
+    end(task);
     spdlog::info("{} of {}: {}: {}, {:.2f} s", ended_, plan_.tasks.size(), task.name(),
                  state.facts["verdict"].get<std::string>(), state.seconds);
   } else if (is_tried_again(task, state.exit_code)) {
@@ -173,13 +194,18 @@ void TaskQueue::end_task(TaskFolder& folder, int code) {
   }
 }
 
+void TaskQueue::end(const campaign::Task& task) {
+  ++ended_;
+  unfinished_.erase(task.number);
+}
+
 bool TaskQueue::is_tried_again(const campaign::Task& task, int code) {
   if (!tries_again_ || stopping_) return false;
   return code == kInterrupted || (code == kResource && ++failures_[&task] < kMostFailures);
 }
 
 void TaskQueue::fail(const campaign::Task& task, int code, const std::string& message) {
-  ++ended_;
+  end(task);
   if (code == kInterrupted) {
     interrupted_ = true;
     return spdlog::info("{} of {}: {}: interrupted", ended_, plan_.tasks.size(), task.name());

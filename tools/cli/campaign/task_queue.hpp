@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <list>
 #include <map>
+#include <set>
 
 #include "campaign/plan.hpp"
 #include "cli/campaign/task_folder.hpp"
@@ -34,6 +35,8 @@ class TaskQueue {
   };
 
   void block_signals();
+  std::deque<const campaign::Task*>::iterator next_task();
+  void check_shards(const campaign::Task& task) const;
   void begin(const campaign::Task& task);
   void start_command(Work& work, std::size_t number);
   void wait();
@@ -43,6 +46,7 @@ class TaskQueue {
   void stop();
   void end_command(std::list<Work>::iterator work, int status);
   void end_task(TaskFolder& folder, int code);
+  void end(const campaign::Task& task);
   bool is_tried_again(const campaign::Task& task, int code);
   void fail(const campaign::Task& task, int code, const std::string& message);
 
@@ -50,6 +54,7 @@ class TaskQueue {
   std::filesystem::path campaign_;
   std::size_t jobs_;
   std::deque<const campaign::Task*> waiting_;
+  std::set<std::size_t> unfinished_;  ///< numbers of those that wait or are worked on
   std::list<Work> working_;
   std::map<const campaign::Task*, int> failures_;
   std::size_t ended_ = 0;

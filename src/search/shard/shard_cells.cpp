@@ -1,0 +1,45 @@
+#include "search/shard/shard_cells.hpp"
+
+#include <span>
+
+#include "io/system/xxh64.hpp"
+#include "search/memory_budget.hpp"
+#include "search/query_trees.hpp"
+#include "search/shard/cell_work.hpp"
+#include "search/shard/divide_cells.hpp"
+
+namespace clearway {
+namespace {
+
+std::uint64_t division_of(const StoreReader& store, std::span<const std::uint32_t> parts) {
+  const std::uint64_t fingerprint = store.fingerprint();
+  Xxh64Stream hash;
+  hash.update(std::as_bytes(std::span(&fingerprint, 1)));
+  hash.update(std::as_bytes(parts));
+  return hash.digest();
+}
+
+std::vector<std::uint64_t> work_of_cells(const StoreReader& store, const Query& query, int threads,
+                                         std::uint64_t memory_bytes) {
+  check_memory(program_bytes(threads) + input_bytes(store, query) + tree_building_bytes(query),
+               memory_bytes);
+  if (query.model.empty() || query.poses.empty()) {
+    return std::vector<std::uint64_t>(store.cells().size());
+  }
+  return cell_work(store, query, QueryTrees(query, threads));
+}
+
+}  // namespace
+
+ShardCells::ShardCells(const StoreReader& store, const Query& query, const Shard& shard,
+                       int threads, std::uint64_t memory_bytes)
+    : own_(store.cells().size()) {
+  const std::vector<std::uint32_t> parts =
+      divide_cells(work_of_cells(store, query, threads, memory_bytes), shard.count);
+  for (std::size_t cell = 0; cell < parts.size(); ++cell) {
+    own_[cell] = parts[cell] == shard.number - 1;
+  }
+  part_ = {shard, division_of(store, parts)};
+}
+
+}  // namespace clearway
