@@ -15,6 +15,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_reports(module);
   add_search(module);
   add_results(module);
+  add_merge(module);
   add_findings(module);
   add_report_page(module);
 }

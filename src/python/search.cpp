@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -115,9 +116,11 @@ void add_searches(py::module_& module) {
       [](SharedStore& store, const ArrayQuery& query, const py::object& output,
          const std::string& engine, const std::string& device, std::vector<int> gpus, int threads,
          std::uint64_t memory_bytes, std::uint64_t device_memory_bytes, double field_voxel,
-         double grid_cell, bool float_precision, bool overwrite, bool resume, bool strict,
-         const py::object& input_warnings, bool end_gpus, double journal_interval_seconds,
-         py::object progress, py::object message, py::object stop) {
+         double grid_cell, bool float_precision,
+         std::optional<std::pair<std::uint32_t, std::uint32_t>> shard, bool overwrite, bool resume,
+         bool strict, const py::object& input_warnings, bool end_gpus,
+         double journal_interval_seconds, py::object progress, py::object message,
+         py::object stop) {
         SearchOptions options;
         options.engine = value_of("engine", kEngines, engine);
         options.device = value_of("device", kDevices, device);
@@ -128,6 +131,7 @@ void add_searches(py::module_& module) {
         options.field_voxel = field_voxel;
         options.grid_cell = grid_cell;
         options.float_precision = float_precision;
+        if (shard) options.shard = Shard{shard->first, shard->second};
         options.overwrite = overwrite;
         options.resume = resume;
         options.strict = strict;
@@ -147,11 +151,11 @@ void add_searches(py::module_& module) {
       "gpus"_a = std::vector<int>{}, "threads"_a = 0,
       "memory_bytes"_a = SearchOptions{}.memory_bytes, "device_memory_bytes"_a = 0,
       "field_voxel"_a = 0.0, "grid_cell"_a = 0.0, "float_precision"_a = false,
-      "overwrite"_a = false, "resume"_a = false, "strict"_a = false,
+      "shard"_a = py::none(), "overwrite"_a = false, "resume"_a = false, "strict"_a = false,
       "input_warnings"_a = py::tuple(), "end_gpus"_a = false,
       "journal_interval_seconds"_a = SearchOptions{}.journal_interval_seconds,
       "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
-      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, field_voxel=0.0, grid_cell=0.0, float_precision=False, overwrite=False, resume=False, strict=False, input_warnings=(), end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
+      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, field_voxel=0.0, grid_cell=0.0, float_precision=False, shard=None, overwrite=False, resume=False, strict=False, input_warnings=(), end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
 --
 
 Find every point of the store within the query's radius of the moving model.
@@ -166,6 +170,7 @@ memory_bytes: bound of the working memory.
 device_memory_bytes: bound on each GPU; 0: 2 GiB, or what is free.
 field_voxel, grid_cell: metres; 0: chosen.
 float_precision: engine grid decides in single precision, for comparison.
+shard: (i, n) searches the i-th of n parts, from 1; the output is a part for merge().
 overwrite: an existing result, and the journal of an earlier run.
 resume: goes on from the journal of an earlier run.
 strict: raises InputError where anything is warned of, and searches nothing.

@@ -101,7 +101,10 @@ py::list to_list(const std::vector<Message>& messages) {
 std::vector<Message> messages_of(const py::handle& object) {
   std::vector<Message> messages;
   if (object.is_none()) return messages;
-  for (const py::handle message : py::iter(object)) messages.push_back(message.cast<Message>());
+  for (const py::handle message : py::iter(object)) {
+    if (!py::isinstance<Message>(message)) throw py::type_error("expected a list of Message");
+    messages.push_back(message.cast<Message>());
+  }
   return messages;
 }
 

@@ -95,6 +95,8 @@ class Arrays(SceneTest):
             self.query().raduis = 1
         with self.assertRaises(TypeError):
             self.search(thread=2)
+        with self.assertRaises(TypeError):
+            self.search(input_warnings=["mind the step"])
 
 
 class Errors(SceneTest):

@@ -80,6 +80,25 @@ class FindsWhatBruteForceFinds(SceneTest):
         xyz += 1  # they are the caller's
         source[:] = 0
 
+    def test_shards(self):
+        query = self.query(first_pose=True, clearance=0.5, profile=0.5)
+        self.search("whole.h5", query)
+        parts = [self.folder / f"part{i}.h5" for i in range(1, 4)]
+        for i, part in enumerate(parts, 1):
+            self.search(part.name, query, shard=(i, 3))
+        with self.assertRaises(clearway.InputError) as caught:
+            clearway.Result(parts[0])
+        self.assertEqual(caught.exception.remedy, "merge")
+        report = clearway.merge(reversed(parts), self.folder / "merged.h5", overwrite=True)
+        self.assertEqual((report.parts, report.colliding_points), (3, len(self.expected)))
+        self.assertEqual((self.folder / "merged.h5").read_bytes(),
+                         (self.folder / "whole.h5").read_bytes())
+        with self.assertRaises(clearway.InputError):
+            clearway.merge(parts[1:], self.folder / "merged.h5", overwrite=True)
+        for shard in ((0, 3), (4, 3)):
+            with self.assertRaises(clearway.UsageError):
+                self.search("none.h5", query, shard=shard)
+
     def test_conflicts(self):
         self.search(query=self.query(first_pose=True))
         result = clearway.Result(self.folder / "out.h5")

@@ -37,7 +37,6 @@ class Message:
     code: Final[str]
     text: Final[str]
     numbers: Final[dict[str, float]]
-
 class ProgressUpdate:
     stage: Final[str]
     done: Final[int]
@@ -49,13 +48,11 @@ class Box:
     def __init__(self, lo: ArrayLike, hi: ArrayLike) -> None: ...
     lo: Final[_Doubles]
     hi: Final[_Doubles]
-
 class FoundPlace:
     source: Final[int]
     pose: Final[int]
     xyz: Final[_Doubles]
     distance: Final[float]
-
 class PoseLabels:
     def __init__(self) -> None: ...
     time: Final[_Doubles]
@@ -104,7 +101,6 @@ class Query:
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
         profile: float = 0.0, tolerance: float = 0.0, allow_non_rigid: bool = False,
     ) -> None: ...
-
 class QueryParameters:
     radius: Final[float]
     first_pose: Final[bool]
@@ -128,16 +124,13 @@ class SearchSeconds:
     collect: Final[float]
     write: Final[float]
     end_wait: Final[float]
-
 class ToleranceReport:
     model_points_kept: Final[int]
     poses_kept: Final[int]
     resolved_by_bounds: Final[int]
-
 class EngineEstimate:
     sweep_seconds: Final[float]
     kdtree_seconds: Final[float]
-
 class DeviceEstimate:
     cpu: Final[float]
     cuda: Final[float]
@@ -176,13 +169,25 @@ class SearchReport:
     peak_device_bytes: Final[int]
     seconds: Final[SearchSeconds]
 
+class MergeReport:
+    parameters: Final[QueryParameters]
+    parts: Final[int]
+    environment_points: Final[int]
+    model_points: Final[int]
+    poses: Final[int]
+    colliding_points: Final[int]
+    clearance_points: Final[int]
+    profile_poses: Final[int]
+    first_place: Final[FoundPlace | None]
+    least_clearance: Final[FoundPlace | None]
+    least_profile: Final[FoundPlace | None]
+
 class Clearances:
     source: Final[_Sources]
     xyz: Final[_Doubles]
     distance: Final[_Doubles]
     pose: Final[_Poses]
     def __len__(self) -> int: ...
-
 class Profile:
     NO_POINT: ClassVar[int]
     distance: Final[_Doubles]
@@ -224,7 +229,6 @@ class Conflict:
     lateral: Final[float | None]
     height: Final[float | None]
     group: Final[int]
-
 class Conflicts:
     listed: Final[list[Conflict]]
     conflict_of: Final[_Poses]
@@ -236,7 +240,6 @@ class Conflicts:
     longest_group: Final[float]
     longest_group_points: Final[int]
     def __len__(self) -> int: ...
-
 class ReportSummary:
     clear: Final[bool]
     bytes: Final[int]
@@ -268,11 +271,16 @@ def search(
     engine: Literal["auto", "sweep", "grid", "kdtree"] = "auto",
     device: Literal["auto", "cpu", "cuda"] = "auto", gpus: Sequence[int] = (), threads: int = 0,
     memory_bytes: int = 4294967296, device_memory_bytes: int = 0, field_voxel: float = 0.0,
-    grid_cell: float = 0.0, float_precision: bool = False, overwrite: bool = False,
+    grid_cell: float = 0.0, float_precision: bool = False, shard: tuple[int, int] | None = None, overwrite: bool = False,
     resume: bool = False, strict: bool = False, input_warnings: Iterable[Message] = (),
     end_gpus: bool = False, journal_interval_seconds: float = 5.0,
     progress: _Progress | None = None, message: _Tell | None = None, stop: _Stop | None = None,
 ) -> SearchReport: ...
+def merge(
+    parts: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, threads: int = 0,
+    memory_bytes: int = 4294967296, overwrite: bool = False, progress: _Progress | None = None,
+    stop: _Stop | None = None,
+) -> MergeReport: ...
 def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,
     split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x", up: _Axis = "+z",
