@@ -9,6 +9,7 @@ PYBIND11_MODULE(_clearway, module) {
   shown.disable_function_signatures();  // docstrings begin with their own
   module.doc() = "The compiled part of clearway.";
   module.attr("__version__") = CLEARWAY_VERSION;
+  add_watch();
   add_errors(module);
   add_values(module);
   add_inputs(module);

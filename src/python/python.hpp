@@ -3,9 +3,12 @@
 #include <pybind11/pybind11.h>
 
 #include <cstddef>
+#include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -32,8 +35,19 @@ std::vector<std::filesystem::path> paths_of(const py::handle& object);
 /// Runs `call` while other Python threads run too. It must not touch Python.
 template <typename Call>
 auto without_gil(Call call) {
-  const py::gil_scoped_release released;
-  return call();
+  // Not pybind11's guard: where Python is ending, taking the GIL unwinds this thread, which no
+  // destructor may do.
+  PyThreadState* const state = PyEval_SaveThread();
+  std::optional<std::invoke_result_t<Call>> result;
+  std::exception_ptr thrown;
+  try {
+    result.emplace(call());
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+  PyEval_RestoreThread(state);
+  if (thrown) std::rethrow_exception(thrown);
+  return std::move(*result);
 }
 
 /// A value of an enumeration by the name that Python has for it.
@@ -62,6 +76,7 @@ const char* name_in(const Named<Value> (&table)[Size], Value value) {
   return "unknown";
 }
 
+void add_watch();                           // watch.cpp
 void add_errors(py::module_& module);       // errors.cpp
 void add_values(py::module_& module);       // values.cpp
 void add_reports(py::module_& module);      // reports.cpp

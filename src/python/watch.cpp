@@ -1,6 +1,10 @@
 #include "python/watch.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
+#include <map>
 #include <utility>
 
 namespace clearway::python {
@@ -8,20 +12,56 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{50};
 
-/// Joins the thread however this scope is left.
+/// The stop flags of all calls that are under way in this process.
+struct Calls {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::map<std::atomic<bool>*, pid_t> stops;  // a forked process has those of its parent, too
+  bool ending = false;
+};
+
+Calls& calls() {
+  static auto* all = new Calls;  // threads may see it until the process has ended
+  return *all;
+}
+
+/// When Python ends, threads that it does not wait for may be in a call: these end in order before
+/// the libraries that they use.
+void end_calls() {
+  const py::gil_scoped_release released;
+  Calls& all = calls();
+  std::unique_lock lock(all.mutex);
+  all.ending = true;
+  for (const auto& [stop, process] : all.stops) *stop = true;
+  all.changed.wait(lock, [&] {
+    return std::ranges::none_of(all.stops, [](const auto& s) { return s.second == getpid(); });
+  });
+}
+
+/// A thread that is joined however this scope is left.
 class Joined {
  public:
-  Joined(std::thread thread, std::atomic<bool>& stop) : thread_(std::move(thread)), stop_(stop) {}
+  Joined(std::atomic<bool>& stop, const std::function<void()>& work) : stop_(stop) {
+    Calls& all = calls();
+    const std::lock_guard lock(all.mutex);
+    if (all.ending) stop_ = true;
+    thread_ = std::thread(work);
+    all.stops[&stop_] = getpid();
+  }
   Joined(const Joined&) = delete;
   Joined& operator=(const Joined&) = delete;
   ~Joined() {
     stop_ = true;
     thread_.join();
+    Calls& all = calls();
+    const std::lock_guard lock(all.mutex);
+    all.stops.erase(&stop_);
+    all.changed.notify_all();
   }
 
  private:
-  std::thread thread_;
   std::atomic<bool>& stop_;
+  std::thread thread_;
 };
 
 }  // namespace
@@ -52,11 +92,10 @@ void Watch::finish() {
 
 void Watch::run_thread(const std::function<void()>& work) {
   guarded([&] { look(); });
-  const Joined thread(std::thread([this, &work] {
-                        work();
-                        finish();
-                      }),
-                      stopped_);
+  const Joined thread(stopped_, [this, &work] {
+    work();
+    finish();
+  });
   for (bool done = false; !done;) {
     const News news = next_news();
     done = news.done;
@@ -66,10 +105,11 @@ void Watch::run_thread(const std::function<void()>& work) {
 }
 
 Watch::News Watch::next_news() {
-  const py::gil_scoped_release released;
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, kLook, [this] { return news_.done; });
-  return std::exchange(news_, {.done = news_.done});
+  return without_gil([this] {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLook, [this] { return news_.done; });
+    return std::exchange(news_, {.done = news_.done});
+  });
 }
 
 void Watch::tell(const News& news) {
@@ -96,5 +136,7 @@ void Watch::guarded(Call call) {
     if (!raised_) raised_.emplace(std::move(error));
   }
 }
+
+void add_watch() { py::module_::import("atexit").attr("register")(py::cpp_function(end_calls)); }
 
 }  // namespace clearway::python

@@ -3,8 +3,11 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import unittest
+from pathlib import Path
 
 import clearway
 import numpy as np
@@ -91,6 +94,25 @@ class Watching(SceneTest):
             self.search("slow.h5", self.slow_query(), engine="kdtree", threads=1,
                         progress=lambda u: None if hasattr(interrupt, "sent") else interrupt(u))
         self.assertFalse((self.folder / "slow.h5").exists())
+
+    def test_python_ends_during_a_search(self):
+        script = (
+            "import sys, threading; sys.path.insert(0, sys.argv[1])\n"
+            "import scene\n"
+            "scene.SceneTest.setUpClass()\n"
+            "begun, test = threading.Event(), scene.SceneTest()\n"
+            "def search():\n"
+            "    test.search('out.h5', test.slow_query(), engine='kdtree', threads=1,\n"
+            "                progress=lambda update: begun.set())\n"
+            "threading.excepthook = lambda args: print(args.exc_type.__name__)\n"
+            "threading.Thread(target=search, daemon=True).start()\n"
+            "begun.wait()\n"
+            "print('the end')\n"
+            "scene.SceneTest.doClassCleanups()\n")
+        done = subprocess.run([sys.executable, "-c", script, Path(__file__).parent],
+                              capture_output=True, text=True, check=False, timeout=100)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.split("\n")[0], "the end")
 
     def test_two_searches_at_once(self):
         self.search("one.h5")
