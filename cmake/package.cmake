@@ -3,6 +3,13 @@
 # single file goes easily to a cluster without network. What only C++ programmers need is suggested.
 install(FILES cmake/debian/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/clearway
   COMPONENT package)
+find_program(CLEARWAY_GZIP gzip)
+if(CLEARWAY_GZIP)
+  set(changelog ${PROJECT_BINARY_DIR}/changelog.gz)
+  execute_process(COMMAND ${CLEARWAY_GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+    OUTPUT_FILE ${changelog} COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${changelog} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/clearway COMPONENT package)
+endif()
 # Libraries of headers, whose parts are in the binaries: their notices, as Debian has them.
 foreach(name libcli11-dev libeigen3-dev libspdlog-dev libxxhash-dev nlohmann-json3-dev
     libnanoflann-dev pybind11-dev)
@@ -19,9 +26,10 @@ set(CPACK_PACKAGE_CONTACT "The Clearway maintainers <clearway@localhost>" CACHE 
   "Maintainer of the package, with an address")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "collisions of moving models with point clouds")
 set(CPACK_PACKAGE_DESCRIPTION
-  "Clearway answers one question: does this vehicle pass through this scanned environment without
-touching it? It finds, exactly, every environment point within a search radius of a model that moves
-along a trajectory. The package has the program, a C++ library and a Python module.")
+  "Clearway answers one question: does this vehicle pass through this
+scanned environment without touching it? It finds, exactly, every
+environment point within a search radius of a model that moves along a
+trajectory. The package has the program, a C++ library and a Python module.")
 set(CPACK_PACKAGE_INSTALL_DIRECTORY clearway)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)

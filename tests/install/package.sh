@@ -22,6 +22,7 @@ has bin/clearway
 has include/clearway/clearway.hpp
 has share/bash-completion/completions/clearway
 has share/doc/clearway/copyright
+has share/doc/clearway/changelog.gz
 for command in clearway clearway-run clearway-convert; do has "share/man/man1/$command.1.gz"; done
 find "$scratch/root" -name libclearway.a | grep -q . || fail "no library"
 find "$scratch/root" -name ClearwayConfig.cmake | grep -q . || fail "no CMake package"
