@@ -28,6 +28,16 @@ class FindsWhatBruteForceFinds(SceneTest):
                 if engine != "auto":
                     self.assertEqual(report.engine, engine)
 
+    def test_gpu(self):
+        try:
+            report = self.search(engine="sweep", device="cuda")
+        except clearway.ResourceError as error:
+            self.assertEqual(error.remedy, "cpu_device")
+            self.skipTest(str(error))
+        self.assertEqual(report.device, "cuda")
+        np.testing.assert_array_equal(clearway.Result(self.folder / "out.h5").source(),
+                                      self.expected)
+
     def test_columns(self):
         self.search(query=self.query(first_pose=True, clearance=0.5, profile=0.5))
         result = clearway.Result(self.folder / "out.h5")
