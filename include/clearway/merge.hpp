@@ -15,12 +15,14 @@ struct MergeOptions {
   int threads = 0;  ///< 0: all cores
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   bool overwrite = false;  ///< an existing result
+  bool resume = false;     ///< leaves a result of the same parts as it is
   ProgressCallback progress = nullptr;
   StopFlag stop = nullptr;
 };
 
 /// What the result says, as of SearchReport.
 struct MergeReport {
+  bool was_finished = false;  ///< the result was there already: it has the places
   QueryParameters parameters;
   std::uint32_t parts = 0;
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;

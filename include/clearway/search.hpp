@@ -102,6 +102,7 @@ struct SearchReport {
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
   std::string device_name = "the CPU";     ///< for people
+  std::optional<double> shard_share;       ///< of a shard: its estimated work over the mean
   std::uint64_t searches = 0;              ///< pairs of pose and model point
   std::optional<ToleranceReport> tolerance;
   double field_voxel = 0, grid_cell = 0;  ///< metres, of what the engine built; 0: nothing

@@ -102,7 +102,7 @@ Command run_words(const Task& task) {
 
 /// "--memory" and "--threads".
 Command merge_words(const Task& task, const Arguments& limits) {
-  Command words{"merge", "--force", std::string("--output=") + task.result()};
+  Command words{"merge", "--resume", std::string("--output=") + task.result()};
   for (std::uint32_t number = 1; number <= task.shards; ++number) {
     words.push_back("shards/" + std::to_string(number) + "/" + kPartName);
   }

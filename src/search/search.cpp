@@ -115,6 +115,7 @@ class Search {
     throw_if_stopped(progress_);
     shard_.emplace(store_, query_, *options_.shard, threads(), options_.memory_bytes);
     header_.part = shard_->part();
+    report_.shard_share = shard_->share();
   }
 
   int threads() const {

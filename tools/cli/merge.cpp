@@ -37,12 +37,14 @@ nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& r
   nlohmann::ordered_json out = program_json({{"output", options.output}});
   out["radius"] = report.parameters.radius;
   out["parts"] = report.parts;
+  out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
   out["model_points"] = report.model_points;
   out["poses"] = report.poses;
   out["colliding_points"] = report.colliding_points;
   out["clearance_points"] = report.clearance_points;
-  out["profile_poses"] = report.profile_poses;
+  out["profile_poses"] = report.was_finished ? nlohmann::ordered_json(nullptr)
+                                             : nlohmann::ordered_json(report.profile_poses);
   add_verdict(verdict, {}, out);
   out["seconds"] = seconds;
   return out;
@@ -61,11 +63,14 @@ bool run_merge(MergeCommand& options) {
   options.merge.progress = [&](const ProgressUpdate& update) { progress.update(update); };
   options.merge.stop = &stop_flag();
   const MergeReport report = merge(options.parts, options.output, options.merge);
-  const ResultHeader header = ResultReader(options.output).header();
-  const Verdict verdict = verdict_of(report, header.float_precision);
+  const ResultReader result(options.output);
+  const ResultHeader& header = result.header();
+  const Verdict verdict =
+      report.was_finished ? verdict_of(result, {}) : verdict_of(report, header.float_precision);
   const std::string sentence = verdict_text(verdict, {}, unit_of(header), "");
-  spdlog::info("{}: merged {}; {} of {} {}", options.output.string(), counted(report.parts, "part"),
-               format_count(report.colliding_points),
+  spdlog::info("{}: {} {}; {} of {} {}", options.output.string(),
+               report.was_finished ? "is there already, of" : "merged",
+               counted(report.parts, "part"), format_count(report.colliding_points),
                counted(report.environment_points, "environment point"),
                report.colliding_points == 1 ? "collides" : "collide");
   if (options.json) {
@@ -91,7 +96,10 @@ void add_merge(CLI::App& program, int& exit_code) {
       ->required();
   add_threads_option(*command, options->merge.threads);
   add_memory_option(*command, options->merge.memory_bytes);
-  command->add_flag("--force", options->merge.overwrite, "Overwrite an existing result");
+  CLI::Option* force =
+      command->add_flag("--force", options->merge.overwrite, "Overwrite an existing result");
+  command->add_flag("--resume", options->merge.resume, "Leave a result of the same parts as it is")
+      ->excludes(force);
   command->add_flag("--fail-on-collision", options->fail_on_collision,
                     "Exit with code 1 where a point collides");
   command->add_flag("--json", options->json, "Print one JSON object about the result");

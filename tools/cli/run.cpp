@@ -110,6 +110,8 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["clearance_points"] = report.clearance_points;
   out["profile_poses"] = report.profile_poses;
   add_verdict(answer.verdict, answer.labels, out);
+  out["shard_share"] = nullptr;
+  if (report.shard_share) out["shard_share"] = *report.shard_share;
   out["engine"] = known(searched, name_of(report.engine));
   out["engine_estimate"] = estimate_of(report);
   out["device"] = known(searched, name_of(report.device));

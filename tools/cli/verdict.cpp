@@ -145,7 +145,7 @@ Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
   if (result.header().first_pose) out.first = first_place(result);
   out.least_clearance = least_clearance(result);
   out.least_profile = least_of_profile(result);
-  set_chainages(out, poses);
+  if (!poses.empty()) set_chainages(out, poses);
   return out;
 }
 

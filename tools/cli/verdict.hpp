@@ -47,8 +47,8 @@ Verdict verdict_of(const SearchReport& report, const Query& query, const SearchO
 /// Of what was just merged.
 Verdict verdict_of(const MergeReport& report, bool float_precision);
 
-/// Reads the tables that the result has, whoever wrote it. poses: those of the search. Throws as
-/// ResultReader does.
+/// Reads the tables that the result has, whoever wrote it. poses: those of the search; none
+/// where they are not at hand. Throws as ResultReader does.
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses);
 
 /// One sentence, without what `caveat` adds before its end. unit: of lengths, "m".

@@ -35,7 +35,7 @@ struct ProfileRows {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<double> chainage;
-  std::vector<double> squared;  ///< of a part only
+  std::vector<double> squared = {};  ///< of a part only
 
   std::size_t size() const { return distance.size(); }
 };

@@ -20,10 +20,13 @@ class ShardCells {
 
   bool contains(std::uint32_t cell) const { return own_[cell]; }
   const ResultPart& part() const { return part_; }
+  /// Its estimated work over the mean of all parts.
+  double share() const { return share_; }
 
  private:
   std::vector<bool> own_;
   ResultPart part_;
+  double share_ = 0;
 };
 
 }  // namespace clearway

@@ -22,14 +22,19 @@ from campaign_scene import PROGRAM, expect, make_scene, outcome, program, status
 
 VEHICLES, ROUTES = 10, 5
 FILES = ["out.h5", "conflicts.csv"]
+DIVIDED = {"memory": "300M", "threads": 1, "shard_seconds": 0.04}  # into three or so
 
 
 def folders(path):
-    return sorted((path / "runs").glob("*/*/*"))
+    return sorted([*path.glob("runs/*/*/*"), *path.glob("runs/*/*/*/shards/*")])
+
+
+def files_of(folder):
+    return ["part.h5"] if folder.parent.name == "shards" else FILES
 
 
 def bytes_of(path):
-    return {folder.relative_to(path): [(folder / name).read_bytes() for name in FILES]
+    return {folder.relative_to(path): [(folder / name).read_bytes() for name in files_of(folder)]
             for folder in folders(path)}
 
 
@@ -42,8 +47,8 @@ class Watch:
         self.looks = 0
 
     def see_results(self):
-        for folder in self.path.glob("runs/*/*/*"):
-            result = folder / "out.h5"
+        for folder in folders(self.path):
+            result = folder / files_of(folder)[0]
             if not result.exists():
                 expect(folder not in self.finished, f"{folder}: a finished result is gone")
                 continue
@@ -57,20 +62,20 @@ class Watch:
         look = status(self.path)
         counts = {name: look[name] for name in
                   ["done", "running", "begun", "interrupted", "failed", "missing"]}
-        expect(sum(counts.values()) == VEHICLES * ROUTES, f"{counts}")
+        expect(sum(counts.values()) == len(self.reference), f"{counts}")
         expect(counts["begun"] == 0, f"{look}")
         expect(alive or counts["running"] == 0, f"nobody is at work: {counts}")
         expect(counts["running"] <= 2, f"{counts}")
         for one in look["list"]:
             folder = self.path / one["folder"]
             if one["status"] == "done":
-                found = [(folder / name).read_bytes() for name in FILES]
+                found = [(folder / name).read_bytes() for name in files_of(folder)]
                 expect(found == self.reference[folder.relative_to(self.path)],
                        f"{folder}: done, but not as undisturbed")
             if one["status"] == "failed":  # killed too often
                 expect(one["exit_code"] == 4 and "signal 9" in one["message"], f"{one}")
             if one["status"] == "missing":
-                expect(not (folder / "out.h5").exists(), f"{folder}: missing, but there")
+                expect(not (folder / files_of(folder)[0]).exists(), f"{folder}: missing, but there")
         self.see_results()
         return counts
 
@@ -129,6 +134,40 @@ def attempt(path, watch, draw, usual, kills):
     return process.returncode == 0, struck
 
 
+class Reference:
+    """A campaign that nobody disturbs."""
+
+    def __init__(self, work, name, **changes):
+        self.plan = write_campaign(work, **changes).rename(work / (name + ".json"))
+        program("campaign", "plan", self.plan, "-o", work / name)
+        begin = time.monotonic()
+        program("campaign", "run", work / name, "--all")
+        self.seconds = time.monotonic() - begin
+        self.bytes = bytes_of(work / name)
+        self.results = {folder: found for folder, found in self.bytes.items()
+                        if folder.parent.name != "shards"}
+        expect(len(self.results) == VEHICLES * ROUTES, "the undisturbed campaign is not complete")
+
+
+def torment(path, reference, draw, kills):
+    """One campaign until it is done. The SIGKILLs and the looks."""
+    program("campaign", "plan", reference.plan, "-o", path)
+    watch = Watch(path, reference.bytes)
+    struck, done = 0, False
+    while not done:
+        done, more = attempt(path, watch, draw, reference.seconds, kills - struck)
+        struck += more
+        watch.look(alive=False)
+    counts = watch.look(alive=False)
+    expect(counts["done"] == len(reference.bytes), f"done, but {counts}")
+    expect(bytes_of(path) == reference.bytes, "the results differ")
+    again = outcome("campaign", "run", path, "--all")
+    expect(again.returncode == 0 and again.stderr == "", f"done twice: {again.stderr}")
+    watch.see_results()
+    shutil.rmtree(path)
+    return struck, watch.looks
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
@@ -139,34 +178,17 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         make_scene(work, VEHICLES, ROUTES)
-        plan = write_campaign(work)
-        program("campaign", "plan", plan, "-o", work / "reference")
-        begin = time.monotonic()
-        program("campaign", "run", work / "reference", "--all")
-        usual = time.monotonic() - begin
-        reference = bytes_of(work / "reference")
-        expect(len(reference) == VEHICLES * ROUTES, "the undisturbed campaign is not complete")
+        references = [Reference(work, "divided", limits=DIVIDED), Reference(work, "whole")]
+        expect(references[0].results == references[1].results, "merged results differ")
         kills = rounds = looks = 0
         while kills < arguments.kills:
-            rounds += 1
-            path = work / "out"
-            program("campaign", "plan", plan, "-o", path)
-            watch = Watch(path, reference)
-            done = False
-            while not done:
-                done, struck = attempt(path, watch, draw, usual, arguments.kills - kills)
-                kills += struck
-                watch.look(alive=False)
-            counts = watch.look(alive=False)
-            expect(counts["done"] == VEHICLES * ROUTES, f"done, but {counts}")
-            expect(bytes_of(path) == reference, "the results differ")
-            again = outcome("campaign", "run", path, "--all")
-            expect(again.returncode == 0 and again.stderr == "", f"done twice: {again.stderr}")
-            watch.see_results()
-            looks += watch.looks
-            shutil.rmtree(path)
+            struck, looked = torment(work / "out", references[rounds % 2], draw,
+                                     arguments.kills - kills)
+            kills, looks, rounds = kills + struck, looks + looked, rounds + 1
         print(f"{kills} SIGKILLs over {rounds} campaigns of {VEHICLES * ROUTES} runs "
-              f"({usual:.2f} s undisturbed), {looks} looks: all results equal, none made twice")
+              f"({references[1].seconds:.2f} s undisturbed, {references[0].seconds:.2f} s in "
+              f"{len(references[0].bytes) - len(references[0].results)} shards), {looks} looks: "
+              "all results equal, none made twice")
 
 
 main()

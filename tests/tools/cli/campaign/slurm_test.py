@@ -1,9 +1,11 @@
-"""A campaign on a real Slurm of one node: an array of 24 tasks, of which one is killed and one gets
-TERM, and both are queued again; one fails for good; the report comes once, after all of them.
+"""A campaign on a real Slurm of one node: 24 runs, of which two are divided into shards. One shard is
+killed and one gets TERM, and both are queued again; one run fails for good; the merges come once,
+after all of these, and the report once, after all.
 
 slurm_test.py PROGRAM
 """
 
+import json
 import os
 import pathlib
 import signal
@@ -14,9 +16,9 @@ import time
 from campaign_scene import expect, make_scene, program, status, write_campaign
 from one_node_slurm import OneNodeSlurm, what_is_missing
 
-KILLED, STOPPED, BROKEN = 3, 8, 13
-TASKS = 24
+VEHICLES, SLOW, BROKEN_VEHICLE = 24, (3, 8), 13
 MAX_ARRAY = 20  # more tasks become two arrays
+LIMITS = {"memory": "300M", "threads": 1, "shard_seconds": 0.18}  # divides the slow ones alone
 
 
 def children_of(number):
@@ -65,11 +67,19 @@ def has_pending(number, which):
 class Campaign:
     def __init__(self, path, slurm):
         self.path, self.slurm = path, slurm
+        self.tasks = [json.loads(line.rstrip(",")) for line in
+                      (path / "plan.json").read_text().splitlines()[1:-1]]
+        shards = [task["task"] for task in self.tasks if "shard" in task]
+        self.merges = [task["task"] for task in self.tasks if "shards" in task]
+        expect(len(self.merges) == len(SLOW), f"{len(self.merges)} runs are divided")
+        self.killed, self.stopped = shards[0], shards[-1]
+        self.broken = next(task["task"] for task in self.tasks
+                           if task["vehicle"] == f"v{BROKEN_VEHICLE:02}")
         self.disturbed = set()
 
     def disturb(self, look):
         """Kills one task while it runs, and has Slurm send TERM to another one."""
-        for task, how in [(KILLED, self.kill), (STOPPED, self.stop)]:
+        for task, how in [(self.killed, self.kill), (self.stopped, self.stop)]:
             running = look["list"][task]["status"] == "running"
             if task not in self.disturbed and running and how(task):
                 self.disturbed.add(task)
@@ -97,7 +107,8 @@ class Campaign:
 
     def element(self, task):
         """Of a job array."""
-        return f"{self.jobs[task // MAX_ARRAY]}_{task % MAX_ARRAY}"
+        before = 2 if task in self.merges else 0  # jobs
+        return f"{self.jobs[before + task // MAX_ARRAY]}_{task % MAX_ARRAY}"
 
     def log(self, task):
         return (self.path / f"slurm/{self.element(task)}.log").read_text()
@@ -105,7 +116,7 @@ class Campaign:
     def submit(self):
         said = self.slurm.run(self.path / "submit.sh")
         self.jobs = said.split("tasks: job ")[1].split(";")[0].split(":")
-        expect(len(self.jobs) == 2, said)
+        expect(len(self.jobs) == 3, said)
 
     def wait(self, seconds):
         last = time.monotonic() + seconds
@@ -127,31 +138,46 @@ class Campaign:
 
 def check_logs(campaign):
     """What the scripts said."""
-    text = {task: campaign.log(task) for task in range(TASKS)}
-    expect("queued again" in text[KILLED], "the killed task was not queued again")
-    expect("exit code 5, queued again" in text[STOPPED], "TERM: " + text[STOPPED])
-    expect("exit code 3" in text[BROKEN] and "queued again" not in text[BROKEN],
-           "the broken task: " + text[BROKEN])
-    others = [task for task in text if task not in (KILLED, STOPPED)]
+    killed, stopped, broken = campaign.killed, campaign.stopped, campaign.broken
+    text = {task: campaign.log(task) for task in range(len(campaign.tasks))}
+    expect("queued again" in text[killed], "the killed task was not queued again")
+    expect("exit code 5, queued again" in text[stopped], "TERM: " + text[stopped])
+    expect("exit code 3" in text[broken] and "queued again" not in text[broken],
+           "the broken task: " + text[broken])
+    others = [task for task in text if task not in (killed, stopped)]
     again = [task for task in others if "queued again" in text[task]]
     expect(not again, f"queued again without a reason: {again}")
 
 
+def check_merges(campaign, look):
+    """Once, after all tasks that are none."""
+    states = [campaign.path / one["folder"] / "state.json" for one in look["list"]]
+    last = max(state.stat().st_mtime for task, state in enumerate(states)
+               if task not in campaign.merges)
+    for merge in campaign.merges:
+        expect(look["list"][merge]["tries"] == 1, f"merged twice: {look['list'][merge]}")
+        result = states[merge].parent / "out.h5"
+        expect(result.stat().st_mtime >= last, "a merge came before the end of the others")
+        run = json.loads((states[merge].parent / "run.json").read_text())
+        expect(run["verdict"] == "conflict" and run["was_finished"], f"{run}")
+
+
 def check_end(campaign, look):
     path = campaign.path
-    expect(look["done"] == TASKS - 1 and look["failed"] == 1, f"at the end: {look}")
-    broken = look["list"][BROKEN]
+    expect(look["done"] == len(campaign.tasks) - 1 and look["failed"] == 1, f"at the end: {look}")
+    broken = look["list"][campaign.broken]
     expect(broken["exit_code"] == 3 and broken["tries"] == 1, f"the broken task: {broken}")
-    expect(look["list"][STOPPED]["tries"] == 2, "the stopped task was not tried twice")
-    expect(look["list"][KILLED]["tries"] == 2, "the killed task was not tried twice")
+    expect(look["list"][campaign.stopped]["tries"] == 2, "the stopped task was not tried twice")
+    expect(look["list"][campaign.killed]["tries"] == 2, "the killed task was not tried twice")
     page = (path / "index.html").read_text()
     expect("failed (3)" in page, "the page hides the failure")
     reports = (path / "slurm/report.log").read_text().count("index.html")
     expect(reports == 1, f"{reports} reports")
-    newest = max(file.stat().st_mtime for file in path.glob("runs/*/*/*/state.json"))
+    newest = max(file.stat().st_mtime for file in path.glob("runs/**/state.json"))
     expect((path / "index.html").stat().st_mtime >= newest, "the report came before the end")
     expect(program("campaign", "status", path, "--missing") == "", "something is missing")
-    expect(program("campaign", "status", path, "--failed") == f"{BROKEN}\n", "--failed")
+    expect(program("campaign", "status", path, "--failed") == f"{campaign.broken}\n", "--failed")
+    check_merges(campaign, look)
     check_logs(campaign)
 
 
@@ -163,19 +189,20 @@ def main():
     begin = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        make_scene(work, vehicles=TASKS, routes=1, slow=(KILLED, STOPPED))
+        make_scene(work, vehicles=VEHICLES, routes=1, slow=SLOW)
         path = work / "a campaign"
-        program("campaign", "plan", write_campaign(work), "-o", path)
-        broken = work / f"vehicles/v{BROKEN:02}.ply"
+        program("campaign", "plan", write_campaign(work, limits=LIMITS), "-o", path)
+        broken = work / f"vehicles/v{BROKEN_VEHICLE:02}.ply"
         broken.write_bytes(broken.read_bytes()[:-100])
         with OneNodeSlurm(work / "slurm", max_array=MAX_ARRAY) as slurm:
             campaign = Campaign(path, slurm)
-            expect(program("campaign", "status", path, "--missing") == f"0-{TASKS - 1}\n",
-                   "before the start")
+            missing = program("campaign", "status", path, "--missing")
+            expect(missing == f"0-{len(campaign.tasks) - 1}\n", "before the start")
             campaign.submit()
             look = campaign.wait(100)
         check_end(campaign, look)
-    print(f"{TASKS} tasks, one killed, one stopped, one broken: {time.monotonic() - begin:.0f} s")
+    print(f"{len(campaign.tasks)} tasks, {len(campaign.merges)} of them merges, one killed, one "
+          f"stopped, one broken: {time.monotonic() - begin:.0f} s")
 
 
 main()
