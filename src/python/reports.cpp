@@ -72,6 +72,8 @@ void add_work_of(py::class_<Report>& report) {
       .def_readonly("engine_estimate", &Report::engine_estimate,
                     "Where engine 'auto' chose, an EngineEstimate.")
       .def_readonly("estimate", &Report::estimate, "Where device 'auto' chose, a DeviceEstimate.")
+      .def_readonly("shard_share", &Report::shard_share,
+                    "Of a shard: its estimated work over the mean; otherwise None.")
       .def_readonly("searches", &Report::searches, "Pairs of pose and model point.")
       .def_readonly("tolerance", &Report::tolerance, "A ToleranceReport, or None.")
       .def_readonly("field_voxel", &Report::field_voxel, "Metres; 0: none.")

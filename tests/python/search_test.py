@@ -103,6 +103,9 @@ class FindsWhatBruteForceFinds(SceneTest):
         self.assertEqual((report.parts, report.colliding_points), (3, len(self.expected)))
         self.assertEqual((self.folder / "merged.h5").read_bytes(),
                          (self.folder / "whole.h5").read_bytes())
+        self.assertFalse(report.was_finished)
+        again = clearway.merge(parts, self.folder / "merged.h5", resume=True)
+        self.assertTrue(again.was_finished)
         with self.assertRaises(clearway.InputError):
             clearway.merge(parts[1:], self.folder / "merged.h5", overwrite=True)
         for shard in ((0, 3), (4, 3)):

@@ -108,7 +108,6 @@ class QueryParameters:
     clearance: Final[float]
     profile: Final[float]
     tolerance: Final[float]
-
 class SearchSeconds:
     total: Final[float]
     context: Final[float]
@@ -152,6 +151,7 @@ class SearchReport:
     device_name: Final[str]
     engine_estimate: Final[EngineEstimate | None]
     estimate: Final[DeviceEstimate | None]
+    shard_share: Final[float | None]
     searches: Final[int]
     tolerance: Final[ToleranceReport | None]
     field_voxel: Final[float]
@@ -168,8 +168,8 @@ class SearchReport:
     pinned_bytes: Final[int]
     peak_device_bytes: Final[int]
     seconds: Final[SearchSeconds]
-
 class MergeReport:
+    was_finished: Final[bool]
     parameters: Final[QueryParameters]
     parts: Final[int]
     environment_points: Final[int]
@@ -209,7 +209,6 @@ class Result:
     def clearance(self) -> Clearances | None: ...
     def profile(self) -> Profile | None: ...
     def model_box(self) -> Box | None: ...
-
 class Conflict:
     id: Final[int]
     points: Final[int]
@@ -278,8 +277,8 @@ def search(
 ) -> SearchReport: ...
 def merge(
     parts: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, threads: int = 0,
-    memory_bytes: int = 4294967296, overwrite: bool = False, progress: _Progress | None = None,
-    stop: _Stop | None = None,
+    memory_bytes: int = 4294967296, overwrite: bool = False, resume: bool = False,
+    progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> MergeReport: ...
 def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,
