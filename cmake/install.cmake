@@ -1,4 +1,4 @@
-# What `cmake --install` puts where. Components: library, tools.
+# What `cmake --install` puts where. Components: library, tools, python, package.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

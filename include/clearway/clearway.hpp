@@ -6,11 +6,13 @@
 #include "clearway/conflicts.hpp"   // IWYU pragma: export
 #include "clearway/convert.hpp"     // IWYU pragma: export
 #include "clearway/error.hpp"       // IWYU pragma: export
+#include "clearway/merge.hpp"       // IWYU pragma: export
 #include "clearway/model.hpp"       // IWYU pragma: export
 #include "clearway/progress.hpp"    // IWYU pragma: export
 #include "clearway/query.hpp"       // IWYU pragma: export
 #include "clearway/report.hpp"      // IWYU pragma: export
 #include "clearway/result.hpp"      // IWYU pragma: export
 #include "clearway/search.hpp"      // IWYU pragma: export
+#include "clearway/shard.hpp"       // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export

@@ -45,6 +45,7 @@ enum class Remedy {
   kAskForProfile,
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kResume,        ///< the same call goes on from what was finished
+  kMerge,         ///< the file is one part of a result
 };
 
 /// What the world does wrong. A program chooses its exit code by the type.

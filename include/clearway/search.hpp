@@ -10,6 +10,7 @@
 #include "clearway/found_place.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
+#include "clearway/shard.hpp"
 #include "clearway/store.hpp"
 
 namespace clearway {
@@ -34,9 +35,12 @@ struct SearchOptions {
   double field_voxel = 0;                 ///< metres, engine sweep; 0: chosen
   double grid_cell = 0;                   ///< metres, engine grid; 0: chosen
   bool float_precision = false;           ///< engine grid decides in floats, for comparison
-  bool overwrite = false;                 ///< an existing result, and the journal of an earlier run
-  bool resume = false;                    ///< goes on from the journal of an earlier run
-  bool strict = false;                    ///< any warning ends with InputError, nothing searched
+  /// Searches this part of the environment alone: the output is a part for merge(). The same store,
+  /// query and count give the same parts, whatever the other options are.
+  std::optional<Shard> shard = {};
+  bool overwrite = false;  ///< an existing result, and the journal of an earlier run
+  bool resume = false;     ///< goes on from the journal of an earlier run
+  bool strict = false;     ///< any warning ends with InputError, nothing searched
   /// Of reading model and trajectory, told already: the report holds them too, and strict counts
   /// them.
   std::vector<Message> input_warnings = {};
@@ -98,6 +102,7 @@ struct SearchReport {
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
   std::string device_name = "the CPU";     ///< for people
+  std::optional<double> shard_share;       ///< of a shard: its estimated work over the mean
   std::uint64_t searches = 0;              ///< pairs of pose and model point
   std::optional<ToleranceReport> tolerance;
   double field_voxel = 0, grid_cell = 0;  ///< metres, of what the engine built; 0: nothing

@@ -46,7 +46,11 @@ BlockBox EnvironmentTree::unite_blocks(std::uint32_t cell, std::uint32_t first,
 EnvironmentNode EnvironmentTree::from_top(std::uint32_t index) const {
   const TreeNode& node = cloud_.tree()[index];
   if (node.right != 0) return {index, 0, 0, 0};
-  return {EnvironmentNode::kInCell, node.first_cell, 0, block_count(cells_[node.first_cell])};
+  return cell(node.first_cell);
+}
+
+EnvironmentNode EnvironmentTree::cell(std::uint32_t cell) const {
+  return {EnvironmentNode::kInCell, cell, 0, block_count(cells_[cell])};
 }
 
 std::array<EnvironmentNode, 2> EnvironmentTree::children(const EnvironmentNode& node) const {

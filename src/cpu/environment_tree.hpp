@@ -31,6 +31,7 @@ class EnvironmentTree {
 
   const PackedCloud& cloud() const { return cloud_; }
   EnvironmentNode root() const { return from_top(0); }
+  EnvironmentNode cell(std::uint32_t cell) const;
 
   /// The two halves of a node that is not a block.
   std::array<EnvironmentNode, 2> children(const EnvironmentNode& node) const;

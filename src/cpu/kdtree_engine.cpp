@@ -134,6 +134,15 @@ void search_tasks(Shared& shared) {
   shared.statistics.cache_bytes += search.allocated_bytes();
 }
 
+/// What was found in cells that were not asked for, as in those of a single block.
+void clear_others(const PackedCloud& cloud, const std::function<bool(std::uint32_t)>& only,
+                  HitSet& hits) {
+  const std::uint64_t words = cloud.blocks_per_cell();
+  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
+    if (!only(cell)) hits.clear_words(cell * words, words);
+  }
+}
+
 }  // namespace
 
 std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Query& query, int threads) {
@@ -162,6 +171,7 @@ HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOpti
     const EnvironmentTree environment(cloud, threads);
     ResolvedPoints resolved(environment, hits);
     Tasks tasks(query, model, threads);
+    if (options.only) resolved.leave_out([&](std::uint32_t cell) { return !options.only(cell); });
     if (options.journal != nullptr) options.journal->restore(hits);
     Shared shared{query, model, environment, resolved, tasks, progress, counted, options.journal};
 #pragma omp parallel num_threads(threads)
@@ -174,6 +184,7 @@ HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOpti
     }
     shared.failure.rethrow();
     if (shared.next_task < tasks.count()) throw Interrupted("interrupted");
+    if (options.only) clear_others(cloud, options.only, hits);
     counted.allocated_bytes =
         hits.allocated_bytes() + environment.allocated_bytes() + resolved.allocated_bytes();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
@@ -11,7 +12,8 @@
 namespace clearway {
 
 struct KdTreeOptions {
-  int threads = 0;                 ///< 0: all that OpenMP offers
+  int threads = 0;                                    ///< 0: all that OpenMP offers
+  std::function<bool(std::uint32_t)> only = nullptr;  ///< the cells to search; null: all
   PoseJournal* journal = nullptr;  ///< keeps what is found; what it held before is not searched
 };
 

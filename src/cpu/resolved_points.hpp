@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/query/hit_set.hpp"
@@ -53,6 +54,23 @@ class ResolvedPoints {
       }
     } else if (first_pose_) {
       store(block_pose_[tree_.block_index(node.cell, node.first_block)], pose);
+    }
+  }
+
+  /// Notes that the cells for which skip(cell) is true need no search, and the nodes that have no
+  /// other. A cell of a single block is searched nevertheless, where no first poses are asked for.
+  template <typename Skip>
+  void leave_out(const Skip& skip) {
+    const std::span<const TreeNode> nodes = tree_.cloud().tree();
+    for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
+      if (nodes[i].right == 0) {
+        const std::uint32_t cell = nodes[i].first_cell;
+        if (skip(cell)) resolve_node(tree_.cell(cell), 0);
+      }
+      const std::uint32_t first = nodes[i].first_cell, end = first + nodes[i].cell_count;
+      bool all = true;
+      for (std::uint32_t cell = first; cell < end && all; ++cell) all = skip(cell);
+      if (all) store(top_pose_[i], std::uint32_t{0});
     }
   }
 

@@ -50,6 +50,11 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   if (!(options.journal_interval_seconds >= 0)) {
     throw UsageError("the journal's interval has to be 0 seconds or more");
   }
+  if (options.shard && !options.shard->is_valid()) {
+    throw UsageError("shard " + to_string(*options.shard) +
+                     ": expected i/n with i from 1 to n, and n at most " +
+                     std::to_string(Shard::kMost));
+  }
   if (options.overwrite && options.resume) {
     throw UsageError("a run either resumes or overwrites");
   }

@@ -26,15 +26,17 @@ std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
                   search_result_bytes(store, query) + least_write_bytes(store));
 }
 
-Found search_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options,
-                    SearchJournal& journal, Progress& progress, SearchReport& report) {
+Found search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
+                    const SearchOptions& options, SearchJournal& journal, Progress& progress,
+                    SearchReport& report) {
   const std::uint64_t result = search_result_bytes(store, query);
   const std::uint64_t kept = kept_by_kdtree(store, query, options.threads);
   report.needed_host_bytes = kdtree_needed_bytes(store, query, options);
   check_memory(report.needed_host_bytes, options.memory_bytes);
   const Stopwatch compute;
-  HitSet hits =
-      run_kdtree(store, query, {.threads = options.threads, .journal = &journal}, progress);
+  KdTreeOptions how{.threads = options.threads, .journal = &journal};
+  if (only != nullptr) how.only = [only](std::uint32_t cell) { return only->contains(cell); };
+  HitSet hits = run_kdtree(store, query, how, progress);
   report.seconds.compute = report.seconds.search = compute.seconds();
   return {{std::move(hits), ClearanceSet()}, options.memory_bytes - kept - result};
 }

@@ -24,6 +24,10 @@ std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) 
   return store.entry_count() / 8 + a_slot * store.entry_count() + a_pose * query.poses.size();
 }
 
+std::uint64_t tree_building_bytes(const Query& query) {
+  return 52 * query.model.size() + 168 * query.poses.size();
+}
+
 void check_memory(std::uint64_t needed, std::uint64_t allowed) {
   if (needed > allowed) refuse_memory(needed, allowed);
 }

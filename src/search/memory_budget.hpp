@@ -19,6 +19,9 @@ std::uint64_t input_bytes(const StoreReader& store, const Query& query);
 /// poses.
 std::uint64_t search_result_bytes(const StoreReader& store, const Query& query);
 
+/// While the trees over model and poses are built. Choosing what a tolerance keeps takes less.
+std::uint64_t tree_building_bytes(const Query& query);
+
 /// Throws ResourceError naming what is needed where that is more than `allowed`.
 void check_memory(std::uint64_t needed, std::uint64_t allowed);
 

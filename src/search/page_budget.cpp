@@ -29,12 +29,6 @@ std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t leas
   return out;
 }
 
-/// While the trees over model and poses are built: 52 bytes a model point, and 168 a pose. Choosing
-/// what a tolerance keeps takes less.
-std::uint64_t tree_building_bytes(const Query& query) {
-  return 52 * query.model.size() + 168 * query.poses.size();
-}
-
 std::uint64_t most_poses_of(const MotionTree& motion, const std::vector<PlannedCell>& cells) {
   std::uint64_t most = 0;
   for (const PlannedCell& cell : cells) most = std::max(most, pose_count(motion, cell.nodes));
@@ -45,11 +39,12 @@ std::uint64_t most_poses_of(const MotionTree& motion, const std::vector<PlannedC
 
 PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
                        std::uint64_t thinned_bytes, std::uint64_t memory_bytes,
-                       PageEngineKind& kind)
+                       PageEngineKind& kind, const ShardCells* only)
     : store_(store),
       asked_(asked),
       memory_bytes_(memory_bytes),
       kind_(kind),
+      only_(only),
       trees_(searched, kind.needs().threads - kind.needs().waiting_threads),
       building_bytes_(tree_building_bytes(asked)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
@@ -96,6 +91,9 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   const PoseReach& reach = kind_.build_index(trees_, size.bytes);
   const double indexed = clock.seconds();
   cells_ = plan(store_, reach);
+  if (only_ != nullptr) {
+    std::erase_if(cells_, [&](const PlannedCell& cell) { return !only_->contains(cell.cell); });
+  }
   index_seconds_ += indexed;
   plan_seconds_ += clock.seconds() - indexed;
   kind_.resolve_devices();

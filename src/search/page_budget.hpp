@@ -8,6 +8,7 @@
 #include "core/page/page_engine.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
+#include "search/shard/shard_cells.hpp"
 
 namespace clearway {
 
@@ -16,10 +17,11 @@ namespace clearway {
 /// down to one cell, before the index gets coarser.
 class PageBudget {
  public:
-  /// asked: as the caller put it; searched: with what a tolerance leaves of it, thinned_bytes. All
-  /// outlive it.
+  /// asked: as the caller put it; searched: with what a tolerance leaves of it, thinned_bytes.
+  /// only: the cells to plan, null for all. All outlive it.
   PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
-             std::uint64_t thinned_bytes, std::uint64_t memory_bytes, PageEngineKind& kind);
+             std::uint64_t thinned_bytes, std::uint64_t memory_bytes, PageEngineKind& kind,
+             const ShardCells* only);
 
   /// Throws ResourceError naming the smallest budget that works.
   void find();
@@ -45,6 +47,7 @@ class PageBudget {
   const Query& asked_;
   const std::uint64_t memory_bytes_;
   PageEngineKind& kind_;
+  const ShardCells* only_;
   const QueryTrees trees_;
   const std::uint64_t building_bytes_;  ///< of the trees
   const std::uint64_t kept_bytes_;      ///< to the end of the run, but for the journal

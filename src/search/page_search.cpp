@@ -69,11 +69,13 @@ Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines en
 }  // namespace
 
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
-                   PageEngineKind& kind, const std::function<SearchJournal&()>& open_journal,
-                   Progress& progress, SearchReport& report, const MessageLog& log) {
+                   PageEngineKind& kind, const ShardCells* only,
+                   const std::function<SearchJournal&()>& open_journal, Progress& progress,
+                   SearchReport& report, const MessageLog& log) {
   const SearchedQuery searched(query, report, log);
   throw_if_stopped(progress);
-  PageBudget budget(store, query, searched.get(), searched.allocated_bytes(), memory_bytes, kind);
+  PageBudget budget(store, query, searched.get(), searched.allocated_bytes(), memory_bytes, kind,
+                    only);
   budget.find();
   report_plan(budget, kind, report, log);
 

@@ -45,6 +45,10 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
                            {"engine", engine},
                            {"device", device},
                            {kReplaces, yes_or_no(replaces)}};
+  if (header.part) {
+    identity.emplace_back("shard", to_string(header.part->shard));
+    identity.emplace_back("division", hash_text(header.part->division));
+  }
   if (header.profile > 0) identity.emplace_back("profile", format_number(header.profile));
   if (header.tolerance > 0) {  // then the answer depends on the field
     identity.emplace_back("field_voxel", format_number(options.field_voxel));
@@ -58,7 +62,7 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
 
 bool answers(const fs::path& file, const ResultHeader& query, Progress& progress) {
   try {
-    const ResultReader result(file);
+    const ResultReader result(file, Parts::kAccepted);
     return result.header() == query && !verify_result(result, progress);
   } catch (const InputError&) {
     return false;

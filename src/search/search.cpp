@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
@@ -27,6 +28,7 @@
 #include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
 #include "search/run_journal.hpp"
+#include "search/shard/shard_cells.hpp"
 #include "search/threads.hpp"
 #include "stream/write_result.hpp"
 
@@ -56,6 +58,7 @@ class Search {
   SearchReport run() {
     check();
     report_sizes();
+    divide();
     if (journal_.already_done(store_, header_, progress_)) {
       report_finished();
     } else {
@@ -85,7 +88,8 @@ class Search {
             metadata.quantisation,
             metadata.crs_wkt,
             false,
-            query_.model.empty() ? Box{} : box_of(query_.model)};
+            query_.model.empty() ? Box{} : box_of(query_.model),
+            std::nullopt};
   }
 
   /// Before anything is searched, and of a result that is there already too.
@@ -105,9 +109,24 @@ class Search {
     report_.cells_total = store_.cells().size();
   }
 
+  /// Of a shard, which cells it has.
+  void divide() {
+    if (!options_.shard) return;
+    throw_if_stopped(progress_);
+    shard_.emplace(store_, query_, *options_.shard, threads(), options_.memory_bytes);
+    header_.part = shard_->part();
+    report_.shard_share = shard_->share();
+  }
+
+  int threads() const {
+    return options_.threads > 0 ? options_.threads : tbb::this_task_arena::max_concurrency();
+  }
+
+  const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
+
   /// The result that was there already.
   void report_finished() {
-    const ResultReader result(journal_.output());
+    const ResultReader result(journal_.output(), Parts::kAccepted);
     report_.was_finished = true;
     report_.colliding_points = result.collisions();
     report_.clearance_points = result.clearances();
@@ -128,16 +147,17 @@ class Search {
   }
 
   Found find() {
-    if (options_.threads == 0) options_.threads = tbb::this_task_arena::max_concurrency();
+    options_.threads = threads();
     const bool gpu = gpu_pays() && may_take_gpus(options_);
     check_threads(options_.threads);
     if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
     choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
     report_.engine = options_.engine;
     report_.searches = report_.poses * report_.model_points;
-    Found found = options_.engine == Engine::kKdtree
-                      ? search_kdtree(store_, query_, options_, open_journal(), progress_, report_)
-                      : find_on_pages(gpu);
+    Found found =
+        options_.engine == Engine::kKdtree
+            ? search_kdtree(store_, query_, only(), options_, open_journal(), progress_, report_)
+            : find_on_pages(gpu);
     report_.resumed_cells = journal_.earlier().cells;
     report_.resumed_poses = journal_.earlier().poses;
     return found;
@@ -181,7 +201,7 @@ class Search {
     if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
     const std::unique_ptr<PageEngineKind> kind = kind_on(device);
     return search_pages(
-        store_, query_, options_.memory_bytes, *kind,
+        store_, query_, options_.memory_bytes, *kind, only(),
         [this]() -> SearchJournal& { return open_journal(); }, progress_, report_, log_);
   }
 
@@ -263,7 +283,8 @@ class Search {
   MessageLog log_;
   PendingFile pending_;
   RunJournal journal_;
-  const ResultHeader header_;
+  ResultHeader header_;
+  std::optional<ShardCells> shard_;
   SearchJournal* open_ = nullptr;
 };
 

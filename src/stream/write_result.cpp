@@ -267,7 +267,8 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
   writing.write_collisions(collisions, out.first_place);
   writing.write_clearances(clearances, out.least_clearance);
   if (header.profile > 0) {
-    out.least_profile = write_profile(store, answer.profile, chainage, writer, progress);
+    out.least_profile =
+        write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress);
   }
   writer.finish();
   progress.end();

@@ -77,5 +77,12 @@ expected=$("$clearway" run --env store.h5 --model model.ply --trajectory traject
   --radius 0.1 -o result.h5 --json 2>/dev/null | awk -F'[:,]' '/"colliding_points"/ { print $2 + 0 }')
 found=$(example environment.las model.ply trajectory.txt 0.1)
 [ "$expected" -gt 0 ] && [ "$found" = "$expected" ] || fail "found $found, expected $expected"
+module=$prefix/lib/python3/dist-packages
+if [ -d "$module" ]; then
+  found=$(PYTHONPATH=$module PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c '
+import clearway
+print(clearway.Result("result.h5").source().size)')
+  [ "$found" = "$expected" ] || fail "Python reads $found points, expected $expected"
+fi
 cmp store.h5 site.h5
 cmp result.h5 out.h5

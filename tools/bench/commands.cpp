@@ -46,6 +46,8 @@ constexpr Experiment kExperiments[] = {
      true, true},
     {"choice", bench_choice,
      "Whether --engine auto takes the faster engine, and how good its estimates are", true, true},
+    {"shards", bench_shards,
+     "Work of the largest of 16 shards over the mean, by estimate and measured", true, true},
 };
 
 /// Throws UsageError with the experiments that take --scenes.

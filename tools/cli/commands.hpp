@@ -5,11 +5,13 @@ class App;
 }
 
 /// One function a subcommand: adds its options to `program` and sets the callback that runs it. A
-/// callback sets `exit_code` where success is not 0 (run, compare, verify) and throws otherwise.
+/// callback sets `exit_code` where success is not 0 (run, compare, verify, campaign run) and throws
+/// otherwise.
 namespace clearway::tool {
 
 void add_convert(CLI::App& program);
 void add_run(CLI::App& program, int& exit_code);
+void add_merge(CLI::App& program, int& exit_code);
 void add_export(CLI::App& program);
 void add_conflicts(CLI::App& program);
 void add_compare(CLI::App& program, int& exit_code);
@@ -19,5 +21,6 @@ void add_model(CLI::App& program);
 void add_report(CLI::App& program);
 void add_scene(CLI::App& program);
 void add_trajectory(CLI::App& program);
+void add_campaign(CLI::App& program, int& exit_code);
 
 }  // namespace clearway::tool

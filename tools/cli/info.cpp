@@ -82,6 +82,11 @@ ordered_json describe(const ResultReader& result) {
     description["tolerance"] = h.tolerance;
     description["engine"] = h.engine;
   }
+  if (h.part) {
+    description["kind"] = "part of a result";
+    description["shard"] = to_string(h.part->shard);
+    description["division"] = hash_text(h.part->division);
+  }
   if (h.float_precision) description["precision"] = "float";
   if (h.has_poses_of_ways()) {
     description["first_pose_of"] =
@@ -167,7 +172,7 @@ ordered_json describe(const std::filesystem::path& file) {
     case FileKind::kJournal:
       return describe(JournalReader(file));
     case FileKind::kResult:
-      return describe(ResultReader(file));
+      return describe(ResultReader(file, Parts::kAccepted));
     case FileKind::kStore:
     case FileKind::kOtherHdf5:
       return describe(StoreReader(file));

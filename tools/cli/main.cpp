@@ -1,16 +1,17 @@
 #include <CLI/CLI.hpp>
 
 #include "clearway/error.hpp"
+#include "cli/clearway_program.hpp"
 #include "cli/commands.hpp"
 #include "cli/support/program.hpp"
 
+namespace clearway::tool {
 namespace {
-
-using namespace clearway::tool;
 
 void add_commands(CLI::App& program, int& exit_code) {
   add_convert(program);
   add_run(program, exit_code);
+  add_merge(program, exit_code);
   add_export(program);
   add_conflicts(program);
   add_compare(program, exit_code);
@@ -20,15 +21,20 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_report(program);
   add_scene(program);
   add_trajectory(program);
+  add_campaign(program, exit_code);
   program.add_subcommand("bench")->group("")->prefix_command()->callback(
-      [] { throw clearway::UsageError("bench: the experiments are the program clearway-bench"); });
+      [] { throw UsageError("bench: the experiments are the program clearway-bench"); });
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int run_clearway(int argc, char** argv) {
   return run_program({.name = "clearway",
                       .description = "Clearway: does this vehicle, machine or car body pass "
                                      "through this scanned environment without touching it?"},
                      argc, argv, add_commands);
 }
+
+}  // namespace clearway::tool
+
+int main(int argc, char** argv) { return clearway::tool::run_clearway(argc, argv); }

@@ -110,6 +110,8 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["clearance_points"] = report.clearance_points;
   out["profile_poses"] = report.profile_poses;
   add_verdict(answer.verdict, answer.labels, out);
+  out["shard_share"] = nullptr;
+  if (report.shard_share) out["shard_share"] = *report.shard_share;
   out["engine"] = known(searched, name_of(report.engine));
   out["engine_estimate"] = estimate_of(report);
   out["device"] = known(searched, name_of(report.device));
@@ -193,8 +195,10 @@ std::string unit_of(const Store& store) {
 }
 
 Verdict find_verdict(const SearchReport& report, const Query& query, const RunOptions& options) {
-  if (report.was_finished) return verdict_of(ResultReader(options.output), query.poses);
-  return verdict_of(report, query, options.search.float_precision);
+  if (report.was_finished) {
+    return verdict_of(ResultReader(options.output, Parts::kAccepted), query.poses);
+  }
+  return verdict_of(report, query, options.search);
 }
 
 /// Without --json the result itself is the answer: that nobody reads the sentence is no failure.
@@ -250,7 +254,7 @@ bool run(RunOptions& options) {
   } else {
     print_verdict(sentence);
   }
-  return answer.verdict.is_clear();
+  return !answer.verdict.is_conflict();
 }
 
 }  // namespace
@@ -275,8 +279,8 @@ void add_run(CLI::App& program, int& exit_code) {
       "out.h5");
   command->callback([options, &exit_code] {
     run_stoppable(options->output, kHowToResume, [&] {
-      const bool clear = run(*options);
-      if (!clear && options->fail_on_collision) exit_code = kDiffers;
+      const bool no_conflict = run(*options);
+      if (!no_conflict && options->fail_on_collision) exit_code = kDiffers;
     });
   });
 }

@@ -7,6 +7,7 @@
 
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "io/formats/text/text_number.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -107,12 +108,41 @@ void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& length
       ->check(CLI::IsMember({"exact", "float"}));
 }
 
+/// Of "2/7"; of another text one that is not valid.
+Shard parse_shard(const std::string& text) {
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto number = parse_count(text.substr(0, slash));
+  const auto count = parse_count(text.substr(std::min(slash + 1, text.size())));
+  constexpr std::uint64_t kTooMany = Shard::kMost + 1;
+  return {static_cast<std::uint32_t>(std::min(number.value_or(0), kTooMany)),
+          static_cast<std::uint32_t>(std::min(count.value_or(0), kTooMany))};
+}
+
+void add_shard(CLI::App& command, SearchOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--shard",
+          [&options](const std::string& text) {
+            const Shard shard = parse_shard(text);
+            if (!shard.is_valid()) {
+              throw CLI::ValidationError(
+                  "--shard", text + ": expected a part and the number of parts, at most " +
+                                 std::to_string(Shard::kMost) + ", for example 1/16 to 16/16");
+            }
+            options.shard = shard;
+          },
+          "Search one part of the work alone, for example 1/16 to 16/16; clearway merge makes the "
+          "result of all parts")
+      ->type_name("I/N");
+}
+
 }  // namespace
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);
   add_query(command, options);
   add_engine(command, options.search, options.lengths);
+  add_shard(command, options.search);
   CLI::Option* force =
       command.add_flag("--force", options.search.overwrite,
                        "Overwrite an existing result; remove the journal of an earlier run");

@@ -56,10 +56,13 @@ std::optional<AnswerPlace> least_of_profile(const ResultReader& result) {
 
 std::string place_text(const AnswerPlace& place, const PoseLabels& labels,
                        const std::string& unit) {
-  std::string text = fmt::format("pose {} (", place.pose);
-  if (!labels.name.empty()) text += labels.name[place.pose] + ", ";
-  if (!labels.time.empty()) text += fmt::format("time {}, ", labels.time[place.pose]);
-  text += fmt::format("{:.2f} {} along the path)", place.chainage, unit);
+  std::string text = fmt::format("pose {}", place.pose);
+  if (place.chainage) {
+    text += " (";
+    if (!labels.name.empty()) text += labels.name[place.pose] + ", ";
+    if (!labels.time.empty()) text += fmt::format("time {}, ", labels.time[place.pose]);
+    text += fmt::format("{:.2f} {} along the path)", *place.chainage, unit);
+  }
   if (place.xyz) {
     text += fmt::format(", point {:.3f} {:.3f} {:.3f}", place.xyz->x, place.xyz->y, place.xyz->z);
   }
@@ -83,7 +86,7 @@ ordered_json place_json(const std::optional<AnswerPlace>& place, const PoseLabel
   if (place->distance) out["distance"] = *place->distance;
   out["pose"] = place->pose;
   out["source"] = place->source;
-  out["chainage"] = place->chainage;
+  out["chainage"] = place->chainage ? ordered_json(*place->chainage) : ordered_json(nullptr);
   const char* const axes[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
     out[axes[k]] = place->xyz ? ordered_json((*place->xyz)[k]) : ordered_json(nullptr);
@@ -109,11 +112,12 @@ std::optional<AnswerPlace> answer_place(const std::optional<FoundPlace>& found, 
 
 }  // namespace
 
-Verdict verdict_of(const SearchReport& report, const Query& query, bool float_precision) {
+Verdict verdict_of(const SearchReport& report, const Query& query, const SearchOptions& options) {
   Verdict out;
+  out.shard = options.shard;
   out.colliding_points = report.colliding_points;
   out.query = query;
-  out.float_precision = float_precision;
+  out.float_precision = options.float_precision;
   out.first = answer_place(report.first_place, false);
   out.least_clearance = answer_place(report.least_clearance, true);
   out.least_profile = answer_place(report.least_profile, true);
@@ -121,15 +125,27 @@ Verdict verdict_of(const SearchReport& report, const Query& query, bool float_pr
   return out;
 }
 
+Verdict verdict_of(const MergeReport& report, bool float_precision) {
+  Verdict out;
+  out.colliding_points = report.colliding_points;
+  out.query = report.parameters;
+  out.float_precision = float_precision;
+  out.first = answer_place(report.first_place, false);
+  out.least_clearance = answer_place(report.least_clearance, true);
+  out.least_profile = answer_place(report.least_profile, true);
+  return out;
+}
+
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
   Verdict out;
   out.colliding_points = result.collisions();
   out.query = result.header();
+  if (result.header().part) out.shard = result.header().part->shard;
   out.float_precision = result.header().float_precision;
   if (result.header().first_pose) out.first = first_place(result);
   out.least_clearance = least_clearance(result);
   out.least_profile = least_of_profile(result);
-  set_chainages(out, poses);
+  if (!poses.empty()) set_chainages(out, poses);
   return out;
 }
 
@@ -137,12 +153,17 @@ std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const
                          const std::string& caveat) {
   const std::string limit = fmt::format("{} {}", verdict.query.radius, unit);
   std::string text;
+  if (verdict.shard) {
+    text = fmt::format("part {} of {}: ", verdict.shard->number, verdict.shard->count);
+  }
   if (verdict.is_clear()) {
-    text = "clear: no environment point is closer than " + limit + " to the model on its way";
+    text += "clear: no environment point is closer than " + limit + " to the model on its way";
+  } else if (!verdict.is_conflict()) {
+    text += "no point of this part is closer than " + limit + " to the model on its way";
   } else {
-    text = "conflict: " + format_count(verdict.colliding_points) +
-           (verdict.colliding_points == 1 ? " point is" : " points are") + " closer than " + limit +
-           " to the model on its way";
+    text += "conflict: " + format_count(verdict.colliding_points) +
+            (verdict.colliding_points == 1 ? " point is" : " points are") + " closer than " +
+            limit + " to the model on its way";
     if (verdict.first) {
       text += std::string("; first ") + (verdict.query.between_poses ? "on the way from " : "at ") +
               place_text(*verdict.first, labels, unit);
@@ -153,12 +174,14 @@ std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const
     text += fmt::format("; points within {} {} of that distance may be judged wrongly",
                         verdict.query.tolerance, unit);
   }
+  if (verdict.shard) text += "; clearway merge gives the answer of all parts";
   if (verdict.float_precision) text += "; not exact, as single precision alone decided";
   return text + caveat + ".";
 }
 
 void add_verdict(const Verdict& verdict, const PoseLabels& labels, ordered_json& out) {
-  out["verdict"] = verdict.is_clear() ? "clear" : "conflict";
+  out["verdict"] = verdict.is_clear() ? "clear" : verdict.is_conflict() ? "conflict" : "unknown";
+  out["shard"] = verdict.shard ? ordered_json(to_string(*verdict.shard)) : ordered_json(nullptr);
   out["least_clearance"] = place_json(verdict.least_clearance, labels);
   out["least_profile"] = place_json(verdict.least_profile, labels);
   out["first_place"] = place_json(verdict.first, labels);

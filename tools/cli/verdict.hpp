@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/merge.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/search.hpp"
 #include "clearway/trajectory.hpp"
@@ -17,7 +18,7 @@ namespace clearway::tool {
 struct AnswerPlace {
   std::uint64_t source = 0;
   std::uint32_t pose = 0;
-  double chainage = 0;  ///< of the pose, in the unit of the path
+  std::optional<double> chainage{};  ///< of the pose, in the unit of the path
   std::optional<Vec3> xyz{};
   std::optional<double> distance{};
 };
@@ -26,12 +27,14 @@ struct AnswerPlace {
 struct Verdict {
   std::uint64_t colliding_points = 0;
   QueryParameters query{};
+  std::optional<Shard> shard{};  ///< where it is the answer of one part: never clear
   bool float_precision = false;
   std::optional<AnswerPlace> first;            ///< with first poses: at the smallest, least source
   std::optional<AnswerPlace> least_clearance;  ///< of equals the least source
   std::optional<AnswerPlace> least_profile;    ///< of equals the first pose
 
-  bool is_clear() const { return colliding_points == 0; }
+  bool is_conflict() const { return colliding_points > 0; }
+  bool is_clear() const { return !is_conflict() && !shard; }
   /// The least distance that is known.
   const std::optional<AnswerPlace>& nearest() const {
     return least_profile ? least_profile : least_clearance;
@@ -39,17 +42,21 @@ struct Verdict {
 };
 
 /// Of a result that was just written.
-Verdict verdict_of(const SearchReport& report, const Query& query, bool float_precision);
+Verdict verdict_of(const SearchReport& report, const Query& query, const SearchOptions& options);
 
-/// Reads the tables that the result has, whoever wrote it. poses: those of the search. Throws as
-/// ResultReader does.
+/// Of what was just merged.
+Verdict verdict_of(const MergeReport& report, bool float_precision);
+
+/// Reads the tables that the result has, whoever wrote it. poses: those of the search; none
+/// where they are not at hand. Throws as ResultReader does.
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses);
 
 /// One sentence, without what `caveat` adds before its end. unit: of lengths, "m".
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat);
 
-/// Adds the keys verdict, least_clearance, least_profile and first_place.
+/// Adds the keys verdict ("unknown" of a part without colliding points), shard, least_clearance,
+/// least_profile and first_place.
 void add_verdict(const Verdict& verdict, const PoseLabels& labels, nlohmann::ordered_json& out);
 
 }  // namespace clearway::tool

@@ -48,7 +48,8 @@ Findings findings_of(const std::filesystem::path& file) {
   try {
     if (is_journal(file) || is_empty_journal(file)) return verify_journal(file);
     if (hdf5::holds(file, "collisions")) {
-      if (const auto fault = verify_result(ResultReader(file), progress)) return {{*fault}};
+      if (const auto fault = verify_result(ResultReader(file, Parts::kAccepted), progress))
+        return {{*fault}};
       return {};
     }
     return {verify_store(StoreReader(file), progress)};

@@ -13,6 +13,8 @@ class Program:
         self.name = Path(path).name
         self.options = {}  # of each command, named by its words: "clearway run"
         self.prose = []  # (where, text)
+        self.entries = {}  # of each command: (section, name with its value, text)
+        self.rest = {}  # of each command the lines outside the sections; an empty one for the usage
         self._read(str(path), [])
 
     def _read(self, path, words):
@@ -21,7 +23,9 @@ class Program:
         lines = subprocess.run([path, *words, "--help"], capture_output=True, text=True,
                                check=True).stdout.splitlines()
         entries, rest = self._split(lines)
+        self.entries[command], self.rest[command] = entries, rest
         self._add_paragraphs(f"{command} --help", rest)
+        entries = [(section, name.split()[0], text) for section, name, text in entries]
         self.prose += [(f"{command} --help, {name}", text) for _, name, text in entries]
         self.options[command] = {option for section, name, _ in entries if section == "Options"
                                  for option in OPTION.findall(name)}
@@ -42,7 +46,7 @@ class Program:
                 entries[-1][2] = f"{entries[-1][2]} {line.strip()}".strip()
             elif section and line.startswith("  "):
                 names, _, text = line.strip().partition("  ")
-                entries.append([section, names.split()[0], text.strip()])
+                entries.append([section, names, text.strip()])
             else:
                 section = section if not line else ""
                 rest.append(line)

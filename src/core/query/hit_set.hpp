@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -39,6 +40,11 @@ class HitSet {
     while (earliness > seen &&
            !target.compare_exchange_weak(seen, earliness, std::memory_order_relaxed)) {
     }
+  }
+
+  /// Takes the marks of 64 entries a word away, not their first poses. Not while others mark.
+  void clear_words(std::uint64_t first, std::uint64_t count) {
+    std::fill_n(words_.begin() + static_cast<std::ptrdiff_t>(first), count, 0);
   }
 
   bool contains(std::uint64_t entry) const { return (words_[entry / 64] >> (entry % 64) & 1) != 0; }

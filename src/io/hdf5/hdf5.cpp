@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -108,15 +109,39 @@ void silence_for_good() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
+namespace {
+
+/// Which plug-ins HDF5 loads is one state of the whole process: kept by the first of all threads
+/// that are quiet at a time, given back by the last.
+struct Plugins {
+  std::mutex mutex;
+  int quiet = 0;
+  unsigned kept = 0;
+};
+
+Plugins& plugins() {
+  static Plugins all;
+  return all;
+}
+
+}  // namespace
+
 QuietScope::QuietScope() {
   H5Eget_auto2(H5E_DEFAULT, &print_, &print_data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  H5PLget_loading_state(&plugins_);
+  Plugins& all = plugins();
+  const std::lock_guard lock(all.mutex);
+  if (all.quiet++ > 0) return;
+  H5PLget_loading_state(&all.kept);
   H5PLset_loading_state(kNoPlugins);
 }
 
 QuietScope::~QuietScope() {
-  H5PLset_loading_state(plugins_);
+  {
+    Plugins& all = plugins();
+    const std::lock_guard lock(all.mutex);
+    if (--all.quiet == 0) H5PLset_loading_state(all.kept);
+  }
   H5Eset_auto2(H5E_DEFAULT, print_, print_data_);
 }
 
@@ -169,6 +194,7 @@ Id create_file(const std::filesystem::path& path) {
 
 Id open_file(const std::filesystem::path& path) {
   check_superblock(File::open_regular(path));
+  // By default a process may hold a file open twice: h5py opens it alike.
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
     if (const auto words = system_reason()) throw ResourceError(path.string() + ": " + *words);

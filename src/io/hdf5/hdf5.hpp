@@ -34,7 +34,6 @@ class QuietScope {
  private:
   H5E_auto2_t print_ = nullptr;
   void* print_data_ = nullptr;
-  unsigned plugins_ = 0;
 };
 
 /// For programs, before any other call: the same for the life of the process, and no clean-up of

@@ -39,28 +39,6 @@ std::string first_pose_text(const ResultHeader& header) {
   return header.ways_without_ends ? "asked for, as version 0.1.0 defined them" : "asked for";
 }
 
-std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b) {
-  std::vector<QueryDifference> out;
-  const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
-    if (text_a != text_b) out.push_back({std::move(what), std::move(text_a), std::move(text_b)});
-  };
-  differ("model", content_text(a.model_points, "points", a.model_hash),
-         content_text(b.model_points, "points", b.model_hash));
-  differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
-         content_text(b.poses, "poses", b.trajectory_hash));
-  differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");
-  differ("first poses", first_pose_text(a), first_pose_text(b));
-  differ("clearance", distance_text(a.clearance), distance_text(b.clearance));
-  differ("profile", distance_text(a.profile), distance_text(b.profile));
-  differ("motion", a.between_poses ? "between poses" : "at poses only",
-         b.between_poses ? "between poses" : "at poses only");
-  differ("tolerance", tolerance_text(a), tolerance_text(b));
-  differ("precision", a.float_precision ? "float" : "exact", b.float_precision ? "float" : "exact");
-  differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
-  differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
-  return out;
-}
-
 class Merge {
  public:
   Merge(const ResultReader& a, const ResultReader& b, std::size_t kept)
@@ -153,6 +131,28 @@ ProfileComparison compare_profiles(const ResultReader& a, const ResultReader& b)
 }
 
 }  // namespace
+
+std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b) {
+  std::vector<QueryDifference> out;
+  const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
+    if (text_a != text_b) out.push_back({std::move(what), std::move(text_a), std::move(text_b)});
+  };
+  differ("model", content_text(a.model_points, "points", a.model_hash),
+         content_text(b.model_points, "points", b.model_hash));
+  differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
+         content_text(b.poses, "poses", b.trajectory_hash));
+  differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");
+  differ("first poses", first_pose_text(a), first_pose_text(b));
+  differ("clearance", distance_text(a.clearance), distance_text(b.clearance));
+  differ("profile", distance_text(a.profile), distance_text(b.profile));
+  differ("motion", a.between_poses ? "between poses" : "at poses only",
+         b.between_poses ? "between poses" : "at poses only");
+  differ("tolerance", tolerance_text(a), tolerance_text(b));
+  differ("precision", a.float_precision ? "float" : "exact", b.float_precision ? "float" : "exact");
+  differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
+  differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
+  return out;
+}
 
 Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept) {
   if (a.header().environment_points != b.header().environment_points ||

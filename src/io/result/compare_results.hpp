@@ -66,6 +66,9 @@ struct Comparison {
   }
 };
 
+/// Of the model, the trajectory and the parameters.
+std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b);
+
 /// Merges both results in constant memory; keeps up to `kept` differing points. Throws InputError
 /// when they are about different environments, whose indices cannot be compared.
 Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept);

@@ -158,6 +158,5 @@ class EncodedRows {
 
 using EncodedCollisions = EncodedRows<std::uint64_t, Vec3, std::uint32_t>;
 using EncodedClearances = EncodedRows<std::uint64_t, Vec3, double, std::uint32_t>;
-using EncodedProfile = EncodedRows<double, std::uint64_t, Vec3, double>;
 
 }  // namespace clearway

@@ -3,17 +3,26 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "clearway/box.hpp"
 #include "clearway/query.hpp"
+#include "clearway/shard.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/result/encoded_rows.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway {
+
+/// What makes a result one part of several.
+struct ResultPart {
+  Shard shard;
+  std::uint64_t division = 0;  ///< hash of which cells of which store are in which part
+  friend bool operator==(const ResultPart&, const ResultPart&) = default;
+};
 
 /// What a result says of its query: a function of the source points, the model, the trajectory
 /// and the parameters, and but for the engine and the precision where they are part of the answer,
@@ -31,7 +40,8 @@ struct ResultHeader : QueryParameters {
   std::string crs_wkt;
   /// First poses between poses are those of version 0.1.0, whose ways did not include their ends.
   bool ways_without_ends = false;
-  Box model_box{};  ///< of the model's points
+  Box model_box{};                 ///< of the model's points
+  std::optional<ResultPart> part;  ///< of what merge() makes a result of
   /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances.
   std::uint32_t version = 3;
 
@@ -63,9 +73,11 @@ class ResultWriter {
   /// The next clearances; distance in metres. Only where the header asks for them.
   void append_clearances(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
                          std::span<const double> distance, std::span<const std::uint32_t> pose);
-  /// The next poses' rows, as Profile has them. Only where the header asks for a profile.
+  /// The next poses' rows, as Profile has them. Only where the header asks for a profile. squared:
+  /// the computed d2 of which distance is the root; empty unless the header is of a part.
   void append_profile(std::span<const double> distance, std::span<const std::uint64_t> source,
-                      std::span<const Vec3> xyz, std::span<const double> chainage);
+                      std::span<const Vec3> xyz, std::span<const double> chainage,
+                      std::span<const double> squared = {});
 
   /// To be filled and sealed. Thread safe.
   EncodedCollisions new_collisions() const;
@@ -83,14 +95,18 @@ class ResultWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Whether a part of a result will do.
+enum class Parts { kRefused, kAccepted };
+
 /// Reads a result by ranges of rows, which lie below the number of rows; whoever reads all of them
 /// front to back (result_rows.hpp) checks them against their hash too. Throws InputError when the
 /// file is not a complete result, is damaged, or holds rows that no run can have found.
 class ResultReader {
  public:
-  explicit ResultReader(const std::filesystem::path& path);
+  explicit ResultReader(const std::filesystem::path& path, Parts parts = Parts::kRefused);
   ~ResultReader();
   ResultReader(ResultReader&&) noexcept;
+  ResultReader& operator=(ResultReader&&) noexcept;
 
   const std::string& name() const;  ///< the file's, for messages
   const ResultHeader& header() const;
@@ -102,8 +118,9 @@ class ResultReader {
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
   /// Below header().poses. Only where the header has first poses.
   void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
-  /// All three, with many threads; first_pose: empty unless the header has it. Adds the columns to
-  /// their hashes. first: a multiple of kEncodedRows.
+  /// All three; first_pose: empty unless the header has it. Adds the columns to their hashes. With
+  /// many threads where first is a multiple of kEncodedRows, and so is their number or they are the
+  /// last ones.
   void read_collisions(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<std::uint32_t> first_pose, std::span<Xxh64Stream> hashes) const;
 
@@ -115,20 +132,23 @@ class ResultReader {
   /// where the header has clearances. xyz: empty unless the header has them.
   void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<double> distance, std::span<std::uint32_t> pose) const;
-  /// The same with many threads. Adds the columns to their hashes, but xyz where there is none.
-  /// first: a multiple of kEncodedRows.
+  /// The same. Adds the columns to their hashes, but xyz where there is none. With many threads as
+  /// read_collisions().
   void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<double> distance, std::span<std::uint32_t> pose,
                        std::span<Xxh64Stream> hashes) const;
 
   /// Rows of the profile: header().poses, or 0 where the header has none.
   std::uint64_t profile_rows() const;
-  /// ColumnHashes of distance, source, xyz and chainage; 0 where there is none.
+  /// ColumnHashes of distance, source, xyz, chainage and, of a part, squared; 0 where there is
+  /// none.
   std::uint64_t profile_hash() const;
   /// As Profile says; chainage from 0 at the first pose, ascending. Only where the header has it.
   void read_profile(std::uint64_t first, std::span<double> distance,
                     std::span<std::uint64_t> source, std::span<Vec3> xyz,
                     std::span<double> chainage) const;
+  /// Of a part only: the d2 of which the distances are roots.
+  void read_profile_squared(std::uint64_t first, std::span<double> out) const;
 
  private:
   struct State;

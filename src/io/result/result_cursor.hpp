@@ -13,7 +13,11 @@ namespace clearway {
 template <typename Stream, typename Rows>
 class ResultCursor {
  public:
-  explicit ResultCursor(const ResultReader& reader) : stream_(reader) { stream_.read(rows_); }
+  explicit ResultCursor(const ResultReader& reader,
+                        std::size_t batch_rows = ResultRowStream::kBatchRows)
+      : stream_(reader, batch_rows) {
+    stream_.read(rows_);
+  }
 
   bool at_end() const { return rows_.size() == 0; }
   std::uint64_t source() const { return rows_.source[at_]; }

@@ -13,12 +13,18 @@ namespace {
 
 namespace names = result_names;
 
-std::uint32_t read_version(const hdf5::Id& file, const std::string& name) {
-  if (!hdf5::has_attribute(file, "format", name) ||
-      hdf5::read_text_attribute(file, "format", name) != names::kFormat) {
-    throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
-                     "\"; this HDF5 file is not a result of clearway run");
+/// Whether it is of a part; otherwise of a result.
+bool read_format(const hdf5::Id& file, const std::string& name) {
+  if (hdf5::has_attribute(file, "format", name)) {
+    const std::string format = hdf5::read_text_attribute(file, "format", name);
+    if (format == names::kFormat) return false;
+    if (format == names::kPartFormat) return true;
   }
+  throw InputError(name + ": attribute 'format': expected \"" + names::kFormat +
+                   "\"; this HDF5 file is not a result of clearway run");
+}
+
+std::uint32_t read_version(const hdf5::Id& file, const std::string& name) {
   const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
   if (version < names::kOldestVersion || version > names::kVersion) {
     throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
@@ -73,11 +79,21 @@ void read_profile_distance(const hdf5::Id& file, const std::string& name, double
   refuse(name, "attribute 'profile' is " + shown(profile) + ", expected a length, or 0 for none");
 }
 
+ResultPart read_part(const hdf5::Id& file, const std::string& name) {
+  const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
+  const ResultPart part{{shard[0], shard[1]},
+                        hdf5::read_number<std::uint64_t>(file, names::kDivision, name)};
+  if (part.shard.is_valid()) return part;
+  refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
+                   std::to_string(Shard::kMost));
+}
+
 }  // namespace
 
 void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   const Vec3 model_box[2] = {header.model_box.lo, header.model_box.hi};
-  hdf5::write_attribute(file, "format", std::string(names::kFormat));
+  hdf5::write_attribute(file, "format",
+                        std::string(header.part ? names::kPartFormat : names::kFormat));
   hdf5::write_number(file, "version", names::kVersion);
   hdf5::write_number(file, "environment_points", header.environment_points);
   hdf5::write_number(file, "environment_hash", header.environment_hash);
@@ -102,10 +118,15 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
   }
+  if (!header.part) return;
+  const std::uint32_t shard[]{header.part->shard.number, header.part->shard.count};
+  hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
+  hdf5::write_number(file, names::kDivision, header.part->division);
 }
 
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   ResultHeader header;
+  const bool is_part = read_format(file, name);
   header.version = read_version(file, name);
   header.environment_points = hdf5::read_number<std::uint64_t>(file, "environment_points", name);
   header.environment_hash = hdf5::read_number<std::uint64_t>(file, "environment_hash", name);
@@ -132,6 +153,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     read_model_box(file, name, header.model_box);
     read_profile_distance(file, name, header.profile);
   }
+  if (is_part) header.part = read_part(file, name);
   return header;
 }
 

@@ -6,6 +6,7 @@
 namespace clearway::result_names {
 
 inline constexpr const char* kFormat = "clearway result";
+inline constexpr const char* kPartFormat = "clearway part";  // not for who looks for a result
 inline constexpr std::uint32_t kVersion = 3;
 inline constexpr std::uint32_t kOldestVersion = 2;
 
@@ -20,6 +21,7 @@ inline constexpr const char* kPose = "pose";
 
 inline constexpr const char* kProfileGroup = "profile";  // exists where kProfile is above 0
 inline constexpr const char* kChainage = "chainage";
+inline constexpr const char* kSquared = "squared";  // of parts only
 
 inline constexpr const char* kProfile = "profile";
 inline constexpr const char* kModelBox = "model_box";
@@ -29,6 +31,9 @@ inline constexpr const char* kPrecision = "precision";  // only where it is kFlo
 inline constexpr const char* kFloat = "float";
 inline constexpr const char* kFirstPoseOf = "first_pose_of";  // only where it is kClosedWay
 inline constexpr const char* kClosedWay = "closed way";
+
+inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
+inline constexpr const char* kDivision = "division";
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";

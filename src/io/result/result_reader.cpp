@@ -40,6 +40,11 @@ void check_lengths(std::size_t rows, const Spans&... spans) {
   }
 }
 
+/// Whether many threads may read these rows: they begin and end as chunks do.
+bool are_whole_chunks(std::uint64_t first, std::size_t count, std::uint64_t rows) {
+  return first % kEncodedRows == 0 && (count % kEncodedRows == 0 || first + count == rows);
+}
+
 }  // namespace
 
 struct ResultReader::State {
@@ -79,9 +84,14 @@ struct ResultReader::State {
     profile.emplace(ProfileDatasets{open<double>(names::kProfileGroup, names::kDistance, 0),
                                     open<std::uint64_t>(names::kProfileGroup, names::kSource, 0),
                                     open<double>(names::kProfileGroup, names::kXyz, 3),
-                                    open<double>(names::kProfileGroup, names::kChainage, 0)});
-    check_equal(names::kProfileGroup, profile->distance.rows(),
-                {profile->source.rows(), profile->xyz.rows(), profile->chainage.rows()});
+                                    open<double>(names::kProfileGroup, names::kChainage, 0),
+                                    {}});
+    if (header.part)
+      profile->squared.emplace(open<double>(names::kProfileGroup, names::kSquared, 0));
+    const std::uint64_t rows = profile->distance.rows();
+    check_equal(names::kProfileGroup, rows,
+                {profile->source.rows(), profile->xyz.rows(), profile->chainage.rows(),
+                 rows_of(profile->squared, rows)});
     if (profile->distance.rows() != header.poses) {
       throw InputError(name + ": /profile has " + std::to_string(profile->distance.rows()) +
                        " rows, expected one for each of " + std::to_string(header.poses) +
@@ -123,6 +133,7 @@ struct ResultReader::State {
     hdf5::Rows<double> distance;
     hdf5::Rows<std::uint64_t> source;
     hdf5::Rows<double> xyz, chainage;
+    std::optional<hdf5::Rows<double>> squared;
   };
 
   std::string name;
@@ -146,8 +157,13 @@ void add_to(std::span<Xxh64Stream> hashes, const Columns&... columns) {
 
 }  // namespace
 
-ResultReader::ResultReader(const std::filesystem::path& path) {
+ResultReader::ResultReader(const std::filesystem::path& path, Parts parts) {
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
+  if (parts == Parts::kAccepted || !header().part) return;
+  const Shard& shard = header().part->shard;
+  throw InputError(name() + ": is part " + std::to_string(shard.number) + " of " +
+                       std::to_string(shard.count) + " of a result, and says nothing of the rest",
+                   Remedy::kMerge);
 }
 
 ResultReader::~ResultReader() {
@@ -155,6 +171,11 @@ ResultReader::~ResultReader() {
   state_.reset();
 }
 ResultReader::ResultReader(ResultReader&&) noexcept = default;
+ResultReader& ResultReader::operator=(ResultReader&& other) noexcept {
+  const hdf5::QuietScope quiet;
+  state_ = std::move(other.state_);
+  return *this;
+}
 
 const std::string& ResultReader::name() const { return state_->name; }
 const ResultHeader& ResultReader::header() const { return state_->header; }
@@ -172,12 +193,14 @@ void ResultReader::read_collisions(std::uint64_t first, std::span<std::uint64_t>
   check_range(first, source.size(), collisions());
   ParallelRead read;
   const RowChecks checks = s.checks(names::kGroup, first);
-  const bool there = as_input(s.name, [&] {
-    return read.add(s.source, first, source, hashes[0], checks.from_any_row(&RowChecks::sources)) &&
-           read.add(s.xyz, first, xyz, hashes[1], checks.from_any_row(&RowChecks::points)) &&
-           (!s.first_pose || read.add(*s.first_pose, first, first_pose, hashes[2],
-                                      checks.for_poses(names::kFirstPose)));
-  });
+  const bool there =
+      are_whole_chunks(first, source.size(), collisions()) && as_input(s.name, [&] {
+        return read.add(s.source, first, source, hashes[0],
+                        checks.from_any_row(&RowChecks::sources)) &&
+               read.add(s.xyz, first, xyz, hashes[1], checks.from_any_row(&RowChecks::points)) &&
+               (!s.first_pose || read.add(*s.first_pose, first, first_pose, hashes[2],
+                                          checks.for_poses(names::kFirstPose)));
+      });
   if (there && read.run() && ascends_at_chunks(source, s.source.chunk_rows())) return;
   read_source(first, source);
   read_xyz(first, xyz);
@@ -242,15 +265,17 @@ void ResultReader::read_clearances(std::uint64_t first, std::span<std::uint64_t>
   ParallelRead read;
   const RowChecks checks = s.checks(names::kClearanceGroup, first);
   const std::size_t next = datasets->xyz ? 1 : 0;
-  const bool there = as_input(s.name, [&] {
-    return read.add(datasets->source, first, source, hashes[0],
-                    checks.from_any_row(&RowChecks::sources)) &&
-           (!datasets->xyz || read.add(*datasets->xyz, first, xyz, hashes[next],
-                                       checks.from_any_row(&RowChecks::points))) &&
-           read.add(datasets->distance, first, distance, hashes[next + 1],
-                    checks.from_any_row(&RowChecks::clearances)) &&
-           read.add(datasets->pose, first, pose, hashes[next + 2], checks.for_poses(names::kPose));
-  });
+  const bool there =
+      are_whole_chunks(first, source.size(), clearances()) && as_input(s.name, [&] {
+        return read.add(datasets->source, first, source, hashes[0],
+                        checks.from_any_row(&RowChecks::sources)) &&
+               (!datasets->xyz || read.add(*datasets->xyz, first, xyz, hashes[next],
+                                           checks.from_any_row(&RowChecks::points))) &&
+               read.add(datasets->distance, first, distance, hashes[next + 1],
+                        checks.from_any_row(&RowChecks::clearances)) &&
+               read.add(datasets->pose, first, pose, hashes[next + 2],
+                        checks.for_poses(names::kPose));
+      });
   if (there && read.run() && ascends_at_chunks(source, datasets->source.chunk_rows())) return;
   read_clearances(first, source, xyz, distance, pose);
   if (datasets->xyz) {
@@ -280,6 +305,13 @@ void ResultReader::read_profile(std::uint64_t first, std::span<double> distance,
   const RowChecks checks = state_->checks(names::kProfileGroup, first);
   checks.profile(distance, source, xyz);
   checks.chainages(chainage);
+}
+
+void ResultReader::read_profile_squared(std::uint64_t first, std::span<double> out) const {
+  const auto& datasets = state_->profile;
+  if (!datasets || !datasets->squared) throw std::logic_error("ResultReader: no squares");
+  check_range(first, out.size(), profile_rows());
+  as_input(state_->name, [&] { datasets->squared->read(first, out); });
 }
 
 }  // namespace clearway

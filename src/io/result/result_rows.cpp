@@ -31,7 +31,7 @@ void check_hash(const ResultReader& reader, const char* group, std::span<const X
 }  // namespace
 
 bool ResultRowStream::read(ResultRows& rows) {
-  const std::size_t count = std::min<std::uint64_t>(kBatchRows, reader_.collisions() - next_);
+  const std::size_t count = std::min<std::uint64_t>(batch_rows_, reader_.collisions() - next_);
   const bool first_pose = reader_.header().first_pose;
   rows.source.resize(count);
   rows.xyz.resize(count);
@@ -49,8 +49,7 @@ bool ResultRowStream::read(ResultRows& rows) {
 }
 
 bool ClearanceRowStream::read(ClearanceRows& rows) {
-  const std::size_t count =
-      std::min<std::uint64_t>(ResultRowStream::kBatchRows, reader_.clearances() - next_);
+  const std::size_t count = std::min<std::uint64_t>(batch_rows_, reader_.clearances() - next_);
   const bool has_xyz = reader_.header().has_clearance_xyz();
   rows.source.resize(count);
   rows.xyz.resize(has_xyz ? count : 0);
@@ -73,23 +72,27 @@ bool ClearanceRowStream::read(ClearanceRows& rows) {
 }
 
 bool ProfileRowStream::read(ProfileRows& rows) {
-  const std::size_t count =
-      std::min<std::uint64_t>(ResultRowStream::kBatchRows, reader_.profile_rows() - next_);
+  const std::size_t count = std::min<std::uint64_t>(batch_rows_, reader_.profile_rows() - next_);
   rows.distance.resize(count);
   rows.source.resize(count);
   rows.xyz.resize(count);
   rows.chainage.resize(count);
+  const bool is_part = reader_.header().part.has_value();
+  rows.squared.resize(is_part ? count : 0);
   if (count == 0) {
     if (reader_.header().profile > 0) {
-      check_hash(reader_, "profile", columns_, reader_.profile_hash());
+      check_hash(reader_, "profile", std::span(columns_).first(is_part ? 5 : 4),
+                 reader_.profile_hash());
     }
     return false;
   }
   reader_.read_profile(next_, rows.distance, rows.source, rows.xyz, rows.chainage);
+  if (is_part) reader_.read_profile_squared(next_, rows.squared);
   add(columns_[0], rows.distance);
   add(columns_[1], rows.source);
   add(columns_[2], rows.xyz);
   add(columns_[3], rows.chainage);
+  add(columns_[4], rows.squared);
   if (rows.chainage.front() < last_chainage_) {
     throw InputError(reader_.name() + ": /profile/chainage, row " + std::to_string(next_) +
                      ": expected metres, not below the row before");

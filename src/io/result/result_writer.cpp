@@ -16,12 +16,10 @@ namespace names = result_names;
 
 using CollisionTable = ResultTable<std::uint64_t, Vec3, std::uint32_t>;
 using ClearanceTable = ResultTable<std::uint64_t, Vec3, double, std::uint32_t>;
-using ProfileTable = ResultTable<double, std::uint64_t, Vec3, double>;
+using ProfileTable = ResultTable<double, std::uint64_t, Vec3, double, double>;
 
 constexpr ClearanceTable::Names kClearanceColumns{names::kSource, names::kXyz, names::kDistance,
                                                   names::kPose};
-constexpr ProfileTable::Names kProfileColumns{names::kDistance, names::kSource, names::kXyz,
-                                              names::kChainage};
 
 }  // namespace
 
@@ -39,7 +37,11 @@ struct ResultWriter::State {
       clearances.emplace(file, names::kClearanceGroup, kClearanceColumns, clearance_rows);
     }
     if (header.profile > 0) {
-      profile.emplace(file, names::kProfileGroup, kProfileColumns, header.poses);
+      profile.emplace(
+          file, names::kProfileGroup,
+          ProfileTable::Names{names::kDistance, names::kSource, names::kXyz, names::kChainage,
+                              header.part ? names::kSquared : nullptr},
+          header.poses);
     }
     write_result_header(file, header);
     output.reserve_ahead(collisions->bytes() + (clearances ? clearances->bytes() : 0) +
@@ -100,12 +102,13 @@ void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
 
 void ResultWriter::append_profile(std::span<const double> distance,
                                   std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
-                                  std::span<const double> chainage) {
+                                  std::span<const double> chainage,
+                                  std::span<const double> squared) {
   State& s = *state_;
   if (!s.profile) throw std::logic_error("ResultWriter: no profile");
   s.complete(s.collisions);
   s.complete(s.clearances);
-  hdf5::naming(s.name, [&] { s.profile->append(distance, source, xyz, chainage); });
+  hdf5::naming(s.name, [&] { s.profile->append(distance, source, xyz, chainage, squared); });
 }
 
 EncodedCollisions ResultWriter::new_collisions() const { return state_->collisions->new_rows(); }

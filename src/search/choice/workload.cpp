@@ -96,7 +96,7 @@ class NearPoints {
   double count_ = 0;
 };
 
-double path_length_of(const std::vector<Pose>& poses) {
+double path_length_of(std::span<const Pose> poses) {
   double length = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const double(&from)[3] = poses[i - 1].translation, (&to)[3] = poses[i].translation;
@@ -108,26 +108,30 @@ double path_length_of(const std::vector<Pose>& poses) {
 }  // namespace
 
 Workload workload_of(const PackedCloud& cloud, const Query& query) {
+  return workload_of(cloud, query, query.model.empty() ? Box{} : box_of(query.model),
+                     query.model.size(), query.poses);
+}
+
+Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,
+                     std::uint64_t model_points, std::span<const Pose> poses) {
   Workload work;
-  work.model_points = static_cast<double>(query.model.size());
-  work.poses = static_cast<double>(query.poses.size());
+  work.model_points = static_cast<double>(model_points);
+  work.poses = static_cast<double>(poses.size());
   work.radius = std::max({query.radius, query.clearance, query.profile});
-  if (query.model.empty() || query.poses.empty()) return work;
-  const Box model = box_of(query.model);
+  if (model_points == 0 || poses.empty()) return work;
   double length = 2 * work.radius;
   for (int k = 0; k < 3; ++k) {
     length = std::max(length, model.hi[k] - model.lo[k] + 2 * work.radius);
   }
   const Box reach = widened(model, work.radius);
-  const std::size_t samples = std::min(kSampledPoses, query.poses.size());
+  const std::size_t samples = std::min(kSampledPoses, poses.size());
   double near_points = 0;  // of a pose
   for (std::size_t i = 0; i < samples; ++i) {
-    const std::size_t pose = (2 * i + 1) * query.poses.size() / (2 * samples);
-    near_points +=
-        NearPoints(cloud, reach, query.poses[pose]).count() / static_cast<double>(samples);
+    const std::size_t pose = (2 * i + 1) * poses.size() / (2 * samples);
+    near_points += NearPoints(cloud, reach, poses[pose]).count() / static_cast<double>(samples);
   }
   // A model that goes on by its length meets as many points again.
-  const double places = std::min(work.poses, 1 + path_length_of(query.poses) / length);
+  const double places = std::min(work.poses, 1 + path_length_of(poses) / length);
   work.reached_points = std::min(static_cast<double>(cloud.point_count()), near_points * places);
   return work;
 }

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+
+#include "clearway/box.hpp"
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 
@@ -16,5 +20,9 @@ struct Workload {
 };
 
 Workload workload_of(const PackedCloud& cloud, const Query& query);
+
+/// The same of a model of which only the box is known: with one point at least.
+Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,
+                     std::uint64_t model_points, std::span<const Pose> poses);
 
 }  // namespace clearway

@@ -12,10 +12,10 @@
 namespace clearway {
 
 /// Appends the nearest points of all poses, and gives the nearest of them. chainage: of every pose,
-/// metres. Throws InputError for a damaged cell, ResourceError for a full disk, Interrupted when
-/// the progress asks to stop.
+/// metres. is_part: of a result; then with the squares. Throws InputError for a damaged cell,
+/// ResourceError for a full disk, Interrupted when the progress asks to stop.
 std::optional<FoundPlace> write_profile(const StoreReader& store, const ProfileSet& profile,
-                                        std::span<const double> chainage, ResultWriter& writer,
-                                        Progress& progress);
+                                        std::span<const double> chainage, bool is_part,
+                                        ResultWriter& writer, Progress& progress);
 
 }  // namespace clearway

@@ -153,5 +153,6 @@ void bench_scaling(Bench& bench);
 void bench_hard(Bench& bench);
 void bench_equality(Bench& bench);
 void bench_choice(Bench& bench);
+void bench_shards(Bench& bench);
 
 }  // namespace clearway::bench

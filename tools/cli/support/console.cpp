@@ -59,6 +59,7 @@ std::string first_that_fits(std::initializer_list<std::string> texts) {
 }  // namespace
 
 void start_log() {
+  spdlog::drop("clearway");  // of a process that was forked by one that has a log
   auto logger = spdlog::stderr_logger_mt("clearway");
   logger->set_pattern("%l: %v");
   spdlog::set_default_logger(std::move(logger));

@@ -208,6 +208,8 @@ def main():
     arguments = parser.parse_args()
     draw = random.Random(arguments.seed)
     cases = {"sweep": ["--engine", "sweep", "--clearance", "0.3", "--first-pose"],
+             "shard": ["--engine", "sweep", "--clearance", "0.3", "--profile", "0.3", "--shard",
+                       "2/3"],
              "grid": ["--engine", "grid", "--first-pose"],
              "kdtree": ["--engine", "kdtree"],
              "kdtree first pose": ["--engine", "kdtree", "--first-pose", "--between-poses"]}

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "clearway/found_place.hpp"
+#include "clearway/progress.hpp"
+#include "clearway/query.hpp"
+
+namespace clearway {
+
+struct MergeOptions {
+  int threads = 0;  ///< 0: all cores
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  bool overwrite = false;  ///< an existing result
+  bool resume = false;     ///< leaves a result of the same parts as it is
+  ProgressCallback progress = nullptr;
+  StopFlag stop = nullptr;
+};
+
+/// What the result says, as of SearchReport.
+struct MergeReport {
+  bool was_finished = false;  ///< the result was there already: it has the places
+  QueryParameters parameters;
+  std::uint32_t parts = 0;
+  std::uint64_t environment_points = 0, model_points = 0, poses = 0;
+  std::uint64_t colliding_points = 0, clearance_points = 0, profile_poses = 0;
+  std::optional<FoundPlace> first_place = {}, least_clearance = {}, least_profile = {};
+};
+
+/// Makes one result of all parts that searches with SearchOptions::shard wrote, in any order: the
+/// bytes that one search of everything writes. Throws InputError, naming the files, for parts of
+/// different questions, stores or numbers of parts, for one that is missing, there twice or
+/// damaged, and for what is no part; UsageError for an output that exists or is a part;
+/// ResourceError for a full disk or too little memory; Interrupted when asked to stop.
+MergeReport merge(const std::vector<std::filesystem::path>& parts,
+                  const std::filesystem::path& output, const MergeOptions& options = {});
+
+}  // namespace clearway

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace clearway {
+
+/// One of the parts that a query's work is divided into, each for a run of its own; merge() makes
+/// one result of all of them.
+struct Shard {
+  static constexpr std::uint32_t kMost = 1000;  ///< parts of a query
+
+  std::uint32_t number = 1;  ///< from 1 to count
+  std::uint32_t count = 1;
+
+  bool is_valid() const { return number >= 1 && number <= count && count <= kMost; }
+  friend bool operator==(const Shard&, const Shard&) = default;
+};
+
+/// "2/7"
+inline std::string to_string(const Shard& shard) {
+  return std::to_string(shard.number) + "/" + std::to_string(shard.count);
+}
+
+}  // namespace clearway

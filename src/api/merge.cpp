@@ -1,0 +1,59 @@
+#include "clearway/merge.hpp"
+
+#include "clearway/error.hpp"
+#include "core/util/callback_progress.hpp"
+#include "io/merge/merge_parts.hpp"
+#include "io/result/verify_result.hpp"
+#include "io/system/pending_file.hpp"
+#include "search/threads.hpp"
+
+namespace clearway {
+namespace {
+
+/// Whether the output is there, and intact: what it says follows from the question.
+bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress& progress) {
+  if (!std::filesystem::exists(output)) return false;
+  try {
+    const ResultReader result(output);
+    return result.header() == set.header() && !verify_result(result, progress);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+MergeReport report_of(const PartSet& set) {
+  MergeReport report;
+  report.parameters = set.header();
+  report.parts = static_cast<std::uint32_t>(set.parts().size());
+  report.environment_points = set.header().environment_points;
+  report.model_points = set.header().model_points;
+  report.poses = set.header().poses;
+  report.colliding_points = set.collisions();
+  report.clearance_points = set.clearances();
+  return report;
+}
+
+}  // namespace
+
+MergeReport merge(const std::vector<std::filesystem::path>& parts,
+                  const std::filesystem::path& output, const MergeOptions& options) {
+  refuse_overwriting(output, parts);
+  PendingFile pending(output, options.overwrite || options.resume);
+  CallbackProgress progress(options.progress, options.stop);
+  return in_threads(options.threads, [&] {
+    const PartSet set(parts);
+    MergeReport report = report_of(set);
+    report.was_finished = options.resume && is_merged(set, output, progress);
+    if (report.was_finished) return report;
+    if (!options.overwrite) pending.refuse_existing();
+    const MergedResult merged = merge_parts(set, pending.partial(), options.memory_bytes, progress);
+    pending.publish();
+    report.profile_poses = merged.profile_poses;
+    report.first_place = merged.first_place;
+    report.least_clearance = merged.least_clearance;
+    report.least_profile = merged.least_profile;
+    return report;
+  });
+}
+
+}  // namespace clearway

@@ -1,0 +1,256 @@
+#include "campaign/campaign_file.hpp"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include "campaign/file_text.hpp"
+#include "io/conflicts/json_text.hpp"
+
+namespace clearway::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<OptionKey> kModelKeys{{"unit", "--model-unit", ValueKind::kText},
+                                        {"spacing", "--model-spacing", ValueKind::kLength},
+                                        {"vertices", "--model-vertices", ValueKind::kFlag},
+                                        {"above", "--model-above", ValueKind::kLength}};
+const std::vector<OptionKey> kAxisKeys{{"forward", "--forward", ValueKind::kText},
+                                       {"up", "--up", ValueKind::kText}};
+const std::vector<OptionKey> kTrajectoryKeys{
+    {"format", "--trajectory-format", ValueKind::kText},
+    {"allow_non_rigid", "--allow-non-rigid", ValueKind::kFlag},
+    {"angles", "--angles", ValueKind::kList},
+    {"crs", "--trajectory-crs", ValueKind::kText},
+    {"datum", "--trajectory-datum", ValueKind::kText},
+    {"unit", "--trajectory-unit", ValueKind::kText},
+    {"lever_arm", "--lever-arm", ValueKind::kList}};
+const std::vector<OptionKey> kQueryKeys{{"first_pose", "--first-pose", ValueKind::kFlag},
+                                        {"clearance", "--clearance", ValueKind::kLength},
+                                        {"profile", "--profile", ValueKind::kLength},
+                                        {"between_poses", "--between-poses", ValueKind::kFlag},
+                                        {"strict", "--strict", ValueKind::kFlag}};
+const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
+                                           {"min_points", "--min-points", ValueKind::kCount},
+                                           {"split", "--split", ValueKind::kLength}};
+const std::vector<OptionKey> kSearchKeys{{"engine", "--engine", ValueKind::kText},
+                                         {"device", "--device", ValueKind::kText},
+                                         {"gpus", "--gpus", ValueKind::kList},
+                                         {"device_memory", "--device-memory", ValueKind::kSize}};
+const std::vector<OptionKey> kLimitKeys{{"memory", "--memory", ValueKind::kSize},
+                                        {"threads", "--threads", ValueKind::kCount}};
+
+/// A name becomes a folder of its own and a heading of the page.
+void check_name(const KeyReader& at, const std::string& name) {
+  constexpr std::size_t kMostBytes = 100;
+  const bool control = std::ranges::any_of(
+      name, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; });
+  if (name.empty() || name.size() > kMostBytes || name[0] == '.' || control ||
+      name.find('/') != std::string::npos) {
+    at.refuse("\"" + name +
+              "\" cannot name a folder: expected 1 to 100 bytes without \"/\" and control "
+              "characters, and no dot in front");
+  }
+}
+
+/// The plan is a text of UTF-8.
+void check_utf8(const KeyReader& at, const fs::path& path) {
+  if (valid_utf8(path.string()) != path.string()) {
+    at.refuse(valid_utf8(path.string()) + ": expected a name in UTF-8");
+  }
+}
+
+bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
+
+/// The files that match, by name.
+std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder) {
+  const std::string given = at.text();
+  const fs::path path = folder / given;
+  std::error_code unknown;
+  if (!is_pattern(given) || fs::exists(path, unknown)) {
+    if (!fs::exists(path, unknown)) at.refuse(path.string() + ": there is no such file");
+    return {path};
+  }
+  glob_t found{};
+  const int failed = ::glob(path.c_str(), GLOB_ERR, nullptr, &found);
+  std::vector<fs::path> files(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  ::globfree(&found);
+  if (failed == GLOB_ABORTED || failed == GLOB_NOSPACE) at.refuse(path.string() + ": cannot list");
+  if (files.empty()) at.refuse(path.string() + ": no file matches");
+  std::ranges::sort(files);
+  return files;
+}
+
+/// The entries of a member such as vehicles.truck: a file in short, or an object that has it.
+template <typename Kind>
+class EntryReader {
+ public:
+  EntryReader(fs::path folder, const char* file_key, std::vector<std::string> others)
+      : folder_(std::move(folder)), file_key_(file_key), known_(std::move(others)) {
+    known_.insert(known_.begin(), file_key);
+  }
+
+  template <typename Describe>
+  std::vector<Kind> read(const KeyReader& members, const Describe& describe) {
+    std::vector<Kind> out;
+    for (const KeyReader& member : members.members()) {
+      Kind kind{};
+      const bool in_short = member.value().is_string();
+      if (!in_short) member.allow(known_);
+      const KeyReader file = in_short ? member : member.at(file_key_);
+      describe(member, kind);
+      kind.key = file.key();
+      for (const fs::path& path : files_of(file, folder_)) {
+        kind.name = is_pattern(file.text()) ? path.stem().string() : member.name();
+        kind.file = fs::absolute(path).lexically_normal();
+        add(file, kind, out);
+      }
+    }
+    return out;
+  }
+
+ private:
+  void add(const KeyReader& at, const Kind& kind, std::vector<Kind>& out) {
+    check_name(at, kind.name);
+    check_utf8(at, kind.file);
+    const auto [other, is_new] = seen_.emplace(kind.name, kind.key);
+    if (!is_new) at.refuse("the name " + kind.name + " is that of " + other->second + " too");
+    out.push_back(kind);
+  }
+
+  fs::path folder_;
+  const char* file_key_;
+  std::vector<std::string> known_;
+  std::map<std::string, std::string> seen_;
+};
+
+std::size_t environment_of(const KeyReader& route, const std::vector<Entry>& environments) {
+  if (!route.has("environment")) {
+    if (environments.size() == 1) return 0;
+    route.refuse("environment is missing; it says which of the environments the route is in");
+  }
+  const KeyReader at = route.at("environment");
+  const auto found = std::ranges::find(environments, at.text(), &Entry::name);
+  if (found == environments.end()) at.refuse(at.text() + ": no environment has that name");
+  return static_cast<std::size_t>(found - environments.begin());
+}
+
+void read_entries(const KeyReader& file, const fs::path& folder, Campaign& campaign) {
+  EntryReader<Entry> environments(folder, "store", {});
+  campaign.environments =
+      environments.read(file.at("environments"), [](const KeyReader&, Entry&) {});
+  EntryReader<Vehicle> vehicles(folder, "model", names_of(kModelKeys, names_of(kAxisKeys, {})));
+  campaign.vehicles =
+      vehicles.read(file.at("vehicles"), [](const KeyReader& member, Vehicle& vehicle) {
+        vehicle.arguments = arguments_of(member, kModelKeys);
+        vehicle.axes = arguments_of(member, kAxisKeys);
+      });
+  EntryReader<Route> routes(folder, "trajectory", names_of(kTrajectoryKeys, {"environment"}));
+  campaign.routes = routes.read(file.at("routes"), [&](const KeyReader& member, Route& route) {
+    route.arguments = arguments_of(member, kTrajectoryKeys);
+    route.environment = environment_of(member, campaign.environments);
+  });
+}
+
+void read_radii(const KeyReader& radii, Campaign& campaign) {
+  std::set<std::string> seen;
+  for (const KeyReader& radius : radii.elements()) {
+    const std::string text = length_text(radius);
+    check_name(radius, text);
+    if (!seen.insert(text).second) radius.refuse(text + " stands twice");
+    campaign.radii.push_back({radius.key(), "--radius", "--radius=" + text});
+    campaign.radius_names.push_back(text);
+  }
+}
+
+void read_conflict_formats(const KeyReader& outputs, Campaign& campaign) {
+  static const std::set<std::string> kFormats{"csv", "json", "geojson", "gpkg", "bcf"};
+  if (!outputs.has("conflicts")) return;
+  const KeyReader list = outputs.at("conflicts");
+  for (const KeyReader& format : list.elements()) {
+    const std::string name = format.text();
+    if (!kFormats.contains(name)) format.refuse("expected csv, json, geojson, gpkg or bcf");
+    if (std::ranges::find(campaign.conflict_formats, name) != campaign.conflict_formats.end()) {
+      format.refuse(name + " stands twice");
+    }
+    campaign.conflict_formats.push_back(name);
+  }
+  const bool first_pose = std::ranges::any_of(
+      campaign.query, [](const Argument& one) { return one.option == "--first-pose"; });
+  if (!first_pose) list.refuse("needs \"first_pose\": true in query");
+}
+
+void read_outputs(const KeyReader& file, Campaign& campaign) {
+  if (file.has("outputs")) {
+    const KeyReader outputs = file.at("outputs");
+    outputs.allow(names_of(kConflictKeys, {"conflicts", "report"}));
+    campaign.conflicts = arguments_of(outputs, kConflictKeys);
+    read_conflict_formats(outputs, campaign);
+    campaign.report = outputs.has("report") && outputs.at("report").flag();
+  }
+  campaign.classes = arguments_of(file, {{"classes", "--classes", ValueKind::kList}});
+  if (!campaign.classes.empty() && !campaign.report) {
+    file.at("classes").refuse("needs \"report\": true in outputs");
+  }
+}
+
+void read_shard_seconds(const KeyReader& limits, Campaign& campaign) {
+  if (!limits.has("shard_seconds")) return;
+  const KeyReader at = limits.at("shard_seconds");
+  if (!at.value().is_number() || !(at.value().get<double>() > 0)) {
+    at.refuse("expected seconds above 0, as 600");
+  }
+  campaign.shard_seconds = at.value().get<double>();
+}
+
+/// Options that the script sets itself.
+bool is_of_script(const std::string& option) {
+  static constexpr std::array kOwn{"--array",      "--signal", "--requeue",
+                                   "--no-requeue", "--output", "--open-mode",
+                                   "--dependency", "--wrap",   "--chdir"};
+  const std::string name = option.substr(0, option.find('='));
+  return std::ranges::any_of(kOwn, [&](const char* own) { return name == own; });
+}
+
+void read_slurm(const KeyReader& list, Campaign& campaign) {
+  for (const KeyReader& option : list.elements()) {
+    const std::string text = option.text();
+    if (!text.starts_with("--") || text.find_first_of("\n\r") != std::string::npos) {
+      option.refuse("expected an option of sbatch, as \"--partition=long\"");
+    }
+    if (is_of_script(text)) option.refuse(text + ": the script sets it itself");
+    campaign.slurm.push_back(text);
+  }
+}
+
+}  // namespace
+
+Campaign read_campaign(const fs::path& path) {
+  const KeyReader file = KeyReader::parse(path, text_of_file(path));
+  file.allow({"name", "environments", "vehicles", "routes", "radii", "query", "classes", "outputs",
+              "limits", "slurm"});
+  Campaign campaign;
+  campaign.name = file.at("name").text();
+  check_name(file.at("name"), campaign.name);
+  read_entries(file, fs::absolute(path).parent_path(), campaign);
+  read_radii(file.at("radii"), campaign);
+  if (file.has("query")) {
+    file.at("query").allow(names_of(kQueryKeys, {}));
+    campaign.query = arguments_of(file.at("query"), kQueryKeys);
+  }
+  read_outputs(file, campaign);
+  if (file.has("limits")) {
+    file.at("limits").allow(names_of(kLimitKeys, names_of(kSearchKeys, {"shard_seconds"})));
+    campaign.search_limits = arguments_of(file.at("limits"), kSearchKeys);
+    campaign.limits = arguments_of(file.at("limits"), kLimitKeys);
+    read_shard_seconds(file.at("limits"), campaign);
+  }
+  if (file.has("slurm")) read_slurm(file.at("slurm"), campaign);
+  return campaign;
+}
+
+}  // namespace clearway::campaign

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace clearway::campaign {
+
+/// All of a small file. Throws ResourceError.
+std::string text_of_file(const std::filesystem::path& path);
+
+/// Writes the file under another name and renames it, so that readers see the old or the new one.
+/// Not synced: after a crash of the system it may be empty. Throws ResourceError.
+void replace_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace clearway::campaign

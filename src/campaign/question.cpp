@@ -1,0 +1,38 @@
+#include "campaign/question.hpp"
+
+#include <system_error>
+
+#include "clearway/error.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway::campaign {
+
+nlohmann::ordered_json question_of(const ResultHeader& header) {
+  nlohmann::ordered_json question{{"radius", header.radius},
+                                  {"first_pose", header.first_pose},
+                                  {"clearance", header.clearance},
+                                  {"profile", header.profile},
+                                  {"between_poses", header.between_poses},
+                                  {"tolerance", header.tolerance},
+                                  {"single_precision", header.float_precision},
+                                  {"environment_points", header.environment_points},
+                                  {"environment_hash", hash_text(header.environment_hash)},
+                                  {"model_points", header.model_points},
+                                  {"model_hash", hash_text(header.model_hash)},
+                                  {"poses", header.poses},
+                                  {"trajectory_hash", hash_text(header.trajectory_hash)}};
+  if (header.part) question["shard"] = to_string(header.part->shard);
+  return question;
+}
+
+bool answers(const std::filesystem::path& file, const nlohmann::ordered_json& question) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown)) return false;
+  try {
+    return question_of(ResultReader(file, Parts::kAccepted).header()) == question;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace clearway::campaign

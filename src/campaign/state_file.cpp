@@ -1,0 +1,88 @@
+#include "campaign/state_file.hpp"
+
+#include <array>
+#include <system_error>
+
+#include "campaign/file_text.hpp"
+#include "clearway/error.hpp"
+
+namespace clearway::campaign {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kStateName = "state.json";
+constexpr std::array kEndings{"begun", "done", "interrupted", "failed"};
+
+Ending ending_of(const std::string& name) {
+  for (std::size_t i = 0; i < kEndings.size(); ++i) {
+    if (name == kEndings[i]) return static_cast<Ending>(i);
+  }
+  return Ending::kBegun;
+}
+
+ordered_json place_of(const ordered_json& place) {
+  if (place.is_null()) return nullptr;
+  ordered_json out{{"pose", place.at("pose")}, {"chainage", place.at("chainage")}};
+  if (place.contains("distance")) out["distance"] = place.at("distance");
+  return out;
+}
+
+}  // namespace
+
+std::optional<TaskState> read_state(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(folder / kStateName, unknown)) return std::nullopt;
+  try {
+    const ordered_json json = ordered_json::parse(text_of_file(folder / kStateName));
+    TaskState state;
+    state.ending = ending_of(json.at("state").get<std::string>());
+    json.at("question_id").get_to(state.question_id);
+    json.at("outputs_id").get_to(state.outputs_id);
+    json.at("exit_code").get_to(state.exit_code);
+    json.at("message").get_to(state.message);
+    json.at("tries").get_to(state.tries);
+    json.at("seconds").get_to(state.seconds);
+    json.at("host").get_to(state.host);
+    json.at("time").get_to(state.time);
+    state.facts = json.at("facts");
+    return state;
+  } catch (const ordered_json::exception&) {
+    return std::nullopt;
+  } catch (const ResourceError&) {
+    return std::nullopt;
+  }
+}
+
+void write_state(const std::filesystem::path& folder, const TaskState& state) {
+  const ordered_json json{{"state", kEndings.at(static_cast<std::size_t>(state.ending))},
+                          {"exit_code", state.exit_code},
+                          {"message", state.message},
+                          {"tries", state.tries},
+                          {"seconds", state.seconds},
+                          {"host", state.host},
+                          {"time", state.time},
+                          {"question_id", state.question_id},
+                          {"outputs_id", state.outputs_id},
+                          {"facts", state.facts}};
+  replace_file(folder / kStateName,
+               json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+ordered_json task_facts(const std::filesystem::path& run_json) {
+  try {
+    const ordered_json run = ordered_json::parse(text_of_file(run_json));
+    ordered_json warnings = ordered_json::array();
+    for (const auto& warning : run.at("warnings")) warnings.push_back(warning.at("code"));
+    const ordered_json& profile = run.at("least_profile");
+    return {{"verdict", run.at("verdict")},
+            {"colliding_points", run.at("colliding_points")},
+            {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
+            {"first", place_of(run.at("first_place"))},
+            {"warnings", std::move(warnings)}};
+  } catch (const ordered_json::exception& error) {
+    throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());
+  }
+}
+
+}  // namespace clearway::campaign

@@ -1,0 +1,83 @@
+#include "campaign/task_state.hpp"
+
+#include <algorithm>
+
+#include "campaign/question.hpp"
+#include "clearway/error.hpp"
+#include "io/system/file_lock.hpp"
+
+namespace clearway::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+
+LockState task_lock(const fs::path& folder) {
+  std::error_code unknown;
+  if (!fs::exists(folder / kLockName, unknown)) return LockState::kFree;
+  try {
+    return lock_state(File::open_for_reading(folder / kLockName));
+  } catch (const ResourceError&) {
+    return LockState::kUnknown;
+  }
+}
+
+/// Of the plan's question, whatever its outputs.
+std::optional<TaskState> state_of(const Task& task, const fs::path& folder) {
+  std::optional<TaskState> state = read_state(folder);
+  if (state && state->question_id != task.question_id()) state.reset();
+  return state;
+}
+
+TaskStatus status_of(const std::optional<TaskState>& state, LockState lock) {
+  if (lock == LockState::kHeld) return TaskStatus::kRunning;
+  if (!state) return TaskStatus::kMissing;
+  switch (state->ending) {
+    case Ending::kFailed:
+      return TaskStatus::kFailed;
+    case Ending::kBegun:
+      return lock == LockState::kUnknown ? TaskStatus::kBegun : TaskStatus::kInterrupted;
+    default:
+      return TaskStatus::kInterrupted;  // of a finished one, outputs are missing or of another plan
+  }
+}
+
+}  // namespace
+
+const char* name_of(TaskStatus status) {
+  constexpr const char* kNames[]{"done", "running", "begun", "interrupted", "failed", "missing"};
+  return kNames[static_cast<std::size_t>(status)];
+}
+
+bool is_done(const Task& task, const fs::path& campaign, const std::optional<TaskState>& state) {
+  if (!state || state->ending != Ending::kDone || state->question_id != task.question_id() ||
+      state->outputs_id != task.outputs_id) {
+    return false;
+  }
+  const fs::path folder = campaign / task.folder();
+  std::error_code unknown;
+  return std::ranges::all_of(
+             task.outputs, [&](const auto& name) { return fs::exists(folder / name, unknown); }) &&
+         answers(folder / task.result(), task.question);
+}
+
+TaskLook look_at(const Task& task, const fs::path& campaign) {
+  const fs::path folder = campaign / task.folder();
+  std::optional<TaskState> state = state_of(task, folder);
+  for (;;) {
+    if (is_done(task, campaign, state)) return {TaskStatus::kDone, state};
+    const LockState lock = task_lock(folder);
+    if (lock == LockState::kHeld) return {TaskStatus::kRunning, state};
+    // What held the lock may have ended, or begun, between the two looks.
+    std::optional<TaskState> again = state_of(task, folder);
+    if (again == state) return {status_of(state, lock), state};
+    state = std::move(again);
+  }
+}
+
+bool may_succeed(const TaskLook& look) {
+  constexpr int kResource = 4;
+  if (look.status != TaskStatus::kFailed) return true;
+  return look.state->exit_code == kResource;
+}
+
+}  // namespace clearway::campaign

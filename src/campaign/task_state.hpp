@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "campaign/plan.hpp"
+#include "campaign/state_file.hpp"
+#include "io/system/file.hpp"
+
+namespace clearway::campaign {
+
+/// kBegun: by another process, or interrupted; the file system has no locks that tell.
+enum class TaskStatus { kDone, kRunning, kBegun, kInterrupted, kFailed, kMissing };
+inline constexpr TaskStatus kStatuses[]{TaskStatus::kDone,   TaskStatus::kRunning,
+                                        TaskStatus::kBegun,  TaskStatus::kInterrupted,
+                                        TaskStatus::kFailed, TaskStatus::kMissing};
+const char* name_of(TaskStatus status);
+
+/// A task as its folder says.
+struct TaskLook {
+  TaskStatus status = TaskStatus::kMissing;
+  std::optional<TaskState> state;  ///< of the last try of this plan
+  std::uint32_t shard = 0;         ///< whose look it is, where it stands for its run; 0: of none
+};
+
+/// campaign: its folder. Changes nothing.
+TaskLook look_at(const Task& task, const std::filesystem::path& campaign);
+
+/// Whether a try said so of this plan, and the result is complete and answers the task's question,
+/// and the outputs are there.
+bool is_done(const Task& task, const std::filesystem::path& campaign,
+             const std::optional<TaskState>& state);
+
+/// Whether another try may help: not after exit codes 2 and 3, and not after a crash.
+bool may_succeed(const TaskLook& look);
+
+/// What a process at work on the task holds locked, in the run's folder.
+inline constexpr const char* kLockName = "lock";
+
+}  // namespace clearway::campaign

@@ -1,0 +1,126 @@
+#include "io/merge/part_set.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "clearway/error.hpp"
+#include "io/result/compare_results.hpp"
+#include "io/system/input_error.hpp"
+#include "io/system/xxh64.hpp"
+
+namespace clearway {
+namespace {
+
+const Shard& shard_of(const ResultReader& part) { return part.header().part->shard; }
+
+std::string part_text(const ResultReader& part) {
+  return "part " + std::to_string(shard_of(part).number) + " of " +
+         std::to_string(shard_of(part).count);
+}
+
+ResultReader open_part(const std::filesystem::path& file) {
+  ResultReader part(file, Parts::kAccepted);
+  if (!part.header().part) {
+    refuse(part.name(), "is a whole result; expected a part, as clearway run --shard writes it");
+  }
+  return part;
+}
+
+std::string environment_text(const ResultHeader& header) {
+  return std::to_string(header.environment_points) + " points, hash " +
+         hash_text(header.environment_hash);
+}
+
+/// Why they are not parts of one result; empty where they are.
+std::string difference_of(const ResultReader& part, const ResultReader& other) {
+  const ResultHeader &a = part.header(), &b = other.header();
+  if (a.part->shard.count != b.part->shard.count) {
+    return "is " + part_text(part) + ", but " + other.name() + " is " + part_text(other);
+  }
+  if (environment_text(a) != environment_text(b)) {
+    return "is of another environment than " + other.name() + ": " + environment_text(a) +
+           ", not " + environment_text(b);
+  }
+  const auto differences = query_differences(a, b);
+  if (!differences.empty()) {
+    const QueryDifference& first = differences.front();
+    return "answers another question than " + other.name() + ": " + first.what + " is " + first.a +
+           ", not " + first.b;
+  }
+  ResultHeader as_other = a;
+  as_other.part = b.part;
+  if (as_other != b) return "answers another question than " + other.name();
+  if (a.part->division != b.part->division) {
+    return "divides the work otherwise than " + other.name() +
+           ": the stores differ, or the versions of clearway; run the parts with the same";
+  }
+  return "";
+}
+
+/// "2", "2, 5-7"; after many numbers "...".
+std::string numbers_text(const std::vector<std::uint32_t>& numbers) {
+  constexpr int kMostRanges = 10;
+  std::string text;
+  int ranges = 0;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    if (++ranges > kMostRanges) return text + ", ...";
+    text += (text.empty() ? "" : ", ") + std::to_string(numbers[i]);
+    if (last > i) text += "-" + std::to_string(numbers[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+void refuse_missing(const std::vector<ResultReader>& parts) {
+  const std::uint32_t count = shard_of(parts.front()).count;
+  std::vector<std::uint32_t> missing;
+  auto part = parts.begin();
+  for (std::uint32_t number = 1; number <= count; ++number) {
+    if (part != parts.end() && shard_of(*part).number == number) {
+      ++part;
+    } else {
+      missing.push_back(number);
+    }
+  }
+  if (missing.empty()) return;
+  throw InputError((missing.size() == 1 ? "part " : "parts ") + numbers_text(missing) + " of " +
+                   std::to_string(count) + (missing.size() == 1 ? " is missing" : " are missing") +
+                   "; " + parts.front().name() + " is " + part_text(parts.front()));
+}
+
+}  // namespace
+
+PartSet::PartSet(const std::vector<std::filesystem::path>& files) {
+  if (files.empty()) throw UsageError("no parts to merge");
+  for (const std::filesystem::path& file : files) {
+    parts_.push_back(open_part(file));
+    const std::string differs = difference_of(parts_.back(), parts_.front());
+    if (!differs.empty()) refuse(parts_.back().name(), differs);
+  }
+  std::ranges::stable_sort(parts_, {},
+                           [](const ResultReader& part) { return shard_of(part).number; });
+  const auto twice = std::ranges::adjacent_find(
+      parts_, {}, [](const ResultReader& part) { return shard_of(part).number; });
+  if (twice != parts_.end()) {
+    refuse((twice + 1)->name(), "is " + part_text(*twice) + ", as " + twice->name() + " is");
+  }
+  refuse_missing(parts_);
+  header_ = parts_.front().header();
+  header_.part.reset();
+}
+
+std::uint64_t PartSet::collisions() const {
+  std::uint64_t rows = 0;
+  for (const ResultReader& part : parts_) rows += part.collisions();
+  return rows;
+}
+
+std::uint64_t PartSet::clearances() const {
+  std::uint64_t rows = 0;
+  for (const ResultReader& part : parts_) rows += part.clearances();
+  return rows;
+}
+
+}  // namespace clearway

@@ -1,0 +1,299 @@
+from collections.abc import Callable, Iterable, Sequence
+from os import PathLike
+from pathlib import Path as _Path
+from typing import Any, ClassVar, Final, Literal, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_AnyPath = str | bytes | PathLike[str] | PathLike[bytes]
+_Doubles = NDArray[np.float64]
+_Sources = NDArray[np.uint64]
+_Poses = NDArray[np.uint32]
+_Axis = Literal["+x", "x", "-x", "+y", "y", "-y", "+z", "z", "-z"]
+_Progress = Callable[["ProgressUpdate"], Any]
+_Tell = Callable[["Message"], Any]
+
+class _Stop(Protocol):
+    def is_set(self) -> bool: ...
+
+__version__: str
+METRES_PER_MILLIMETRE: float
+METRES_PER_CENTIMETRE: float
+METRES_PER_INCH: float
+METRES_PER_FOOT: float
+
+class Error(Exception):
+    remedy: str | None
+    amount: float
+
+class UsageError(Error, ValueError): ...
+class InputError(Error): ...
+class ResourceError(Error): ...
+class Interrupted(Error): ...
+
+class Message:
+    severity: Final[Literal["note", "warning"]]
+    code: Final[str]
+    text: Final[str]
+    numbers: Final[dict[str, float]]
+class ProgressUpdate:
+    stage: Final[str]
+    done: Final[int]
+    total: Final[int]
+    unit: Final[str]
+    finished: Final[bool]
+
+class Box:
+    def __init__(self, lo: ArrayLike, hi: ArrayLike) -> None: ...
+    lo: Final[_Doubles]
+    hi: Final[_Doubles]
+class FoundPlace:
+    source: Final[int]
+    pose: Final[int]
+    xyz: Final[_Doubles]
+    distance: Final[float]
+class PoseLabels:
+    def __init__(self) -> None: ...
+    time: Final[_Doubles]
+    name: Final[list[str]]
+
+class ConvertReport:
+    was_finished: Final[bool]
+    points: Final[int]
+    cells: Final[int]
+    non_finite_points: Final[int]
+    absent_points: Final[int]
+    scale: Final[_Doubles]
+    offset: Final[_Doubles]
+    box: Final[Box | None]
+    largest_change: Final[float]
+    temporary_bytes: Final[int]
+    output_bytes: Final[int]
+    count_seconds: Final[float]
+    distribute_seconds: Final[float]
+    partition_seconds: Final[float]
+    confirm_seconds: Final[float]
+    busy_seconds: Final[dict[str, float]]
+    warnings: Final[list[Message]]
+
+class Store:
+    def __init__(self, path: _AnyPath) -> None: ...
+    def point_count(self) -> int: ...
+    def cell_count(self) -> int: ...
+    def box(self) -> Box: ...
+    def crs_wkt(self) -> str: ...
+    def length_unit(self) -> str: ...
+    path: Final[_Path]
+
+class Query:
+    model: Any  # any array is taken, and float64 given
+    poses: Any
+    radius: float
+    first_pose: bool
+    between_poses: bool
+    clearance: float
+    profile: float
+    tolerance: float
+    allow_non_rigid: bool
+    def __init__(
+        self, model: ArrayLike = ..., poses: ArrayLike = ..., radius: float = 0.0, *,
+        first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
+        profile: float = 0.0, tolerance: float = 0.0, allow_non_rigid: bool = False,
+    ) -> None: ...
+class QueryParameters:
+    radius: Final[float]
+    first_pose: Final[bool]
+    between_poses: Final[bool]
+    clearance: Final[float]
+    profile: Final[float]
+    tolerance: Final[float]
+class SearchSeconds:
+    total: Final[float]
+    context: Final[float]
+    context_wait: Final[float]
+    thin: Final[float]
+    field: Final[float]
+    plan: Final[float]
+    engine: Final[float]
+    search: Final[float]
+    read: Final[float]
+    upload: Final[float]
+    compute: Final[float]
+    collect: Final[float]
+    write: Final[float]
+    end_wait: Final[float]
+class ToleranceReport:
+    model_points_kept: Final[int]
+    poses_kept: Final[int]
+    resolved_by_bounds: Final[int]
+class EngineEstimate:
+    sweep_seconds: Final[float]
+    kdtree_seconds: Final[float]
+class DeviceEstimate:
+    cpu: Final[float]
+    cuda: Final[float]
+
+class SearchReport:
+    was_finished: Final[bool]
+    environment_points: Final[int]
+    model_points: Final[int]
+    poses: Final[int]
+    colliding_points: Final[int]
+    clearance_points: Final[int]
+    profile_poses: Final[int]
+    first_place: Final[FoundPlace | None]
+    least_clearance: Final[FoundPlace | None]
+    least_profile: Final[FoundPlace | None]
+    warnings: Final[list[Message]]
+    engine: Final[str]
+    device: Final[str]
+    device_name: Final[str]
+    engine_estimate: Final[EngineEstimate | None]
+    estimate: Final[DeviceEstimate | None]
+    shard_share: Final[float | None]
+    searches: Final[int]
+    tolerance: Final[ToleranceReport | None]
+    field_voxel: Final[float]
+    grid_cell: Final[float]
+    cells_total: Final[int]
+    cells_read: Final[int]
+    bytes_read: Final[int]
+    resumed_cells: Final[int]
+    resumed_poses: Final[int]
+    pages: Final[int]
+    page_bytes: Final[int]
+    slots: Final[int]
+    needed_host_bytes: Final[int]
+    pinned_bytes: Final[int]
+    peak_device_bytes: Final[int]
+    seconds: Final[SearchSeconds]
+class MergeReport:
+    was_finished: Final[bool]
+    parameters: Final[QueryParameters]
+    parts: Final[int]
+    environment_points: Final[int]
+    model_points: Final[int]
+    poses: Final[int]
+    colliding_points: Final[int]
+    clearance_points: Final[int]
+    profile_poses: Final[int]
+    first_place: Final[FoundPlace | None]
+    least_clearance: Final[FoundPlace | None]
+    least_profile: Final[FoundPlace | None]
+
+class Clearances:
+    source: Final[_Sources]
+    xyz: Final[_Doubles]
+    distance: Final[_Doubles]
+    pose: Final[_Poses]
+    def __len__(self) -> int: ...
+class Profile:
+    NO_POINT: ClassVar[int]
+    distance: Final[_Doubles]
+    source: Final[_Sources]
+    xyz: Final[_Doubles]
+    chainage: Final[_Doubles]
+    def __len__(self) -> int: ...
+
+class Result:
+    def __init__(self, path: _AnyPath) -> None: ...
+    def size(self) -> int: ...
+    def __len__(self) -> int: ...
+    def parameters(self) -> QueryParameters: ...
+    def environment_points(self) -> int: ...
+    def poses(self) -> int: ...
+    def source(self) -> _Sources: ...
+    def xyz(self) -> _Doubles: ...
+    def first_pose(self) -> _Poses | None: ...
+    def clearance(self) -> Clearances | None: ...
+    def profile(self) -> Profile | None: ...
+    def model_box(self) -> Box | None: ...
+class Conflict:
+    id: Final[int]
+    points: Final[int]
+    source: Final[int]
+    box: Final[Box]
+    centroid: Final[_Doubles]
+    first_pose: Final[int]
+    last_pose: Final[int]
+    chainage_from: Final[float]
+    chainage_to: Final[float]
+    least_distance: Final[float | None]
+    nearest_pose: Final[int | None]
+    nearest_source: Final[int | None]
+    encroachment: Final[float | None]
+    nearest_point: Final[_Doubles | None]
+    side: Final[str]
+    lateral: Final[float | None]
+    height: Final[float | None]
+    group: Final[int]
+class Conflicts:
+    listed: Final[list[Conflict]]
+    conflict_of: Final[_Poses]
+    colliding_points: Final[int]
+    groups: Final[int]
+    small_groups: Final[int]
+    small_points: Final[int]
+    path_length: Final[float]
+    longest_group: Final[float]
+    longest_group_points: Final[int]
+    def __len__(self) -> int: ...
+class ReportSummary:
+    clear: Final[bool]
+    bytes: Final[int]
+    conflicts: Final[Conflicts]
+    facts: Final[str]
+
+def read_model(
+    path: _AnyPath, *, spacing: float = 0.0, unit: float = 0.0, environment_unit: float = 1.0,
+    vertices_only: bool = False, above: float | None = None, messages: list[Message] | None = None,
+) -> _Doubles: ...
+def read_trajectory(
+    path: _AnyPath, *, format: str = "auto", allow_non_rigid: bool = False,
+    angle_unit: Literal["declared", "deg", "rad"] = "declared",
+    angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "",
+    default_crs: str = "", datum: str = "", metres_per_unit: float = 0.0,
+    environment_unit: float = 1.0, lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
+    messages: list[Message] | None = None, labels: PoseLabels | None = None,
+) -> _Doubles: ...
+def convert(
+    inputs: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, scale: float | None = None,
+    cell_points: int = 65536, regular_size: float | None = None, memory_bytes: int = 4294967296,
+    threads: int = 0, ignore_crs: bool = False, columns: Sequence[str] = (),
+    skip_unreadable: bool = False, strict: bool = False, overwrite: bool = False,
+    resume: bool = False, progress: _Progress | None = None, message: _Tell | None = None,
+    stop: _Stop | None = None,
+) -> ConvertReport: ...
+def search(
+    store: Store, query: Query, output: _AnyPath, *,
+    engine: Literal["auto", "sweep", "grid", "kdtree"] = "auto",
+    device: Literal["auto", "cpu", "cuda"] = "auto", gpus: Sequence[int] = (), threads: int = 0,
+    memory_bytes: int = 4294967296, device_memory_bytes: int = 0, field_voxel: float = 0.0,
+    grid_cell: float = 0.0, float_precision: bool = False, shard: tuple[int, int] | None = None, overwrite: bool = False,
+    resume: bool = False, strict: bool = False, input_warnings: Iterable[Message] = (),
+    end_gpus: bool = False, journal_interval_seconds: float = 5.0,
+    progress: _Progress | None = None, message: _Tell | None = None, stop: _Stop | None = None,
+) -> SearchReport: ...
+def merge(
+    parts: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, threads: int = 0,
+    memory_bytes: int = 4294967296, overwrite: bool = False, resume: bool = False,
+    progress: _Progress | None = None, stop: _Stop | None = None,
+) -> MergeReport: ...
+def find_conflicts(
+    result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,
+    split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x", up: _Axis = "+z",
+    model_box: Box | None = None, memory_bytes: int = 4294967296, threads: int = 0,
+    progress: _Progress | None = None, stop: _Stop | None = None,
+) -> Conflicts: ...
+def write_report(
+    result: Result, store: Store, model: ArrayLike, poses: ArrayLike, output: _AnyPath, *,
+    title: str = "", project: str = "", client: str = "", author: str = "", date: str = "",
+    result_name: str = "", environment_name: str = "", model_name: str = "",
+    trajectory_name: str = "", model_above: float | None = None, model_left_out: int = 0,
+    classes: Sequence[float] = (), max_points: int = 1000000, gap: float = 0.3,
+    min_points: int = 10, split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x",
+    up: _Axis = "+z", memory_bytes: int = 4294967296, threads: int = 0,
+    labels: PoseLabels | None = None, warnings: Iterable[Message] = (), overwrite: bool = False,
+    progress: _Progress | None = None, stop: _Stop | None = None,
+) -> ReportSummary: ...

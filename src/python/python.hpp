@@ -1,0 +1,90 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstddef>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "clearway/error.hpp"
+
+/// What the parts of the Python module share. They add no logic to the library: they turn Python's
+/// values into its own and back, and let other Python threads run while it works.
+namespace clearway::python {
+
+namespace py = pybind11;
+
+/// A text of the library. It may hold the name of a file in any encoding.
+py::str text(std::string_view bytes);
+
+/// str, bytes or os.PathLike, as Python's own open() takes it.
+std::filesystem::path path_of(const py::handle& object);
+
+/// A pathlib.Path.
+py::object to_python(const std::filesystem::path& path);
+
+/// One path, or several of them.
+std::vector<std::filesystem::path> paths_of(const py::handle& object);
+
+/// Runs `call` while other Python threads run too. It must not touch Python.
+template <typename Call>
+auto without_gil(Call call) {
+  // Not pybind11's guard: where Python is ending, taking the GIL unwinds this thread, which no
+  // destructor may do.
+  PyThreadState* const state = PyEval_SaveThread();
+  std::optional<std::invoke_result_t<Call>> result;
+  std::exception_ptr thrown;
+  try {
+    result.emplace(call());
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+  PyEval_RestoreThread(state);
+  if (thrown) std::rethrow_exception(thrown);
+  return std::move(*result);
+}
+
+/// A value of an enumeration by the name that Python has for it.
+template <typename Value>
+struct Named {
+  const char* name;
+  Value value;
+};
+
+/// Throws UsageError where the name is none of the table's.
+template <typename Value, std::size_t Size>
+Value value_of(const char* what, const Named<Value> (&table)[Size], const std::string& name) {
+  std::string known;
+  for (const auto& [other, value] : table) {
+    if (name == other) return value;
+    known += (known.empty() ? "" : ", ") + std::string(other);
+  }
+  throw UsageError(std::string(what) + " '" + name + "': expected one of " + known);
+}
+
+template <typename Value, std::size_t Size>
+const char* name_in(const Named<Value> (&table)[Size], Value value) {
+  for (const auto& [name, other] : table) {
+    if (other == value) return name;
+  }
+  return "unknown";
+}
+
+void add_watch();                           // watch.cpp
+void add_errors(py::module_& module);       // errors.cpp
+void add_values(py::module_& module);       // values.cpp
+void add_reports(py::module_& module);      // reports.cpp
+void add_inputs(py::module_& module);       // inputs.cpp
+void add_search(py::module_& module);       // search.cpp
+void add_merge(py::module_& module);        // merge.cpp
+void add_results(py::module_& module);      // results.cpp
+void add_findings(py::module_& module);     // findings.cpp
+void add_report_page(py::module_& module);  // report_page.cpp
+
+}  // namespace clearway::python

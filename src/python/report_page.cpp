@@ -1,0 +1,114 @@
+#include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+
+#include "clearway/report.hpp"
+#include "python/arrays.hpp"
+#include "python/findings.hpp"
+#include "python/store.hpp"
+#include "python/values.hpp"
+#include "python/watch.hpp"
+
+namespace clearway::python {
+namespace {
+
+using namespace py::literals;
+
+void add_summary(py::module_& module) {
+  py::class_<ReportSummary>(module, "ReportSummary", "What a report's page says.")
+      .def_readonly("clear", &ReportSummary::clear, "Whether no point collides.")
+      .def_readonly("bytes", &ReportSummary::bytes, "Of the page.")
+      .def_property_readonly(
+          "conflicts", [](const ReportSummary& s) { return to_python(s.conflicts); },
+          "Conflicts; conflict_of is empty.")
+      .def_property_readonly(
+          "facts", [](const ReportSummary& s) { return text(s.facts); },
+          "JSON: what the page says, without its points.")
+      .def("__repr__", [](const ReportSummary& s) {
+        return text(std::string(s.clear ? "<clear" : "<conflict") + ": a page of " +
+                    std::to_string(s.bytes) + " bytes>");
+      });
+}
+
+constexpr const char* kWriteReport =
+    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, warnings=(), overwrite=False, progress=None, stop=None)
+--
+
+Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view.
+
+Returns a ReportSummary.
+
+result, store, model, poses: those of the search.
+output: the page.
+title, project, client, author, date: for the head of the page. Nothing else depends on the time.
+result_name, environment_name, model_name, trajectory_name: names of the files, for people.
+model_above, model_left_out: what read_model() left out of the model's file, for the page to say.
+classes: one to three distances, metres, ascending: below these a point is hit, near, or to watch.
+max_points: environment points on the page at most.
+gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes them.
+labels: PoseLabels of read_trajectory().
+warnings: messages of the inputs and of the search, which the page shows.
+overwrite: an existing page.
+memory_bytes, threads, progress, stop: as search() takes them.)";
+
+void add_write_report(py::module_& module) {
+  module.def(
+      "write_report",
+      [](const Result& result, SharedStore& store, const py::object& model, const py::object& poses,
+         const py::object& output, std::string title, std::string project, std::string client,
+         std::string author, std::string date, std::string result_name,
+         std::string environment_name, std::string model_name, std::string trajectory_name,
+         std::optional<double> model_above, std::uint64_t model_left_out,
+         std::vector<double> classes, std::uint64_t max_points, double gap,
+         std::uint64_t min_points, double split, double chainage_start, const std::string& forward,
+         const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels,
+         const py::object& warnings, bool overwrite, py::object progress, py::object stop) {
+        ReportOptions options{std::move(title),
+                              std::move(project),
+                              std::move(client),
+                              std::move(author),
+                              std::move(date),
+                              std::move(result_name),
+                              std::move(environment_name),
+                              std::move(model_name),
+                              std::move(trajectory_name),
+                              model_above,
+                              model_left_out,
+                              std::move(classes),
+                              max_points,
+                              conflict_options(gap, min_points, split, chainage_start, forward, up,
+                                               std::nullopt, memory_bytes, threads),
+                              labels == nullptr ? PoseLabels{} : *labels,
+                              messages_of(warnings),
+                              overwrite};
+        Watch watch(std::move(progress), py::none(), std::move(stop));
+        watch.attach(options.conflicts);
+        return watch.run([&, to = path_of(output),
+                          points = points_of(points_array(model, "model"), "model"),
+                          path = poses_of(poses_array(poses, "poses"), "poses")] {
+          return in_turn(store, options.conflicts.stop, [&](const Store& own) {
+            return write_report(result, own, points, path, to, options);
+          });
+        });
+      },
+      "result"_a, "store"_a, "model"_a, "poses"_a, "output"_a, py::kw_only(), "title"_a = "",
+      "project"_a = "", "client"_a = "", "author"_a = "", "date"_a = "", "result_name"_a = "",
+      "environment_name"_a = "", "model_name"_a = "", "trajectory_name"_a = "",
+      "model_above"_a = py::none(), "model_left_out"_a = 0, "classes"_a = std::vector<double>{},
+      "max_points"_a = ReportOptions{}.max_points, "gap"_a = ConflictOptions{}.gap,
+      "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
+      "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z",
+      "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "labels"_a = py::none(),
+      "warnings"_a = py::tuple(), "overwrite"_a = false, "progress"_a = py::none(),
+      "stop"_a = py::none(), kWriteReport);
+}
+
+}  // namespace
+
+void add_report_page(py::module_& module) {
+  add_summary(module);
+  add_write_report(module);
+}
+
+}  // namespace clearway::python

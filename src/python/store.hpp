@@ -1,0 +1,47 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <utility>
+
+#include "clearway/error.hpp"
+#include "clearway/progress.hpp"
+#include "clearway/query.hpp"
+#include "clearway/store.hpp"
+#include "python/arrays.hpp"
+
+namespace clearway::python {
+
+/// A store remembers which of its cells it has checked, so that calls on it take turns.
+struct SharedStore {
+  explicit SharedStore(const std::filesystem::path& path) : store(path) {}
+
+  Store store;
+  std::timed_mutex turn;
+};
+
+/// Calls `call` with the store, alone. Without the GIL. Throws Interrupted where it is stopped
+/// while it waits.
+template <typename Call>
+auto in_turn(SharedStore& shared, StopFlag stop, Call call) {
+  std::unique_lock lock(shared.turn, std::defer_lock);
+  while (!lock.try_lock_for(std::chrono::milliseconds(50))) {
+    if (*stop) throw Interrupted("stopped before the store was free");
+  }
+  return call(std::as_const(shared.store));
+}
+
+/// A Query whose model and poses are NumPy arrays.
+struct ArrayQuery {
+  QueryParameters parameters;
+  Doubles model, poses;  ///< as points_array() and poses_array() have them
+  bool allow_non_rigid = false;
+};
+
+/// With copies of model and poses, so that Python may change them meanwhile.
+Query query_of(const ArrayQuery& query);
+
+}  // namespace clearway::python

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "clearway/box.hpp"
+#include "clearway/progress.hpp"
+#include "python/python.hpp"
+
+/// Small values of the library in Python, and how they are shown.
+namespace clearway::python {
+
+py::list to_list(const std::vector<Message>& messages);
+
+/// None or messages that the library gave.
+std::vector<Message> messages_of(const py::handle& object);
+
+/// Appends to a list; None: nowhere.
+void append_to(const py::handle& list, const std::vector<Message>& messages);
+
+/// "; 2 warnings: no-poses, steps", or nothing.
+std::string warning_words(const std::vector<Message>& warnings);
+
+}  // namespace clearway::python

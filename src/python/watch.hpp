@@ -1,0 +1,91 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "clearway/progress.hpp"
+#include "python/python.hpp"
+
+namespace clearway::python {
+
+/// A ProgressUpdate that outlives its call.
+struct KeptProgress {
+  std::string stage, unit;
+  std::uint64_t done = 0, total = 0;
+  bool finished = false;
+};
+
+/// A long call of the library, watched from Python. The work is done on a thread of its own. The
+/// calling thread alone runs Python: every 50 ms it tells the callbacks what is new, looks at the
+/// stop flag, and lets Python handle signals, so that Ctrl-C raises KeyboardInterrupt. What is
+/// raised meanwhile stops the work, which ends in order, and then leaves run().
+class Watch {
+ public:
+  /// Callables, or None; stop: None, or an object with is_set() such as threading.Event.
+  Watch(py::object progress, py::object message, py::object stop);
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+  template <typename Options>
+  void attach(Options& options) {
+    options.progress = [this](const ProgressUpdate& update) { keep(update); };
+    options.stop = &stopped_;
+    if constexpr (requires { options.message; }) {
+      options.message = [this](const Message& message) { keep(message); };
+    }
+  }
+
+  /// What `work` returns or throws. It must not touch Python.
+  template <typename Work>
+  auto run(Work work) {
+    std::optional<std::invoke_result_t<Work>> result;
+    std::exception_ptr thrown;
+    run_thread([&] {
+      try {
+        result.emplace(work());
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+    });
+    if (raised_) throw py::error_already_set(*std::exchange(raised_, std::nullopt));
+    if (thrown) std::rethrow_exception(thrown);
+    return std::move(*result);
+  }
+
+ private:
+  struct News {
+    std::vector<KeptProgress> progress = {};
+    std::vector<Message> messages = {};
+    bool done = false;
+  };
+
+  void keep(const ProgressUpdate& update);
+  void keep(const Message& message);
+  void run_thread(const std::function<void()>& work);
+  void finish();
+  News next_news();
+  void tell(const News& news);
+  void look();
+  /// Calls what may raise; the first error is kept and stops the work.
+  template <typename Call>
+  void guarded(Call call);
+
+  const py::object progress_, message_, stop_;
+  std::atomic<bool> stopped_ = false;
+  std::optional<py::error_already_set> raised_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  News news_;  // guarded by the mutex
+};
+
+}  // namespace clearway::python

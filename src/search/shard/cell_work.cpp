@@ -1,0 +1,98 @@
+#include "search/shard/cell_work.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sweep/field/model_field.hpp"
+#include "core/sweep/sweep_filter.hpp"
+#include "core/sweep/tolerance.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "cpu/cell_search.hpp"
+#include "stream/plan.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::uint64_t kFieldBytes = std::uint64_t{16} << 20;
+
+/// Blocks that are looked at: many of each cell where there are few cells, as their errors do not
+/// even out then.
+constexpr std::size_t kBlocks = 400'000, kLeastBlocksOfCell = 32;
+
+/// In the unit of the estimate: of a cell that is read, and of a block with one pose.
+constexpr double kCell = 1, kPose = 64;
+
+/// One filter for all machines and budgets: that of a search may be coarser, or on a GPU.
+class WorkFilter {
+ public:
+  WorkFilter(const PackedCloud& cloud, const Query& query, const QueryTrees& trees, int threads)
+      : field_(trees.model, search_radius(query),
+               {.reach = std::max(query.clearance, query.profile),
+                .most_bytes = kFieldBytes,
+                .by_need = true},
+               threads),
+        filter_(query, trees.motion, trees.model, field_, cloud, threads) {}
+
+  const SweepFilter& get() const { return filter_; }
+
+ private:
+  ModelField field_;
+  SweepFilter filter_;
+};
+
+/// A pose costs less where there are many: most points collide, or are dismissed, at the first
+/// ones. The exponent is measured (docs/design/campaign.md).
+double work_of_poses(std::uint64_t poses) {
+  const double root = std::sqrt(static_cast<double>(poses));
+  return root * std::sqrt(root);  // to the power of 3/4
+}
+
+/// The poses that a search has to look at, block by block.
+double work_of(const PackedCloud& cloud, const SweepFilter& filter, const PlannedCell& planned,
+               std::size_t most_blocks) {
+  const Cell& cell = cloud.cells()[planned.cell];
+  const std::size_t first = std::size_t{planned.cell} * cloud.blocks_per_cell();
+  const std::size_t blocks = divide_up(cell.count, kBlockPoints);
+  const std::size_t looks = std::min(blocks, most_blocks);
+  std::vector<std::uint32_t> kept;
+  SweepStatistics not_counted;
+  double work = 0;
+  for (std::size_t i = 0; i < looks; ++i) {
+    const std::size_t block = (2 * i + 1) * blocks / (2 * looks);
+    const QuantumBox box = decode_block_box(cell.box, cloud.blocks()[first + block]);
+    if (filter.narrow(position_box(cloud.quantisation(), box), planned.nodes, kept, not_counted)) {
+      continue;  // it collides as a whole
+    }
+    work += work_of_poses(pose_count(filter.motion(), kept));
+  }
+  return kCell + kPose * work * static_cast<double>(blocks) / static_cast<double>(looks);
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
+                                     const QueryTrees& trees, int threads) {
+  std::vector<std::uint64_t> work(cloud.cells().size());
+  const WorkFilter filter(cloud, query, trees, threads);
+  const std::vector<PlannedCell> cells = plan(cloud, filter.get());
+  const std::size_t most_blocks =
+      std::max(kLeastBlocksOfCell, kBlocks / std::max<std::size_t>(cells.size(), 1));
+  const ParallelScope scope;
+  const auto look = piece_of(scope, [&](std::size_t i) {
+    work[cells[i].cell] =
+        static_cast<std::uint64_t>(work_of(cloud, filter.get(), cells[i], most_blocks));
+  });
+  scope.begin();
+  tbb::task_arena(threads).execute([&] { tbb::parallel_for(std::size_t{0}, cells.size(), look); });
+  return work;
+}
+
+std::uint64_t cell_work_bytes(const PackedCloud& cloud) {
+  constexpr std::uint64_t kCellBytes = 128;  // with its motion nodes
+  return kFieldBytes + kFieldBytes / 4 + kCellBytes * cloud.cells().size();
+}
+
+}  // namespace clearway

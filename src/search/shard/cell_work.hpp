@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "search/query_trees.hpp"
+
+namespace clearway {
+
+/// Of every cell an estimate of the work that a search has with it, in no unit; 0 where the model
+/// comes nowhere near. Follows from the store's index and the query alone, by operations that give
+/// the same on every machine. Reads no points. threads: at least 1.
+std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
+                                     const QueryTrees& trees, int threads);
+
+/// Memory that it takes beside the trees, bytes.
+std::uint64_t cell_work_bytes(const PackedCloud& cloud);
+
+}  // namespace clearway

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clearway/query.hpp"
+#include "clearway/shard.hpp"
+#include "io/result/result.hpp"
+#include "io/store/store_reader.hpp"
+
+namespace clearway {
+
+/// The cells of one part of a query. Every cell of the store is in exactly one part, those that no
+/// pose reaches too: so it does not matter which of them an engine would plan.
+class ShardCells {
+ public:
+  /// threads: at least 1. Throws ResourceError where the memory is too little.
+  ShardCells(const StoreReader& store, const Query& query, const Shard& shard, int threads,
+             std::uint64_t memory_bytes);
+
+  bool contains(std::uint32_t cell) const { return own_[cell]; }
+  const ResultPart& part() const { return part_; }
+  /// Its estimated work over the mean of all parts.
+  double share() const { return share_; }
+
+ private:
+  std::vector<bool> own_;
+  ResultPart part_;
+  double share_ = 0;
+};
+
+}  // namespace clearway

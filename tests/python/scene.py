@@ -1,0 +1,56 @@
+"""A small scene for the tests of the Python module, with its answer by brute force."""
+
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import clearway
+import numpy as np
+
+RADIUS = 0.25
+
+
+def poses_along_x(count, step):
+    poses = np.tile(np.eye(4), (count, 1, 1))
+    poses[:, 0, 3] = step * np.arange(count)
+    return poses
+
+
+def first_poses(points, model, poses, radius):
+    """By point the first pose that touches it; -1: none."""
+    first = np.full(len(points), -1)
+    for i in reversed(range(len(poses))):
+        moved = model @ poses[i, :3, :3].T + poses[i, :3, 3]
+        distances = np.linalg.norm(points[:, None, :] - moved[None, :, :], axis=2).min(axis=1)
+        first[distances < radius] = i
+    return first
+
+
+class SceneTest(unittest.TestCase):
+    """2,000 points, 20 model points, 30 poses, in a folder of its own that is the working folder."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp(prefix="clearway-python-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        random = np.random.default_rng(17)
+        cls.points = np.round(random.uniform((-1, -2, -1), (7, 2, 1), (2000, 3)), 3)
+        cls.model = random.uniform(-0.5, 0.5, (20, 3))
+        cls.poses = poses_along_x(30, 0.2)
+        np.savetxt(cls.folder / "scan.xyz", cls.points, "%.3f")
+        clearway.convert(cls.folder / "scan.xyz", cls.folder / "site.h5")
+
+    def query(self, **parameters):
+        return clearway.Query(self.model, self.poses, RADIUS, **parameters)
+
+    def search(self, name="out.h5", query=None, **options):
+        """Writes the result anew."""
+        store = clearway.Store(self.folder / "site.h5")
+        output = self.folder / name
+        return clearway.search(store, query or self.query(), output, overwrite=True, **options)
+
+    def slow_query(self):
+        """Takes engine kdtree minutes."""
+        model = np.random.default_rng(1).uniform(-3, 3, (200_000, 3))
+        return clearway.Query(model, poses_along_x(20_000, 1e-4), 1e-5)

@@ -1,0 +1,207 @@
+#!/usr/bin/python3
+"""What the Python module finds, and what it gives back. search_test.py, with the module on the path."""
+
+import os
+import unittest
+from pathlib import Path
+
+import clearway
+import numpy as np
+from scene import RADIUS, SceneTest, first_poses, poses_along_x
+
+
+class FindsWhatBruteForceFinds(SceneTest):
+    def setUp(self):
+        self.first = first_poses(self.points, self.model, self.poses, RADIUS)
+        self.expected = np.flatnonzero(self.first >= 0)
+        self.assertGreater(len(self.expected), 50)
+
+    def test_every_engine(self):
+        for engine in ("auto", "sweep", "kdtree", "grid"):
+            with self.subTest(engine):
+                report = self.search(engine=engine, device="cpu", threads=2)
+                result = clearway.Result(self.folder / "out.h5")
+                np.testing.assert_array_equal(result.source(), self.expected)
+                self.assertEqual(report.colliding_points, len(self.expected))
+                self.assertEqual(len(result), result.size())
+                self.assertEqual(report.device, "cpu")
+                if engine != "auto":
+                    self.assertEqual(report.engine, engine)
+
+    def test_gpu(self):
+        try:
+            report = self.search(engine="sweep", device="cuda")
+        except clearway.ResourceError as error:
+            self.assertEqual(error.remedy, "cpu_device")
+            self.skipTest(str(error))
+        self.assertEqual(report.device, "cuda")
+        np.testing.assert_array_equal(clearway.Result(self.folder / "out.h5").source(),
+                                      self.expected)
+
+    def test_columns(self):
+        self.search(query=self.query(first_pose=True, clearance=0.5, profile=0.5))
+        result = clearway.Result(self.folder / "out.h5")
+        source, first = result.source(), result.first_pose()
+        self.assertEqual((source.dtype, first.dtype), (np.uint64, np.uint32))
+        np.testing.assert_array_equal(first, self.first[source])
+        self.assertEqual(result.xyz().shape, (len(source), 3))
+        np.testing.assert_allclose(result.xyz(), self.points[source], atol=1e-9)
+        clearances = result.clearance()
+        near = clearances.distance < RADIUS
+        np.testing.assert_array_equal(clearances.source[near], source)
+        self.assertEqual(clearances.xyz.shape, (len(clearances), 3))
+        self.assertEqual(clearances.pose.dtype, np.uint32)
+        profile = result.profile()
+        self.assertEqual(len(profile), len(self.poses))
+        np.testing.assert_allclose(profile.chainage, 0.2 * np.arange(30))
+        has_point = profile.source != clearway.Profile.NO_POINT
+        np.testing.assert_array_equal(np.isfinite(profile.distance), has_point)
+        self.assertEqual(result.parameters().clearance, 0.5)
+        self.assertEqual((result.poses(), result.environment_points()), (30, 2000))
+        np.testing.assert_allclose(result.model_box().lo, self.model.min(axis=0))
+
+    def test_absent_columns_are_none(self):
+        self.search()
+        result = clearway.Result(self.folder / "out.h5")
+        self.assertIsNone(result.first_pose())
+        self.assertIsNone(result.clearance())
+        self.assertIsNone(result.profile())
+
+    def test_an_empty_result(self):
+        query = clearway.Query(self.model, poses_along_x(2, 0.1) + [[0, 0, 0, 50], [0] * 4, [0] * 4,
+                                                                     [0] * 4], 0.1, first_pose=True,
+                               clearance=0.2)
+        report = self.search(query=query)
+        result = clearway.Result(self.folder / "out.h5")
+        self.assertEqual(result.source().shape, (0,))
+        self.assertEqual(result.xyz().shape, (0, 3))
+        self.assertEqual(result.first_pose().shape, (0,))
+        self.assertEqual(len(result.clearance()), 0)  # asked for, and nothing is near: not None
+        self.assertIn("out-of-reach", [w.code for w in report.warnings])
+        self.assertIn("out-of-reach", repr(report))
+
+    def test_arrays_outlive_their_result(self):
+        self.search()
+        result = clearway.Result(self.folder / "out.h5")
+        source, xyz = result.source(), result.xyz()
+        del result
+        os.remove(self.folder / "out.h5")
+        np.testing.assert_array_equal(source, self.expected)
+        xyz += 1  # they are the caller's
+        source[:] = 0
+
+    def test_shards(self):
+        query = self.query(first_pose=True, clearance=0.5, profile=0.5)
+        self.search("whole.h5", query)
+        parts = [self.folder / f"part{i}.h5" for i in range(1, 4)]
+        for i, part in enumerate(parts, 1):
+            self.search(part.name, query, shard=(i, 3))
+        with self.assertRaises(clearway.InputError) as caught:
+            clearway.Result(parts[0])
+        self.assertEqual(caught.exception.remedy, "merge")
+        report = clearway.merge(reversed(parts), self.folder / "merged.h5", overwrite=True)
+        self.assertEqual((report.parts, report.colliding_points), (3, len(self.expected)))
+        self.assertEqual((self.folder / "merged.h5").read_bytes(),
+                         (self.folder / "whole.h5").read_bytes())
+        self.assertFalse(report.was_finished)
+        again = clearway.merge(parts, self.folder / "merged.h5", resume=True)
+        self.assertTrue(again.was_finished)
+        with self.assertRaises(clearway.InputError):
+            clearway.merge(parts[1:], self.folder / "merged.h5", overwrite=True)
+        for shard in ((0, 3), (4, 3)):
+            with self.assertRaises(clearway.UsageError):
+                self.search("none.h5", query, shard=shard)
+
+    def test_conflicts(self):
+        self.search(query=self.query(first_pose=True))
+        result = clearway.Result(self.folder / "out.h5")
+        found = clearway.find_conflicts(result, self.poses, gap=0.3, min_points=5)
+        self.assertEqual(len(found.conflict_of), len(result))
+        for conflict in found.listed:
+            of = found.conflict_of == conflict.id
+            self.assertEqual(of.sum(), conflict.points)
+            np.testing.assert_allclose(result.xyz()[of].mean(axis=0), conflict.centroid)
+            np.testing.assert_array_equal(result.xyz()[of].min(axis=0), conflict.box.lo)
+        self.assertEqual(sum(c.points for c in found.listed) + found.small_points, len(result))
+        with self.assertRaises(clearway.InputError):
+            clearway.find_conflicts(result, self.poses[1:])
+
+    def test_report_page(self):
+        self.search(query=self.query(first_pose=True))
+        summary = clearway.write_report(
+            clearway.Result(self.folder / "out.h5"), clearway.Store(self.folder / "site.h5"),
+            self.model, self.poses, self.folder / "out.html", title="<Tunnel>", overwrite=True)
+        self.assertFalse(summary.clear)
+        page = (self.folder / "out.html").read_text()
+        self.assertTrue("<title>&lt;Tunnel></title>" in page)
+        self.assertEqual(summary.bytes, len(page.encode()))
+
+
+class Stores(SceneTest):
+    def test_what_a_store_says(self):
+        store = clearway.Store(self.folder / "site.h5")
+        self.assertEqual(store.point_count(), 2000)
+        np.testing.assert_allclose(store.box().lo, self.points.min(axis=0))
+        np.testing.assert_allclose(store.box().hi, self.points.max(axis=0))
+        self.assertEqual(store.crs_wkt(), "")
+        self.assertEqual(store.length_unit(), "unknown")
+        self.assertEqual(store.path, self.folder / "site.h5")
+
+    def test_conversion_by_any_path(self):
+        scan, store = self.folder / "scan.xyz", self.folder / "again.h5"
+        for inputs in (scan, str(scan), os.fsencode(scan), [scan], (str(scan),)):
+            report = clearway.convert(inputs, store, overwrite=True)
+            self.assertEqual((report.points, report.was_finished), (2000, False))
+        self.assertEqual(store.read_bytes(), (self.folder / "site.h5").read_bytes())
+        self.assertTrue(clearway.convert(scan, store, resume=True).was_finished)
+
+    def test_names_that_are_no_utf8(self):
+        name = os.fsencode(self.folder) + b"/sch\xf6n.h5"
+        clearway.convert(self.folder / "scan.xyz", name)
+        self.assertEqual(clearway.Store(name).path, Path(os.fsdecode(name)))
+        self.assertEqual(clearway.Store(os.fsdecode(name)).point_count(), 2000)
+        with self.assertRaisesRegex(clearway.InputError, r"sch\\xf6n"):
+            clearway.Result(name)
+
+    def test_a_path_with_a_zero(self):
+        with self.assertRaises(ValueError):
+            clearway.Store("a\0b")
+        with self.assertRaises(TypeError):
+            clearway.Store(3)
+
+    def test_files_opened_twice(self):
+        self.search()
+        one, two = (clearway.Result(self.folder / "out.h5") for _ in range(2))
+        np.testing.assert_array_equal(one.source(), two.source())
+        del one
+        self.assertEqual(two.xyz().shape[1], 3)
+        stores = [clearway.Store(self.folder / "site.h5") for _ in range(3)]
+        self.assertEqual({s.point_count() for s in stores}, {2000})
+
+
+class Inputs(SceneTest):
+    def test_model_and_trajectory(self):
+        np.savetxt(self.folder / "model.xyz", self.model, "%.17g")
+        np.testing.assert_array_equal(clearway.read_model(self.folder / "model.xyz"), self.model)
+        above = clearway.read_model(self.folder / "model.xyz", above=0.0)
+        np.testing.assert_array_equal(above, self.model[self.model[:, 2] >= 0])
+        np.savetxt(self.folder / "path.txt", self.poses[:, :3].reshape(-1, 12), "%.17g")
+        read = clearway.read_trajectory(self.folder / "path.txt")
+        np.testing.assert_array_equal(read, self.poses)
+
+    def test_labels_and_messages(self):
+        lines = [f"{10 + i} {i} 0 0 0 0 0 1" for i in range(3)]
+        (self.folder / "path.tum").write_text("\n".join(lines))
+        labels, messages = clearway.PoseLabels(), []
+        poses = clearway.read_trajectory(self.folder / "path.tum", format="tum", labels=labels,
+                                         messages=messages)
+        self.assertEqual(poses.shape, (3, 4, 4))
+        np.testing.assert_array_equal(labels.time, [10, 11, 12])
+        for message in messages:
+            self.assertEqual((message.severity, message.code), ("note", ""))
+        with self.assertRaisesRegex(clearway.UsageError, "format 'tun': expected one of auto"):
+            clearway.read_trajectory(self.folder / "path.tum", format="tun")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,130 @@
+#!/usr/bin/python3
+"""The type stubs and the docstrings name what the module has."""
+
+import ast
+import inspect
+import re
+import unittest
+from pathlib import Path
+
+import clearway
+
+STUB = Path(clearway.__file__).with_name("__init__.pyi")
+PLAIN = {"__init__", "__len__"}  # special methods that a stub names
+
+
+def public(names):
+    return {name for name in names if not name.startswith("_")}
+
+
+def assigned(body):
+    return {node.target.id: node for node in body if isinstance(node, ast.AnnAssign)}
+
+
+def value(node):
+    """As repr() has it; lists as tuples, since both are taken alike."""
+    found = ast.literal_eval(node)
+    return repr(tuple(found) if isinstance(found, list) else found)
+
+
+def parameters(function, skip=0):
+    """[(name, default or None, keyword only)] of a stub's function."""
+    args = function.args
+    plain = args.args[skip:]
+    defaults = [None] * (len(plain) - len(args.defaults)) + args.defaults
+    found = [(a.arg, d, False) for a, d in zip(plain, defaults)]
+    found += [(a.arg, d, True) for a, d in zip(args.kwonlyargs, args.kw_defaults)]
+    return [(name, None if default is None else value(default), only)
+            for name, default, only in found]
+
+
+def documented(function):
+    """The same of the signature that help() shows."""
+    shown = []
+    for p in inspect.signature(function).parameters.values():
+        default = None if p.default is p.empty else repr(p.default)
+        shown.append((p.name, default, p.kind == p.KEYWORD_ONLY))
+    return shown
+
+
+def taken(call):
+    """The same of what the compiled function takes, from its message about wrong arguments."""
+    try:
+        call(not_a_parameter=1)
+    except TypeError as error:
+        line = re.search(r"^ +1\. (.*)$", str(error), re.M)[1]
+    line = re.sub(r" -> .*| at 0x[0-9a-f]+", "", line[line.index("("):])
+    node = ast.parse(f"def f{line}: ...").body[0]
+    return [(name, default, only) for name, default, only in parameters(node)
+            if name != "self"]
+
+
+class Stubs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.stub = ast.parse(STUB.read_text(encoding="utf-8")).body
+        cls.classes = {n.name: n for n in cls.stub if isinstance(n, ast.ClassDef)}
+        cls.functions = {n.name: n for n in cls.stub if isinstance(n, ast.FunctionDef)}
+
+    def test_names_of_the_module(self):
+        named = public({*self.classes, *self.functions, *assigned(self.stub)})
+        self.assertEqual(named, set(clearway.__all__))
+        self.assertEqual(named, public(dir(clearway._clearway)))
+        self.assertTrue(STUB.with_name("py.typed").exists())
+        self.assertRegex(clearway.__version__, r"^\d+\.\d+\.\d+$")
+
+    def test_members_of_classes(self):
+        for name, node in self.classes.items():
+            if name.startswith("_"):
+                continue
+            with self.subTest(name):
+                methods = {n.name for n in node.body if isinstance(n, ast.FunctionDef)}
+                named = public({*methods, *assigned(node.body)}) | (methods & PLAIN)
+                there = vars(getattr(clearway, name))
+                has = public(there) | (set(there) & PLAIN)
+                has -= {"__init__"} if "__init__" not in methods and not self.makes(name) else set()
+                self.assertEqual(named, has)
+
+    @staticmethod
+    def makes(name):
+        """Whether objects of the class can be made."""
+        try:
+            getattr(clearway, name)()
+        except TypeError as error:
+            return "No constructor defined" not in str(error)
+        except Exception:  # an Error asks for nothing
+            return False
+        return not issubclass(getattr(clearway, name), Exception)
+
+    def test_properties_are_final(self):
+        for name, node in self.classes.items():
+            for member, annotation in assigned(node.body).items():
+                value = vars(getattr(clearway, name))[member] if not name.startswith("_") else None
+                if isinstance(value, property):
+                    final = ast.unparse(annotation.annotation).startswith("Final[")
+                    self.assertEqual(final, value.fset is None, f"{name}.{member}")
+
+    def test_parameters_of_functions(self):
+        for name, node in self.functions.items():
+            with self.subTest(name):
+                function = getattr(clearway, name)
+                self.assertEqual(documented(function), parameters(node))
+                self.assertEqual(taken(function), parameters(node))
+
+    def test_parameters_of_query(self):
+        init = next(n for n in self.classes["Query"].body if getattr(n, "name", "") == "__init__")
+        self.assertEqual([p[0] for p in taken(clearway.Query)],
+                         [p[0] for p in parameters(init, skip=1)])
+
+    def test_every_function_is_documented(self):
+        for name in self.functions:
+            text = inspect.getdoc(getattr(clearway, name))
+            for parameter, *_ in parameters(self.functions[name])[1:]:
+                self.assertRegex(text, rf"(?m)\b{parameter}\b", f"{name}: {parameter}")
+        for name in self.classes:
+            if not name.startswith("_"):
+                self.assertTrue(inspect.getdoc(getattr(clearway, name)), name)
+
+
+if __name__ == "__main__":
+    unittest.main()

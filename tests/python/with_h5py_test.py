@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+"""The module beside h5py in one process, and what it leaves behind."""
+
+import importlib.util
+import resource
+import subprocess
+import sys
+import threading
+import unittest
+
+import clearway
+import numpy as np
+from scene import SceneTest
+
+READ_WITH_BOTH = """
+import {first}, {second}
+import gc, sys
+import numpy as np
+with h5py.File(sys.argv[1]) as file:
+    result = clearway.Result(sys.argv[1])  # while h5py has it open
+    assert np.array_equal(file["collisions/source"][:], result.source())
+    other = h5py.File(sys.argv[1])  # and the other way round
+    assert np.array_equal(other["collisions/xyz"][:], result.xyz())
+assert len(result.first_pose()) == len(result)
+del result
+gc.collect()
+assert np.array_equal(other["collisions/source"][:], clearway.Result(sys.argv[1]).source())
+try:
+    h5py.File(sys.argv[2])
+except OSError:
+    pass
+try:
+    clearway.Result(sys.argv[2])
+except clearway.InputError:
+    pass
+print("read", len(other["collisions/source"]))
+"""
+
+
+@unittest.skipUnless(importlib.util.find_spec("h5py"), "h5py is not installed")
+class BesideH5py(SceneTest):
+    def setUp(self):
+        self.search(query=self.query(first_pose=True))
+        self.result = self.folder / "out.h5"
+        (self.folder / "bad.h5").write_bytes(self.result.read_bytes()[:-100])
+
+    def test_both_orders_of_import(self):
+        for first, second in (("h5py", "clearway"), ("clearway", "h5py")):
+            with self.subTest(first=first):
+                script = READ_WITH_BOTH.format(first=first, second=second)
+                done = subprocess.run(
+                    [sys.executable, "-c", script, self.result, self.folder / "bad.h5"],
+                    capture_output=True, text=True, check=False)
+                size = clearway.Result(self.result).size()
+                self.assertEqual((done.stdout, done.stderr), (f"read {size}\n", ""))
+
+    def test_both_at_the_same_time(self):
+        import h5py
+        expected, wrong = clearway.Result(self.result).source(), []
+
+        def read(call):
+            for _ in range(40):
+                if not np.array_equal(call(), expected):
+                    wrong.append(call)
+
+        def with_h5py():
+            with h5py.File(self.result) as file:
+                return file["collisions/source"][:]
+
+        threads = [threading.Thread(target=read, args=(call,)) for call in
+                   (with_h5py, lambda: clearway.Result(self.result).source()) * 2]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertFalse(wrong)
+
+
+class LeavesNothingBehind(SceneTest):
+    def test_many_small_reads(self):
+        poses = clearway.read_trajectory(self.write_path())
+        self.search(query=self.query(first_pose=True, clearance=1.0, profile=1.0))
+        query = self.query()
+
+        def read():
+            result = clearway.Result(self.folder / "out.h5")
+            result.source(), result.xyz(), result.first_pose(), result.clearance().xyz
+            result.profile().xyz, result.model_box()
+            clearway.Store(self.folder / "site.h5").box()
+            query.poses = poses.astype("float32")
+            try:
+                clearway.Store("there/is/none")
+            except clearway.ResourceError:
+                pass
+
+        def grown_over(repeats):
+            before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+            for _ in range(repeats):
+                read()
+            return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+
+        grown_over(100)
+        # KiB; leaking the smallest column of each call would be more.
+        self.assertLess(grown_over(1500), 1000)
+
+    def write_path(self):
+        path = self.folder / "path.txt"
+        np.savetxt(path, np.tile(self.poses, (20, 1, 1)).reshape(-1, 16), "%.17g")
+        return path
+
+
+if __name__ == "__main__":
+    unittest.main()

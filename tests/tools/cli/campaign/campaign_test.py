@@ -1,0 +1,280 @@
+"""`clearway campaign`: what it refuses and how it names the key, that plans are stable, what a task
+does again and what it does not, exit codes, and the page.
+
+campaign_test.py PROGRAM
+"""
+
+import fcntl
+import json
+import os
+import pathlib
+import re
+import signal
+import struct
+import subprocess
+import tempfile
+import time
+
+from campaign_scene import PROGRAM, expect, make_scene, outcome, program, status, write_campaign
+
+OFD_SETLK, WRITE_LOCK, UNLOCK = 37, 1, 2  # of Linux
+
+
+class Test:
+    def __init__(self, work):
+        self.work = work
+        make_scene(work, vehicles=3, routes=2)
+        self.path = work / "out"
+
+    def plan(self, *options, path=None, **changes):
+        return outcome("campaign", "plan", write_campaign(self.work, **changes), "-o",
+                       path or self.path, *options)
+
+    def refused(self, message, **changes):
+        done = self.plan(path=self.work / "refused", **changes)
+        expect(done.returncode == 3 and message in done.stderr,
+               f"{changes}: expected 3 and {message}: {done.returncode}: {done.stderr}")
+        expect(not (self.work / "refused").exists(), "a refused plan was written")
+
+
+def errors_name_the_key(test):
+    model = "vehicles/v00.ply"
+    test.refused("colour: unknown key; expected one of name,", colour="red")
+    test.refused("vehicles.truck.colour: unknown key",
+                 vehicles={"truck": {"model": model, "colour": "red"}})
+    test.refused("vehicles.truck.model: is missing", vehicles={"truck": {"unit": "mm"}})
+    test.refused("vehicles.truck.model: " + str(test.work / "no.ply") + ": there is no such file",
+                 vehicles={"truck": {"model": "no.ply"}})
+    test.refused("vehicles.truck: " + str(test.work / "no*.ply") + ": no file matches",
+                 vehicles={"truck": "no*.ply"})
+    test.refused("vehicles.truck.unit: parsec", vehicles={"truck": {"model": model,
+                                                                    "unit": "parsec"}})
+    test.refused("vehicles.truck.spacing: -1", vehicles={"truck": {"model": model,
+                                                                   "spacing": -1}})
+    test.refused("vehicles.truck.above: expected a length",
+                 vehicles={"truck": {"model": model, "above": True}})
+    test.refused("vehicles.all: the name v00 is that of vehicles.v00 too",
+                 vehicles={"v00": model, "all": "vehicles/*.ply"})
+    test.refused("vehicles.a/b: \"a/b\" cannot name a folder", vehicles={"a/b": model})
+    test.refused("vehicles.truck.model: ", vehicles={"truck": {"model": "site.h5"}})
+    test.refused("environments.hall: ", environments={"hall": model})
+    test.refused("routes.north.environment: plant: no environment has that name",
+                 routes={"north": {"trajectory": "routes/r00.txt", "environment": "plant"}})
+    test.refused("routes.north.angles: grad: expected deg or rad",
+                 routes={"north": {"trajectory": "routes/r00.txt", "angles": ["grad"]}})
+    test.refused("radii[1]: zero: expected", radii=[0.1, "zero"])
+    test.refused("radii[1]: 0.1 stands twice", radii=[0.1, 0.1])
+    test.refused("radii: is empty", radii=[])
+    test.refused("query.first_pose: expected true or false", query={"first_pose": 1})
+    test.refused("query.clearance: -0.3", query={"first_pose": True, "clearance": -0.3})
+    test.refused("outputs.conflicts: needs \"first_pose\"", query={})
+    test.refused("outputs.conflicts[0]: expected csv", outputs={"conflicts": ["xls"]})
+    test.refused("classes: needs \"report\"", classes=[0.1, 0.3])
+    test.refused("classes: 0.3: needs a clearance", classes=[0.1, 0.3], outputs={"report": True})
+    test.refused("limits.threads: expected a whole number", limits={"threads": "two"})
+    test.refused("limits.memory: much", limits={"memory": "much"})
+    test.refused("slurm[0]: --array=1: the script sets it itself", slurm=["--array=1"])
+    file = test.work / "campaign.json"
+    for text, message in [('{"name": "a", "vehicles": {"b": "c", "b": "d"}}',
+                           "vehicles.b: stands twice"),
+                          ('{"name": ', "is no JSON: parse error at line 1"),
+                          ("[1]", "expected one JSON object")]:
+        file.write_text(text)
+        done = outcome("campaign", "plan", file, "-o", test.work / "refused")
+        expect(done.returncode == 3 and message in done.stderr, f"{text}: {done.stderr}")
+
+
+def plans_are_stable(test):
+    done = test.plan(radii=[0.1, "25cm"])
+    expect(done.stdout == "Test: 12 tasks (3 vehicles, 2 routes, 2 radii)\n",
+           done.stdout + done.stderr)
+    text = (test.path / "plan.json").read_text()
+    tasks = json.loads(text)["tasks"]
+    expect([task["task"] for task in tasks] == list(range(12)), "numbers")
+    expect(tasks[3]["folder"] == "runs/v00/r01/25cm", tasks[3]["folder"])
+    expect(tasks[3]["question"]["radius"] == 0.25, "a radius with a unit")
+    again = test.plan(radii=[0.1, "25cm"])
+    expect(again.returncode == 0 and "is this plan already" in again.stderr, again.stderr)
+    expect((test.path / "plan.json").read_text() == text, "another plan of the same inputs")
+    other = test.plan()
+    expect(other.returncode == 2 and "--force replaces it" in other.stderr, other.stderr)
+    expect((test.path / "plan.json").read_text() == text, "a refused plan was written")
+    expect(test.plan("--force").returncode == 0, "--force")
+
+
+def by_hand(test):
+    """The commands of the plan are those of a user."""
+    task = json.loads((test.path / "plan.json").read_text())["tasks"][0]
+    (test.work / "hand").mkdir()
+    for command in task["commands"]:
+        done = outcome(*command, cwd=test.work / "hand")
+        expect(done.returncode == 0, done.stderr)
+    for name in ["out.h5", "conflicts.csv"]:
+        expect((test.work / "hand" / name).read_bytes() ==
+               (test.path / task["folder"] / name).read_bytes(), name + " by hand differs")
+
+
+def tasks_are_idempotent(test):
+    expect(program("campaign", "status", test.path, "--missing") == "0-5\n", "before")
+    expect(outcome("campaign", "run", test.path, "--task", "1,4-5").returncode == 0, "run")
+    expect(program("campaign", "status", test.path, "--missing") == "0,2-3\n", "after three")
+    expect(outcome("campaign", "run", test.path, "--all", "--jobs", "2").returncode == 0, "--all")
+    look = status(test.path)
+    expect(look["done"] == 6 and all(one["tries"] == 1 for one in look["list"]), f"{look}")
+    files = {file: file.stat().st_mtime_ns for file in test.path.rglob("*")}
+    done = outcome("campaign", "run", test.path, "--all")
+    expect(done.returncode == 0 and done.stderr == "", done.stderr)
+    expect(files == {file: file.stat().st_mtime_ns for file in test.path.rglob("*")},
+           "finished tasks wrote something")
+    (test.path / "runs/v00/r00/0.1/conflicts.csv").unlink()
+    expect(program("campaign", "status", test.path, "--missing") == "0\n", "an output is gone")
+    expect(outcome("campaign", "run", test.path, "--all").returncode == 0, "again")
+    expect("is the finished result" in (test.path / "runs/v00/r00/0.1/log.txt").read_text(),
+           "the result was searched again")
+
+
+def one_at_a_time(test):
+    folder = test.path / "runs/v01/r00/0.1"
+    (folder / "conflicts.csv").unlink()
+    with open(folder / "lock", "r+b") as lock:
+        lock_whole = struct.pack("hhqqi4x", WRITE_LOCK, 0, 0, 0, 0)
+        fcntl.fcntl(lock, OFD_SETLK, lock_whole)
+        done = outcome("campaign", "run", test.path, "--task", "2")
+        expect(done.returncode == 4 and "another process is at work" in done.stderr, done.stderr)
+        expect(status(test.path)["list"][2]["status"] == "running", "a lock is held")
+    expect(status(test.path)["list"][2]["status"] == "interrupted", "the lock is free")
+    expect(outcome("campaign", "run", test.path, "--task", "2").returncode == 0, "then")
+
+
+def new_plans_keep_results(test):
+    """Of another question results are made anew; of other outputs only these."""
+    results = {file: file.stat().st_ino for file in test.path.glob("runs/*/*/*/out.h5")}
+    test.plan("--force", outputs={"conflicts": ["csv", "json"]})
+    expect(status(test.path)["interrupted"] == 6, "an output is missing everywhere")
+    expect(outcome("campaign", "run", test.path, "--all").returncode == 0, "outputs")
+    expect(results == {file: file.stat().st_ino for file in results}, "results were made again")
+    expect(len(list(test.path.glob("runs/*/*/*/conflicts.json"))) == 6, "no new outputs")
+    test.plan("--force", query={"first_pose": True, "clearance": 0.2, "profile": 0.3})
+    expect(status(test.path)["missing"] == 6, "the question is another one")
+    expect(outcome("campaign", "run", test.path, "--all", "--jobs", "2").returncode == 0, "anew")
+    expect(status(test.path)["done"] == 6, "not all are done")
+
+
+def failures(test):
+    model = test.work / "vehicles/v02.ply"
+    sound = model.read_bytes()
+    test.plan("--force", radii=[0.2])
+    model.write_bytes(sound[:-50])
+    done = outcome("campaign", "run", test.path, "--all", "--jobs", "2")
+    expect(done.returncode == 3, f"exit code {done.returncode}")
+    look = status(test.path)
+    expect(look["done"] == 4 and look["failed"] == 2, f"{look}")
+    expect(look["list"][4]["exit_code"] == 3 and "v02.ply" in look["list"][4]["message"] and
+           look["list"][4]["tries"] == 1, f"{look['list'][4]}")
+    expect(program("campaign", "status", test.path, "--failed") == "4-5\n", "--failed")
+    expect(program("campaign", "status", test.path, "--missing") == "", "--missing")
+    model.write_bytes(sound.replace(b"element vertex 300", b"element vertex 299")[:len(sound)])
+    done = outcome("campaign", "run", test.path, "--task", "4")
+    expect(done.returncode == 3, "a changed input gave a result")
+    expect(status(test.path)["list"][4]["status"] == "failed", "not of the planned question")
+    model.write_bytes(sound)
+
+
+def signals(test):
+    """TERM ends the tasks, and the campaign with 5; those that had not begun are missing."""
+    path = test.work / "stopped"
+    test.plan(path=path)
+    process = subprocess.Popen([PROGRAM, "campaign", "run", path, "--all"],
+                               stderr=subprocess.PIPE, text=True)
+    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    while not children.read_text() and process.poll() is None:
+        pass
+    process.send_signal(signal.SIGTERM)
+    said = process.communicate()[1]
+    expect(process.returncode == 5, f"exit code {process.returncode}: {said}")
+    look = status(path)
+    expect(look["running"] == 0 and look["failed"] == 0 and look["missing"] > 0, f"{look}")
+    done = outcome("campaign", "run", path, "--all")
+    expect(done.returncode == 0 and status(path)["done"] == 6, done.stderr)
+
+
+def crashes(test):
+    """A task that is killed is tried again, at most twice; one that crashes is not."""
+    for which, tries, code in [("KILL", 3, 4), ("SEGV", 1, 128 + signal.SIGSEGV)]:
+        path = test.work / which
+        test.plan(path=path)
+        process = subprocess.Popen([PROGRAM, "campaign", "run", path, "--all"],
+                                   stderr=subprocess.PIPE, text=True)
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        while process.poll() is None:
+            try:
+                for child in map(int, children.read_text().split()):
+                    os.kill(child, getattr(signal, "SIG" + which))
+            except (FileNotFoundError, ProcessLookupError):
+                pass
+        expect(process.returncode == code, f"{which}: exit code {process.returncode}")
+        failed = [one for one in status(path)["list"] if one["status"] == "failed"]
+        expect(failed and all(one["tries"] == tries and one["exit_code"] == code
+                              for one in failed), f"{which}: {failed}")
+        expect((program("campaign", "status", path, "--failed") == "") == (which == "KILL"),
+               "a crash is tried again")
+
+
+def page(test):
+    expect(program("campaign", "report", test.path, "--date", "today", "--force") == "", "report")
+    text = (test.path / "index.html").read_text()
+    expect(text.count("<td class=\"failed\"") == 2, "failed cells")
+    expect(re.search(r"4 of 6 runs find a conflict\. 2 of 6 runs have no result\.", text), "answer")
+    expect("http" not in re.sub(r"http-equiv", "", text), "the page needs a network")
+    facts = json.loads(program("campaign", "report", test.path, "--force", "--json"))
+    expect(facts["conflict"] == 4 and facts["failed"] == 2 and facts["clear"] == 0, f"{facts}")
+    embedded = json.loads(re.search(r'id="facts">(.*)</script>', text)[1])
+    expect(embedded["runs"] == facts["runs"], "the facts on the page")
+    points = json.loads((test.path / "runs/v00/r00/0.2/run.json").read_text())
+    expect(facts["runs"][0]["colliding_points"] == points["colliding_points"], "points")
+    for link in re.findall(r'href="([^"]*)"', text):
+        expect((test.path / link).exists(), link + ": a link leads nowhere")
+    test.plan(path=test.work / "new", radii=[0.1], outputs={"report": True, "conflicts": ["bcf"]},
+              query={"first_pose": True, "clearance": 0.3}, classes=["5cm", 0.1, 0.3])
+    program("campaign", "report", test.work / "new")
+    text = (test.work / "new/index.html").read_text()
+    expect("No conflict so far. 6 of 6 runs have no result." in text, "nothing is done")
+    expect("<td class=\"clear\"" not in text, "a missing run is shown as clear")
+    expect(outcome("campaign", "report", test.work / "new").returncode == 2, "a page is there")
+    expect(outcome("campaign", "run", test.work / "new", "--task", "1").returncode == 0, "task 1")
+    facts = json.loads(program("campaign", "report", test.work / "new", "--force", "--json"))
+    run = facts["runs"][1]
+    expect(run["page"] == "runs/v00/r01/0.1/report.html" and facts["not_done"] == 5, f"{facts}")
+    expect("Test: v00 on r01" in (test.work / "new" / run["page"]).read_text(), "its title")
+    expect((test.work / "new/runs/v00/r01/0.1/conflicts.bcf").exists(), "BCF")
+    expect(run["least"]["distance"] < 0.3, f"{run}")
+
+
+def misuse(test):
+    done = outcome("campaign", "run", test.path)
+    expect(done.returncode == 2 and "--all" in done.stderr, done.stderr)
+    done = outcome("campaign", "run", test.path, "--task", "6")
+    expect(done.returncode == 2 and "tasks 0 to 5" in done.stderr, done.stderr)
+    done = outcome("campaign", "run", test.path, "--task", "5-3")
+    expect(done.returncode == 2 and "such as 3,7-9" in done.stderr, done.stderr)
+    done = outcome("campaign", "status", test.work)
+    expect(done.returncode == 2 and "holds no campaign" in done.stderr, done.stderr)
+    plan = test.path / "plan.json"
+    sound = plan.read_text()
+    plan.write_text(sound[:-20])
+    done = outcome("campaign", "status", test.path)
+    expect(done.returncode == 3 and "is damaged" in done.stderr, done.stderr)
+    plan.write_text(sound)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        test = Test(pathlib.Path(folder))
+        for check in [errors_name_the_key, plans_are_stable, tasks_are_idempotent, by_hand,
+                      one_at_a_time, new_plans_keep_results, failures, signals, crashes, page, misuse]:
+            begin = time.monotonic()
+            check(test)
+            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)
+
+
+main()

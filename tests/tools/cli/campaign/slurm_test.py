@@ -1,0 +1,208 @@
+"""A campaign on a real Slurm of one node: 24 runs, of which two are divided into shards. One shard is
+killed and one gets TERM, and both are queued again; one run fails for good; the merges come once,
+after all of these, and the report once, after all.
+
+slurm_test.py PROGRAM
+"""
+
+import json
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import time
+
+from campaign_scene import expect, make_scene, program, status, write_campaign
+from one_node_slurm import OneNodeSlurm, what_is_missing
+
+VEHICLES, SLOW, BROKEN_VEHICLE = 24, (3, 8), 13
+MAX_ARRAY = 20  # more tasks become two arrays
+LIMITS = {"memory": "300M", "threads": 1, "shard_seconds": 0.18}  # divides the slow ones alone
+
+
+def children_of(number):
+    """Processes that a process started."""
+    found = pathlib.Path(f"/proc/{number}/task/{number}/children")
+    try:
+        return [int(word) for word in found.read_text().split()]
+    except FileNotFoundError:
+        return []
+
+
+def command_line(number):
+    try:
+        return pathlib.Path(f"/proc/{number}/cmdline").read_bytes().split(b"\0")
+    except FileNotFoundError:
+        return []
+
+
+def task_process(folder, task):
+    """Of `clearway campaign run DIR --task N`, or None."""
+    for entry in pathlib.Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        words = command_line(int(entry.name))
+        if b"campaign" in words and str(folder).encode() in words and \
+                words[-3:-1] == [b"--task", str(task).encode()]:
+            return int(entry.name)
+    return None
+
+
+def held(folder, task):
+    """The process of a task, its command stopped so that it cannot end; None where it has."""
+    process = task_process(folder, task)
+    try:
+        os.kill(children_of(process)[0], signal.SIGSTOP)
+        return process
+    except (ProcessLookupError, IndexError, TypeError):
+        return None
+
+
+def has_pending(number, which):
+    text = pathlib.Path(f"/proc/{number}/status").read_text()
+    return int(text.split("ShdPnd:")[1].split()[0], 16) >> (which - 1) & 1
+
+
+class Campaign:
+    def __init__(self, path, slurm):
+        self.path, self.slurm = path, slurm
+        self.tasks = [json.loads(line.rstrip(",")) for line in
+                      (path / "plan.json").read_text().splitlines()[1:-1]]
+        shards = [task["task"] for task in self.tasks if "shard" in task]
+        self.merges = [task["task"] for task in self.tasks if "shards" in task]
+        expect(len(self.merges) == len(SLOW), f"{len(self.merges)} runs are divided")
+        self.killed, self.stopped = shards[0], shards[-1]
+        self.broken = next(task["task"] for task in self.tasks
+                           if task["vehicle"] == f"v{BROKEN_VEHICLE:02}")
+        self.disturbed = set()
+
+    def disturb(self, look):
+        """Kills one task while it runs, and has Slurm send TERM to another one."""
+        for task, how in [(self.killed, self.kill), (self.stopped, self.stop)]:
+            running = look["list"][task]["status"] == "running"
+            if task not in self.disturbed and running and how(task):
+                self.disturbed.add(task)
+
+    def kill(self, task):
+        process = held(self.path, task)
+        if process is None:
+            return False
+        os.kill(process, signal.SIGKILL)
+        return True
+
+    def stop(self, task):
+        """As Slurm does 60 seconds before the end: to the script alone."""
+        process = held(self.path, task)
+        if process is None:
+            return False
+        command = children_of(process)[0]
+        self.slurm.run("scancel", "--batch", "--signal=TERM", self.element(task))
+        last = time.monotonic() + 20
+        while not has_pending(command, signal.SIGTERM):
+            expect(time.monotonic() < last, "the script does not pass TERM on")
+            time.sleep(0.02)
+        os.kill(command, signal.SIGCONT)
+        return True
+
+    def element(self, task):
+        """Of a job array."""
+        before = 2 if task in self.merges else 0  # jobs
+        return f"{self.jobs[before + task // MAX_ARRAY]}_{task % MAX_ARRAY}"
+
+    def log(self, task):
+        return (self.path / f"slurm/{self.element(task)}.log").read_text()
+
+    def submit(self):
+        said = self.slurm.run(self.path / "submit.sh")
+        self.jobs = said.split("tasks: job ")[1].split(";")[0].split(":")
+        expect(len(self.jobs) == 3, said)
+
+    def wait(self, seconds):
+        last = time.monotonic() + seconds
+        done_before = set()
+        while True:
+            queue = self.slurm.run("squeue", "-h", "-r", "-o", "%i %T").splitlines()
+            look = status(self.path)
+            done = {one["task"] for one in look["list"] if one["status"] == "done"}
+            expect(done_before <= done, "a task that was done is no longer")
+            for task in done - done_before:
+                expect(f"{self.element(task)} PENDING" not in queue, f"{task} is done and waits")
+            done_before = done
+            self.disturb(look)
+            if not queue:
+                return look
+            expect(time.monotonic() < last, "it takes too long: " + "; ".join(queue))
+            time.sleep(0.1)
+
+
+def check_logs(campaign):
+    """What the scripts said."""
+    killed, stopped, broken = campaign.killed, campaign.stopped, campaign.broken
+    text = {task: campaign.log(task) for task in range(len(campaign.tasks))}
+    expect("queued again" in text[killed], "the killed task was not queued again")
+    expect("exit code 5, queued again" in text[stopped], "TERM: " + text[stopped])
+    expect("exit code 3" in text[broken] and "queued again" not in text[broken],
+           "the broken task: " + text[broken])
+    others = [task for task in text if task not in (killed, stopped)]
+    again = [task for task in others if "queued again" in text[task]]
+    expect(not again, f"queued again without a reason: {again}")
+
+
+def check_merges(campaign, look):
+    """Once, after all tasks that are none."""
+    states = [campaign.path / one["folder"] / "state.json" for one in look["list"]]
+    last = max(state.stat().st_mtime for task, state in enumerate(states)
+               if task not in campaign.merges)
+    for merge in campaign.merges:
+        expect(look["list"][merge]["tries"] == 1, f"merged twice: {look['list'][merge]}")
+        result = states[merge].parent / "out.h5"
+        expect(result.stat().st_mtime >= last, "a merge came before the end of the others")
+        run = json.loads((states[merge].parent / "run.json").read_text())
+        expect(run["verdict"] == "conflict" and run["was_finished"], f"{run}")
+
+
+def check_end(campaign, look):
+    path = campaign.path
+    expect(look["done"] == len(campaign.tasks) - 1 and look["failed"] == 1, f"at the end: {look}")
+    broken = look["list"][campaign.broken]
+    expect(broken["exit_code"] == 3 and broken["tries"] == 1, f"the broken task: {broken}")
+    expect(look["list"][campaign.stopped]["tries"] == 2, "the stopped task was not tried twice")
+    expect(look["list"][campaign.killed]["tries"] == 2, "the killed task was not tried twice")
+    page = (path / "index.html").read_text()
+    expect("failed (3)" in page, "the page hides the failure")
+    reports = (path / "slurm/report.log").read_text().count("index.html")
+    expect(reports == 1, f"{reports} reports")
+    newest = max(file.stat().st_mtime for file in path.glob("runs/**/state.json"))
+    expect((path / "index.html").stat().st_mtime >= newest, "the report came before the end")
+    expect(program("campaign", "status", path, "--missing") == "", "something is missing")
+    expect(program("campaign", "status", path, "--failed") == f"{campaign.broken}\n", "--failed")
+    check_merges(campaign, look)
+    check_logs(campaign)
+
+
+def main():
+    missing = what_is_missing()
+    if missing:
+        print("skipped: not installed: " + ", ".join(missing))
+        sys.exit(77)
+    begin = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        make_scene(work, vehicles=VEHICLES, routes=1, slow=SLOW)
+        path = work / "a campaign"
+        program("campaign", "plan", write_campaign(work, limits=LIMITS), "-o", path)
+        broken = work / f"vehicles/v{BROKEN_VEHICLE:02}.ply"
+        broken.write_bytes(broken.read_bytes()[:-100])
+        with OneNodeSlurm(work / "slurm", max_array=MAX_ARRAY) as slurm:
+            campaign = Campaign(path, slurm)
+            missing = program("campaign", "status", path, "--missing")
+            expect(missing == f"0-{len(campaign.tasks) - 1}\n", "before the start")
+            campaign.submit()
+            look = campaign.wait(100)
+        check_end(campaign, look)
+    print(f"{len(campaign.tasks)} tasks, {len(campaign.merges)} of them merges, one killed, one "
+          f"stopped, one broken: {time.monotonic() - begin:.0f} s")
+
+
+main()

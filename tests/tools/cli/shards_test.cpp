@@ -1,0 +1,128 @@
+// `clearway run --shard` and `clearway merge` as a person sees them.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/support/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+/// A wall beside a path along x, one point of which is near the path.
+struct Street {
+  Street() {
+    std::string wall;
+    for (int i = 0; i < 2000; ++i) wall += std::to_string(i * 0.005) + " 1 0\n";
+    put_bytes(folder / "wall.xyz", wall + "7 0.25 0\n");
+    put_bytes(folder / "car.xyz", "0 0 0\n0.01 0 0\n-0.01 0 0\n0 0.01 0\n0 -0.01 0\n");
+    std::string path;
+    for (int i = 0; i <= 100; ++i)
+      path += "1 0 0 " + std::to_string(i * 0.1) + " 0 1 0 0 0 0 1 0\n";
+    put_bytes(folder / "path.txt", path);
+    REQUIRE(program("convert wall.xyz -o site.h5 --cell-points 64").exit_code == 0);
+  }
+
+  Outcome program(const std::string& arguments) const {
+    return run_program_at("env", folder,
+                          "-C " + quoted(folder / "") + " '" CLEARWAY_PROGRAM "' " + arguments);
+  }
+  Outcome run(const std::string& arguments) const {
+    return program("run --env site.h5 --model car.xyz --trajectory path.txt --threads 2 " +
+                   arguments);
+  }
+  void make_parts(const std::string& arguments) const {
+    for (const char* part : {"1", "2"}) {
+      REQUIRE(run(std::string("--shard ") + part + "/2 -o part" + part + ".h5 " + arguments)
+                  .exit_code == 0);
+    }
+  }
+
+  ScratchFolder folder;
+};
+
+}  // namespace
+
+TEST_CASE("the verdict of a part is never clear") {
+  const Street street;
+  const Outcome part = street.run("--shard 1/2 --radius 0.1 -o part1.h5 --fail-on-collision");
+  INFO(part.err);
+  CHECK(part.exit_code == 0);
+  CHECK_THAT(part.out, Contains("part 1 of 2: no point of this part is closer than 0.1 m") &&
+                           Contains("clearway merge gives the answer of all parts"));
+  CHECK_THAT(part.out, !Contains("clear:"));
+  const Outcome as_json = street.run("--shard 2/2 --radius 0.1 -o part2.h5 --json");
+  const json report = json::parse(as_json.out);
+  CHECK(report["verdict"] == "unknown");
+  CHECK(report["shard"] == "2/2");
+  CHECK(report["shard_share"].is_number());
+  const Outcome again = street.run("--shard 2/2 --radius 0.1 -o part2.h5 --resume");
+  CHECK_THAT(again.out, Contains("part 2 of 2: no point of this part"));
+
+  const Outcome all = street.program("merge part1.h5 part2.h5 -o out.h5 --fail-on-collision");
+  INFO(all.err);
+  CHECK(all.exit_code == 0);
+  CHECK_THAT(all.out, Contains("clear: no environment point is closer than 0.1 m"));
+}
+
+TEST_CASE("a merge answers as a run does") {
+  const Street street;
+  street.make_parts("--radius 0.5 --first-pose --profile 2");
+  const Outcome whole = street.run("--radius 0.5 --first-pose --profile 2 -o whole.h5 --json");
+  const Outcome merged =
+      street.program("merge part2.h5 part1.h5 -o out.h5 --json --fail-on-collision");
+  INFO(merged.err);
+  CHECK(merged.exit_code == 1);
+  CHECK(bytes_of(street.folder / "out.h5") == bytes_of(street.folder / "whole.h5"));
+  const json run = json::parse(whole.out), merge = json::parse(merged.out);
+  for (const char* key : {"verdict", "shard", "colliding_points", "poses", "model_points",
+                          "environment_points", "profile_poses", "radius"}) {
+    CAPTURE(key);
+    CHECK(run[key] == merge[key]);
+  }
+  CHECK(run["first_place"]["source"] == merge["first_place"]["source"]);
+  CHECK(merge["first_place"]["chainage"].is_null());
+  CHECK(merge["parts"] == 2);
+}
+
+TEST_CASE("only merge and info and verify take a part") {
+  const Street street;
+  street.make_parts("--radius 0.5 --first-pose --profile 2");
+  CHECK_THAT(street.program("info part1.h5").out, Contains("part of a result") && Contains("1/2"));
+  CHECK(street.program("verify part1.h5").exit_code == 0);
+  for (const char* command :
+       {"export part1.h5 -o out.csv", "compare part1.h5 part2.h5",
+        "conflicts part1.h5 --trajectory path.txt -o out.csv",
+        "report part1.h5 --env site.h5 --model car.xyz --trajectory path.txt -o out.html"}) {
+    CAPTURE(command);
+    const Outcome refused = street.program(command);
+    CHECK(refused.exit_code == 3);
+    CHECK_THAT(refused.err, Contains("part1.h5: is part 1 of 2 of a result") &&
+                                Contains("clearway merge makes the result of all parts"));
+  }
+}
+
+TEST_CASE("what is no shard is refused") {
+  const Street street;
+  for (const char* shard :
+       {"0/2", "3/2", "1/0", "1", "1/", "/2", "a/b", "1/1001", "-1/2", "1/2/3"}) {
+    CAPTURE(shard);
+    const Outcome refused = street.run(std::string("--radius 0.1 -o x.h5 --shard=") + shard);
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains("--shard") && Contains("for example 1/16 to 16/16"));
+  }
+}
+
+TEST_CASE("the journal of a shard is its own") {
+  const Street street;
+  street.make_parts("--radius 0.5");
+  const Outcome other = street.run("--radius 0.5 --shard 2/2 -o part1.h5 --resume");
+  CHECK(other.exit_code == 2);
+  CHECK_THAT(other.err, Contains("part1.h5: exists already"));
+  const Outcome missing = street.program("merge part1.h5 nothing.h5 -o out.h5");
+  CHECK(missing.exit_code > 2);
+  CHECK_THAT(missing.err, Contains("nothing.h5"));
+  CHECK(street.program("merge part1.h5 -o out.h5").exit_code == 3);
+}

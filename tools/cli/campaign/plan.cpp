@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "campaign/file_text.hpp"
+#include "campaign/plan_file.hpp"
+#include "campaign/slurm_script.hpp"
+#include "clearway/search.hpp"
+#include "cli/campaign/commands.hpp"
+#include "cli/campaign/question_reader.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "core/util/format.hpp"
+
+namespace clearway::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CampaignPlanOptions {
+  fs::path file, folder;
+  bool force = false;
+};
+
+/// The value of one of the limits, or "".
+std::string limit_of(const campaign::Arguments& limits, const std::string& option) {
+  for (const campaign::Argument& one : limits) {
+    if (one.option == option) return one.text.substr(option.size() + 1);
+  }
+  return "";
+}
+
+campaign::SlurmJob slurm_job(const campaign::Campaign& asked, const fs::path& folder,
+                             const campaign::Plan& plan) {
+  campaign::SlurmJob job{.name = asked.name,
+                         .program = fs::read_symlink("/proc/self/exe"),
+                         .folder = fs::absolute(folder).lexically_normal(),
+                         .tasks = plan.tasks.size(),
+                         .merges = {},
+                         .memory_bytes = SearchOptions{}.memory_bytes,
+                         .gpu = limit_of(asked.search_limits, "--device") == "cuda",
+                         .options = asked.slurm};
+  for (const campaign::Task& task : plan.tasks) {
+    if (task.shards > 0) job.merges.push_back(task.number);
+  }
+  const std::string memory = limit_of(asked.limits, "--memory");
+  if (!memory.empty()) job.memory_bytes = parse_size("--memory", memory);
+  const std::string threads = limit_of(asked.limits, "--threads");
+  if (!threads.empty()) job.threads = std::stoi(threads);
+  return job;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw ResourceError(folder.string() + ": cannot create: " + failed.message());
+}
+
+void write_script(const fs::path& path, const std::string& text) {
+  campaign::replace_file(path, text);
+  fs::permissions(path, fs::perms::owner_exec, fs::perm_options::add);
+}
+
+/// Each vehicle on each route and radius, and a message from time to time.
+campaign::Plan plan_of(const campaign::Campaign& asked, const fs::path& file) {
+  ConsoleProgress progress;
+  const std::size_t tasks = asked.vehicles.size() * asked.routes.size() * asked.radii.size();
+  progress.begin("Reading inputs", tasks, "runs");
+  QuestionReader questions(file, asked.shard_seconds);
+  campaign::Plan plan = campaign::make_plan(asked, [&](const campaign::PlannedRun& run) {
+    if (progress.stop_requested()) throw Interrupted("");
+    progress.advance(1);
+    return questions.facts_of(run);
+  });
+  progress.end();
+  return plan;
+}
+
+std::string counted(std::size_t count, const char* one, const char* several) {
+  return format_count(count) + " " + (count == 1 ? one : several);
+}
+
+void run_plan(const CampaignPlanOptions& options) {
+  const campaign::Campaign asked = campaign::read_campaign(options.file);
+  const campaign::Plan plan = plan_of(asked, options.file);
+  const std::string text = campaign::plan_text(plan);
+  const fs::path planned = options.folder / campaign::kPlanName;
+  std::error_code unknown;
+  if (fs::exists(planned, unknown) && campaign::text_of_file(planned) == text) {
+    spdlog::info("{}: is this plan already; nothing to do", planned.string());
+  } else if (fs::exists(planned, unknown) && !options.force) {
+    throw UsageError(planned.string() + ": is another plan; --force replaces it. Finished runs " +
+                     "of the same questions stay");
+  } else {
+    make_folder(options.folder / "slurm");
+    const campaign::SlurmJob job = slurm_job(asked, options.folder, plan);
+    write_script(options.folder / "campaign.sbatch", campaign::sbatch_text(job));
+    write_script(options.folder / "submit.sh", campaign::submit_text(job));
+    campaign::replace_file(planned, text);
+  }
+  print(fmt::format("{}: {} ({}, {}, {})\n", asked.name,
+                    counted(plan.tasks.size(), "task", "tasks"),
+                    counted(asked.vehicles.size(), "vehicle", "vehicles"),
+                    counted(asked.routes.size(), "route", "routes"),
+                    counted(asked.radii.size(), "radius", "radii")));
+}
+
+}  // namespace
+
+void add_campaign_plan(CLI::App& campaign) {
+  const auto options = std::make_shared<CampaignPlanOptions>();
+  CLI::App* command = campaign.add_subcommand(
+      "plan", "Make a plan of tasks in a folder, and the scripts that submit it to Slurm");
+  command->add_option("CAMPAIGN", options->file, "What is asked, a JSON file")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("-o,--output", options->folder, "Folder of the campaign, made if missing")
+      ->type_name("DIR")
+      ->required();
+  command->add_flag("--force", options->force,
+                    "Replace another plan; finished runs of the same questions stay");
+  command->footer(
+      "Reads every store's index, model and trajectory once, and refuses what a task would "
+      "refuse.\n"
+      "An error names the key of the JSON file. The same inputs give the same plan.\n"
+      "Example: clearway campaign plan campaign.json -o spring");
+  command->callback(
+      [options] { run_stoppable(options->folder, kStartsAgain, [&] { run_plan(*options); }); });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,227 @@
+#include "cli/campaign/question_reader.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <vector>
+
+#include "campaign/question.hpp"
+#include "clearway/clearway.hpp"
+#include "cli/commands.hpp"
+#include "cli/input_roles.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/options.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/util/format.hpp"
+#include "io/formats/length_unit.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/trajectory/content_hash.hpp"
+#include "search/check_query.hpp"
+
+namespace clearway::tool {
+namespace {
+
+using campaign::Argument;
+using campaign::Arguments;
+using campaign::PlannedRun;
+
+/// What the command line says of an argument, said of the key that it stands for.
+[[noreturn]] void refuse_argument(const std::filesystem::path& file, const Arguments& arguments,
+                                  const std::string& what) {
+  for (const auto& [key, option, text] : arguments) {
+    const std::size_t at = what.find(option);
+    const std::size_t end = at + option.size();
+    if (at == std::string::npos ||
+        (end < what.size() && (what[end] == '-' || isalpha(what[end])))) {
+      continue;
+    }
+    const std::string rest =
+        at == 0 && what.starts_with(option + ": ") ? what.substr(end + 2) : what;
+    throw InputError(file.string() + ": " + key + ": " + rest);
+  }
+  throw InputError(file.string() + ": " + what);
+}
+
+std::vector<std::string> reversed(const campaign::Command& command, const Arguments& arguments) {
+  std::vector<std::string> words;
+  for (const Argument& argument : arguments) words.insert(words.begin(), argument.text);
+  words.insert(words.end(), command.rbegin(), command.rend());
+  return words;
+}
+
+std::string text_of(const Arguments& arguments) {
+  std::string text;
+  for (const Argument& argument : arguments) text += argument.text + '\n';
+  return text;
+}
+
+std::string short_unit(const std::string& unit) {
+  return unit == "foot" ? "ft" : unit == "us-survey-foot" ? "US ft" : "m";
+}
+
+void tell(const std::string& key, const std::vector<Message>& messages) {
+  for (Message message : messages) {
+    if (message.severity == Message::Severity::kNote) continue;
+    message.text = key + ": " + message.text;
+    log_message(message);
+  }
+}
+
+}  // namespace
+
+/// The same kind of error, with file and key in front.
+template <typename Call>
+decltype(auto) QuestionReader::named(const std::string& key, const Call& call) const {
+  const auto text = [&](const Error& error) {
+    return file_.string() + ": " + key + ": " + error.what();
+  };
+  try {
+    return call();
+  } catch (const ResourceError& error) {
+    throw ResourceError(text(error), error.remedy(), error.amount());
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw InputError(text(error), error.remedy(), error.amount());
+  }
+}
+
+campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
+  RunOptions options;
+  parse(run, options);
+  const Environment& store = environment(run.environment);
+  check_outputs(run);
+  check_classes(run, options, store.metres.value_or(1));
+  if (store.metres) {
+    options.lengths.convert(*store.metres);
+    options.model_options.environment_unit = *store.metres;
+    options.trajectory_options.environment_unit = *store.metres;
+  }
+  options.trajectory_options.default_crs = store.header.crs_wkt;
+  ResultHeader header = store.header;
+  static_cast<QueryParameters&>(header) = options.query;
+  const ReadModel& points = model(run, options);
+  header.model_points = points.count;
+  header.model_hash = points.hash;
+  const ReadTrajectory& poses = trajectory(run, options);
+  header.poses = poses.count;
+  header.trajectory_hash = poses.hash;
+  const std::uint32_t shards = named(run.environment.key, [&] {
+    return estimate_.shards(options, points.box, points.count, poses.poses);
+  });
+  return {campaign::question_of(header), store.unit, shards};
+}
+
+void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
+  CLI::App command;
+  add_run_options(command, options);
+  try {
+    command.parse(reversed({"--output=" + std::string(campaign::kResultName)}, run.arguments));
+    check_query(options.query, options.search);
+  } catch (const CLI::ParseError& error) {
+    refuse_argument(file_, run.arguments, error.what());
+  } catch (const UsageError& error) {
+    throw InputError(file_.string() + ": query: " + error.what(), error.remedy(), error.amount());
+  }
+}
+
+void QuestionReader::check_outputs(const PlannedRun& run) {
+  for (const auto& [command, arguments] : run.outputs) {
+    if (!checked_.insert(command[0] + text_of(arguments)).second) continue;
+    CLI::App program;
+    add_conflicts(program);
+    add_report(program);
+    for (CLI::App* one : program.get_subcommands({})) {
+      one->parse_complete_callback([] { throw CLI::Success(); });  // it is not to be run
+    }
+    try {
+      program.parse(reversed(command, arguments));
+    } catch (const CLI::Success&) {
+    } catch (const CLI::ParseError& error) {
+      refuse_argument(file_, arguments, error.what());
+    }
+  }
+}
+
+/// What a report would refuse.
+void QuestionReader::check_classes(const PlannedRun& run, const RunOptions& options,
+                                   double metres) const {
+  for (const auto& [command, arguments] : run.outputs) {
+    for (const Argument& one : arguments) {
+      if (one.option != "--classes") continue;
+      const auto refused = [&](const std::string& what) {
+        throw InputError(file_.string() + ": " + one.key + ": " + what);
+      };
+      std::vector<double> classes;
+      const double radius = options.query.radius, clearance = options.query.clearance;
+      for (const std::string& text :
+           CLI::detail::split(one.text.substr(one.option.size() + 1), ',')) {
+        const ParsedLength length = parse_length(one.key, text);
+        classes.push_back(length.has_unit ? length.value / metres : length.value);
+      }
+      if (classes.size() > 3 || !std::ranges::is_sorted(classes, std::less_equal{})) {
+        refused("expected one to three distances, each larger than the one before");
+      }
+      if (classes.back() < radius) {
+        refused("the last is below the radius of " + format_number(radius));
+      }
+      for (const double below : classes) {
+        if (below > clearance && below != radius) {
+          refused(format_number(below) + ": needs a clearance as large in query");
+        }
+      }
+    }
+  }
+}
+
+const QuestionReader::Environment& QuestionReader::environment(const campaign::Entry& entry) {
+  const auto known = environments_.find(entry.name);
+  if (known != environments_.end()) return known->second;
+  Environment& facts = environments_[entry.name];
+  named(entry.key, [&] {
+    check_is_store(entry.file);
+    const Store store(entry.file);
+    const StoreMetadata& metadata = store.reader().metadata();
+    facts.header.environment_points = metadata.input_points;
+    facts.header.environment_hash = metadata.points_hash;
+    facts.header.crs_wkt = metadata.crs_wkt;
+    facts.metres = metres_of_unit(store.length_unit());
+    facts.unit = short_unit(store.length_unit());
+  });
+  return facts;
+}
+
+const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
+                                                       const RunOptions& options) {
+  const ModelOptions how = with_spacing(options.model_options, options.query.radius);
+  const std::string id = run.vehicle.name + '\n' + format_number(how.spacing) + '\n' +
+                         format_number(how.environment_unit);
+  const auto known = models_.find(id);
+  if (known != models_.end()) return known->second;
+  return named(run.vehicle.key, [&]() -> const ReadModel& {
+    check_is_model(options.model);
+    std::vector<Message> messages;
+    const std::vector<Vec3> points = read_model(options.model, how, &messages);
+    tell(run.vehicle.key, messages);
+    return models_[id] = {points.size(), hash_of_model(points),
+                          points.empty() ? Box{} : box_of(points)};
+  });
+}
+
+const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRun& run,
+                                                                 const RunOptions& options) {
+  const auto known = trajectories_.find(run.route.name);
+  if (known != trajectories_.end()) return known->second;
+  return named(run.route.key, [&]() -> const ReadTrajectory& {
+    check_is_trajectory(options.trajectory);
+    std::vector<Message> messages;
+    std::vector<Pose> poses =
+        read_trajectory(options.trajectory, options.trajectory_options, &messages);
+    tell(run.route.key, messages);
+    ReadTrajectory& read = trajectories_[run.route.name];
+    read = {poses.size(), hash_of_trajectory(poses)};
+    if (estimate_.is_asked_for()) read.poses = std::move(poses);
+    return read;
+  });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,68 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "campaign/plan_file.hpp"
+#include "campaign/task_list.hpp"
+#include "clearway/error.hpp"
+#include "cli/campaign/commands.hpp"
+#include "cli/campaign/task_queue.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct CampaignRunOptions {
+  std::filesystem::path folder;
+  std::string tasks;
+  bool all = false;
+  int jobs = 1;
+};
+
+campaign::Plan plan_to_run(const CampaignRunOptions& options) {
+  if (options.all) return campaign::read_plan(options.folder);
+  if (options.tasks.empty()) throw UsageError("expected --task with numbers, or --all");
+  const auto tasks = campaign::parse_task_list(options.tasks);
+  if (!tasks) {
+    throw UsageError("--task: " + options.tasks + ": expected numbers from 0, such as 3,7-9");
+  }
+  return campaign::read_plan(options.folder, *tasks);
+}
+
+int run_tasks(const CampaignRunOptions& options) {
+  const campaign::Plan plan = plan_to_run(options);
+  TaskQueue queue(plan, std::filesystem::absolute(options.folder).lexically_normal(), options.jobs,
+                  options.all);
+  return queue.run();
+}
+
+}  // namespace
+
+void add_campaign_run(CLI::App& campaign, int& exit_code) {
+  const auto options = std::make_shared<CampaignRunOptions>();
+  CLI::App* command =
+      campaign.add_subcommand("run", "Do tasks of a campaign; finished ones return at once");
+  command->add_option("DIR", options->folder, "Folder of the campaign")
+      ->type_name("DIR")
+      ->required();
+  CLI::Option* tasks =
+      command->add_option("--task", options->tasks, "Numbers of tasks, from 0, for example 3,7-9");
+  tasks->type_name("N,...");
+  command->add_flag("--all", options->all, "All tasks that are not done")->excludes(tasks);
+  command->add_option("--jobs", options->jobs, "Tasks at the same time; they share the cores")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->footer(
+      "Each command of a task is a process of its own; plan.json has its words. An interrupted "
+      "task\n"
+      "resumes. The exit code is that of the task, or the largest one of several.\n"
+      "With --all, interrupted tasks (5) are queued again, and those that failed for the "
+      "machine's\n"
+      "sake (4) at most twice.\n"
+      "Example: clearway campaign run spring --all --jobs 2");
+  command->callback([options, &exit_code] { exit_code = run_tasks(*options); });
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,218 @@
+#include "cli/campaign/task_queue.hpp"
+
+#include <spdlog/spdlog.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "clearway/error.hpp"
+#include "cli/campaign/child.hpp"
+#include "cli/support/exit_code.hpp"
+
+namespace clearway::tool {
+namespace {
+
+constexpr int kMostFailures = 3;  ///< a task that failed for the machine's sake is tried twice more
+
+bool ignores(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+int code_of(int status) {
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  const int signal = WTERMSIG(status);
+  return signal == SIGTERM || signal == SIGINT ? int{kInterrupted} : kSignalled + signal;
+}
+
+/// Several tasks share the cores, unless the campaign says how many threads they have.
+std::vector<std::string> with_threads(std::vector<std::string> words, std::size_t jobs) {
+  const bool said = std::ranges::any_of(
+      words, [](const std::string& word) { return word.starts_with("--threads="); });
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  if (said || jobs == 1) return words;
+  words.push_back("--threads=" + std::to_string(std::max<std::size_t>(1, cores / jobs)));
+  return words;
+}
+
+}  // namespace
+
+TaskQueue::TaskQueue(const campaign::Plan& plan, std::filesystem::path campaign, int jobs,
+                     bool tries_again)
+    : plan_(plan),
+      campaign_(std::move(campaign)),
+      jobs_(static_cast<std::size_t>(jobs)),
+      tries_again_(tries_again) {
+  for (const campaign::Task& task : plan.tasks) {
+    waiting_.push_back(&task);
+    unfinished_.insert(task.number);
+  }
+}
+
+int TaskQueue::run() {
+  block_signals();
+  while (!working_.empty() || (!waiting_.empty() && !stopping_)) {
+    const auto next = working_.size() == jobs_ || stopping_ ? waiting_.end() : next_task();
+    if (next == waiting_.end()) {
+      wait();
+      continue;
+    }
+    const campaign::Task& task = **next;
+    waiting_.erase(next);
+    begin(task);
+    look();
+  }
+  return interrupted_ || (stopping_ && !waiting_.empty()) ? int{kInterrupted} : code_;
+}
+
+/// They are waited for, so that none comes between two looks.
+void TaskQueue::block_signals() {
+  ::signal(SIGCHLD, SIG_DFL);
+  ::sigemptyset(&waited_);
+  ::sigaddset(&waited_, SIGCHLD);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    if (!ignores(signal)) ::sigaddset(&waited_, signal);
+  }
+  ::sigprocmask(SIG_BLOCK, &waited_, &before_);
+}
+
+/// The first one that waits for no other of this queue. The tasks before a merge are its shards.
+std::deque<const campaign::Task*>::iterator TaskQueue::next_task() {
+  return std::ranges::find_if(waiting_, [this](const campaign::Task* task) {
+    const auto first = unfinished_.lower_bound(task->number - task->shards);
+    return first == unfinished_.end() || *first >= task->number;
+  });
+}
+
+/// Of a merge.
+void TaskQueue::check_shards(const campaign::Task& task) const {
+  for (std::uint32_t number = 1; number <= task.shards; ++number) {
+    const campaign::Task shard = campaign::shard_of(task, number);
+    const auto state = campaign::read_state(campaign_ / shard.folder());
+    if (campaign::is_done(shard, campaign_, state)) continue;
+    throw ResourceError(task.name() + ": waits for " + shard.name() + ", which is not done");
+  }
+}
+
+void TaskQueue::begin(const campaign::Task& task) {
+  try {
+    const auto folder = campaign_ / task.folder();
+    if (campaign::is_done(task, campaign_, campaign::read_state(folder))) return end(task);
+    check_shards(task);
+    const auto work = working_.emplace(working_.end(), TaskFolder(task, campaign_));
+    try {
+      if (!work->folder.is_done()) return start_command(*work, 0);
+      end(task);
+      working_.erase(work);
+    } catch (const ResourceError&) {
+      working_.erase(work);
+      throw;
+    }
+  } catch (const InputError& error) {
+    fail(task, kBadInput, error.what());
+  } catch (const ResourceError& error) {
+    fail(task, kResource, error.what());
+  }
+}
+
+void TaskQueue::start_command(Work& work, std::size_t number) {
+  TaskFolder& folder = work.folder;
+  folder.begin_command(number);
+  const campaign::Command& words = folder.task().commands[number];
+  ChildCommand command{.words = with_threads(words, jobs_),
+                       .folder = folder.path(),
+                       .log = folder.log(),
+                       .output = words[0] == "run" ? folder.run_output() : std::filesystem::path(),
+                       .foreign = {},
+                       .signals = before_};
+  for (const Work& other : working_) {
+    if (&other != &work) command.foreign.push_back(other.folder.lock_descriptor());
+  }
+  work.child = start_child(command);
+}
+
+void TaskQueue::wait() {
+  siginfo_t info{};
+  const int signal = ::sigwaitinfo(&waited_, &info);
+  heed(signal);
+}
+
+/// Without waiting.
+void TaskQueue::look() {
+  siginfo_t info{};
+  const timespec none{};
+  heed(::sigtimedwait(&waited_, &info, &none));
+}
+
+void TaskQueue::heed(int signal) {
+  if (signal == SIGINT || signal == SIGTERM) stop();
+  if (signal > 0) reap();
+}
+
+void TaskQueue::stop() {
+  stopping_ = true;
+  for (const Work& work : working_) ::kill(work.child, SIGTERM);
+}
+
+void TaskQueue::reap() {
+  for (auto work = working_.begin(); work != working_.end();) {
+    const auto one = work++;
+    int status = 0;
+    if (::waitpid(one->child, &status, WNOHANG) == one->child) end_command(one, status);
+  }
+}
+
+void TaskQueue::end_command(std::list<Work>::iterator work, int status) {
+  TaskFolder& folder = work->folder;
+  const campaign::Task& task = folder.task();
+  const int code = code_of(status);
+  try {
+    const std::size_t next = folder.command() + 1;
+    const bool more = code == kDone && next < task.commands.size();
+    if (more && !stopping_) return start_command(*work, next);
+    end_task(folder, more ? int{kInterrupted} : code);
+  } catch (const ResourceError& error) {
+    fail(task, kResource, error.what());
+  }
+  working_.erase(work);
+}
+
+void TaskQueue::end_task(TaskFolder& folder, int code) {
+  const campaign::Task& task = folder.task();
+  const campaign::TaskState& state = folder.end(code);
+  if (state.ending == campaign::Ending::kDone) {
+    end(task);
+    spdlog::info("{} of {}: {}: {}, {:.2f} s", ended_, plan_.tasks.size(), task.name(),
+                 state.facts["verdict"].get<std::string>(), state.seconds);
+  } else if (is_tried_again(task, state.exit_code)) {
+    spdlog::warn("{}: exit code {}: {}; is tried again", task.name(), state.exit_code,
+                 state.message);
+    waiting_.push_back(&task);
+  } else {
+    fail(task, state.exit_code, state.message);
+  }
+}
+
+void TaskQueue::end(const campaign::Task& task) {
+  ++ended_;
+  unfinished_.erase(task.number);
+}
+
+bool TaskQueue::is_tried_again(const campaign::Task& task, int code) {
+  if (!tries_again_ || stopping_) return false;
+  return code == kInterrupted || (code == kResource && ++failures_[&task] < kMostFailures);
+}
+
+void TaskQueue::fail(const campaign::Task& task, int code, const std::string& message) {
+  end(task);
+  if (code == kInterrupted) {
+    interrupted_ = true;
+    return spdlog::info("{} of {}: {}: interrupted", ended_, plan_.tasks.size(), task.name());
+  }
+  code_ = std::max(code_, code);
+  spdlog::error("{} of {}: {}: exit code {}: {}", ended_, plan_.tasks.size(), task.name(), code,
+                message);
+}
+
+}  // namespace clearway::tool

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <signal.h>
+#include <sys/types.h>
+
+#include <deque>
+#include <filesystem>
+#include <list>
+#include <map>
+#include <set>
+
+#include "campaign/plan.hpp"
+#include "cli/campaign/task_folder.hpp"
+
+namespace clearway::tool {
+
+/// Works through tasks, so many at a time, each command in a process of its own. To be made once,
+/// while this process has one thread.
+class TaskQueue {
+ public:
+  /// campaign: absolute. All outlive it.
+  TaskQueue(const campaign::Plan& plan, std::filesystem::path campaign, int jobs, bool tries_again);
+
+  /// Does them. Where tries_again, those that were interrupted, or failed for the machine's sake,
+  /// are queued again.
+  /// SIGINT and SIGTERM end the commands, and it. Gives the exit code: kInterrupted, or the largest
+  /// of those of the tasks.
+  int run();
+
+ private:
+  struct Work {
+    explicit Work(TaskFolder&& of) : folder(std::move(of)) {}
+    TaskFolder folder;
+    pid_t child = 0;
+  };
+
+  void block_signals();
+  std::deque<const campaign::Task*>::iterator next_task();
+  void check_shards(const campaign::Task& task) const;
+  void begin(const campaign::Task& task);
+  void start_command(Work& work, std::size_t number);
+  void wait();
+  void look();
+  void heed(int signal);
+  void reap();
+  void stop();
+  void end_command(std::list<Work>::iterator work, int status);
+  void end_task(TaskFolder& folder, int code);
+  void end(const campaign::Task& task);
+  bool is_tried_again(const campaign::Task& task, int code);
+  void fail(const campaign::Task& task, int code, const std::string& message);
+
+  const campaign::Plan& plan_;
+  std::filesystem::path campaign_;
+  std::size_t jobs_;
+  std::deque<const campaign::Task*> waiting_;
+  std::set<std::size_t> unfinished_;  ///< numbers of those that wait or are worked on
+  std::list<Work> working_;
+  std::map<const campaign::Task*, int> failures_;
+  std::size_t ended_ = 0;
+  int code_ = 0;
+  bool tries_again_, stopping_ = false, interrupted_ = false;
+  sigset_t before_{}, waited_{};
+};
+
+}  // namespace clearway::tool

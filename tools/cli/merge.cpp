@@ -1,0 +1,118 @@
+#include "clearway/merge.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/exit_code.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/program_json.hpp"
+#include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "cli/verdict.hpp"
+#include "core/util/format.hpp"
+#include "core/util/stopwatch.hpp"
+#include "io/formats/wkt.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct MergeCommand {
+  std::vector<std::filesystem::path> parts;
+  std::filesystem::path output;
+  MergeOptions merge;
+  bool fail_on_collision = false;
+  bool json = false;
+};
+
+nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& report,
+                               const Verdict& verdict, double seconds) {
+  nlohmann::ordered_json out = program_json({{"output", options.output}});
+  out["radius"] = report.parameters.radius;
+  out["parts"] = report.parts;
+  out["was_finished"] = report.was_finished;
+  out["environment_points"] = report.environment_points;
+  out["model_points"] = report.model_points;
+  out["poses"] = report.poses;
+  out["colliding_points"] = report.colliding_points;
+  out["clearance_points"] = report.clearance_points;
+  out["profile_poses"] = report.was_finished ? nlohmann::ordered_json(nullptr)
+                                             : nlohmann::ordered_json(report.profile_poses);
+  add_verdict(verdict, {}, out);
+  out["seconds"] = seconds;
+  return out;
+}
+
+/// As clearway run names it: degrees count as metres there.
+std::string unit_of(const ResultHeader& header) {
+  const LengthUnit unit = units_of_wkt(header.crs_wkt).horizontal;
+  return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
+}
+
+/// Whether no point collides.
+bool run_merge(MergeCommand& options) {
+  const Stopwatch total;
+  ConsoleProgress progress;
+  options.merge.progress = [&](const ProgressUpdate& update) { progress.update(update); };
+  options.merge.stop = &stop_flag();
+  const MergeReport report = merge(options.parts, options.output, options.merge);
+  const ResultReader result(options.output);
+  const ResultHeader& header = result.header();
+  const Verdict verdict =
+      report.was_finished ? verdict_of(result, {}) : verdict_of(report, header.float_precision);
+  const std::string sentence = verdict_text(verdict, {}, unit_of(header), "");
+  spdlog::info("{}: {} {}; {} of {} {}", options.output.string(),
+               report.was_finished ? "is there already, of" : "merged",
+               counted(report.parts, "part"), format_count(report.colliding_points),
+               counted(report.environment_points, "environment point"),
+               report.colliding_points == 1 ? "collides" : "collide");
+  if (options.json) {
+    spdlog::info("{}", sentence);
+    print(text_of_json(json_of(options, report, verdict, total.seconds())));
+  } else {
+    print(sentence + "\n");
+  }
+  return verdict.is_clear();
+}
+
+}  // namespace
+
+void add_merge(CLI::App& program, int& exit_code) {
+  const auto options = std::make_shared<MergeCommand>();
+  CLI::App* command =
+      program.add_subcommand("merge", "Make one result of the parts that run --shard wrote");
+  command->add_option("PART", options->parts, "All parts of one run, in any order")
+      ->type_name("FILE...")
+      ->required();
+  command->add_option("-o,--output", options->output, "The result, an HDF5 file")
+      ->type_name("FILE")
+      ->required();
+  add_threads_option(*command, options->merge.threads);
+  add_memory_option(*command, options->merge.memory_bytes);
+  CLI::Option* force =
+      command->add_flag("--force", options->merge.overwrite, "Overwrite an existing result");
+  command->add_flag("--resume", options->merge.resume, "Leave a result of the same parts as it is")
+      ->excludes(force);
+  command->add_flag("--fail-on-collision", options->fail_on_collision,
+                    "Exit with code 1 where a point collides");
+  command->add_flag("--json", options->json, "Print one JSON object about the result");
+  command->footer(
+      "The result has the bytes of the run without --shard. It refuses parts of different runs,\n"
+      "parts that are missing or there twice, and damaged ones.\n"
+      "Example: clearway merge part-*.h5 -o out.h5");
+  command->callback([options, &exit_code] {
+    run_stoppable(options->output, kStartsAgain, [&] {
+      const bool clear = run_merge(*options);
+      if (!clear && options->fail_on_collision) exit_code = kDiffers;
+    });
+  });
+}
+
+}  // namespace clearway::tool
