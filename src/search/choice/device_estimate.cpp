@@ -14,7 +14,7 @@ constexpr double kStart = 0.5;
 /// Cores that search as fast as a GPU does.
 constexpr double kCores = 350;
 /// How much longer a search on the CPU takes with distances beyond the radius.
-constexpr double kDistances = 11;
+constexpr double kDistances = 6;
 /// Environment points that a core searches in a second.
 constexpr double kPointsPerCore = 13e6;
 
