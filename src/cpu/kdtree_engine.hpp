@@ -12,9 +12,9 @@
 namespace clearway {
 
 struct KdTreeOptions {
-  int threads = 0;                                    ///< 0: all that OpenMP offers
-  std::function<bool(std::uint32_t)> only = nullptr;  ///< the cells to search; null: all
+  int threads = 0;                 ///< 0: all that OpenMP offers
   PoseJournal* journal = nullptr;  ///< keeps what is found; what it held before is not searched
+  std::function<bool(std::uint32_t)> only = nullptr;  ///< the cells to search; null: all
 };
 
 struct KdTreeStatistics {

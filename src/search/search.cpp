@@ -8,14 +8,12 @@
 #include <optional>
 
 #include "clearway/error.hpp"
-#include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
-#include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/choice/choose_engine.hpp"
@@ -27,6 +25,7 @@
 #include "search/kinds/grid_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
+#include "search/result_header.hpp"
 #include "search/run_journal.hpp"
 #include "search/shard/shard_cells.hpp"
 #include "search/threads.hpp"
@@ -50,7 +49,7 @@ class Search {
         log_(options_.message, report_.warnings),
         pending_(output, true),
         journal_(pending_, output, options_, log_),
-        header_(header()) {
+        header_(result_header(store_, query_, options_)) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
@@ -74,24 +73,6 @@ class Search {
   }
 
  private:
-  ResultHeader header() const {
-    const StoreMetadata& metadata = store_.metadata();
-    return {query_,
-            metadata.input_points,
-            metadata.points_hash,
-            query_.model.size(),
-            hash_of_model(query_.model),
-            query_.poses.size(),
-            hash_of_trajectory(query_.poses),
-            query_.tolerance > 0 ? name_of(chosen_engine(options_)) : "",
-            options_.float_precision,
-            metadata.quantisation,
-            metadata.crs_wkt,
-            false,
-            query_.model.empty() ? Box{} : box_of(query_.model),
-            std::nullopt};
-  }
-
   /// Before anything is searched, and of a result that is there already too.
   void check() {
     for (const Message& told : options_.input_warnings) {

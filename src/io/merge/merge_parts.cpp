@@ -65,7 +65,7 @@ class PartMerge {
     if (set_.header().profile > 0) merge_profile();
     writer_.finish();
     progress_.end();
-    return std::move(out_);
+    return out_;
   }
 
  private:

@@ -6,8 +6,8 @@
 #include "io/result/as_numbers.hpp"
 #include "io/result/parallel_read.hpp"
 #include "io/result/result.hpp"
-#include "io/result/result_header.hpp"
 #include "io/result/result_names.hpp"
+#include "io/result/result_reader_state.hpp"
 #include "io/result/row_checks.hpp"
 
 namespace clearway {
@@ -44,110 +44,6 @@ void check_lengths(std::size_t rows, const Spans&... spans) {
 bool are_whole_chunks(std::uint64_t first, std::size_t count, std::uint64_t rows) {
   return first % kEncodedRows == 0 && (count % kEncodedRows == 0 || first + count == rows);
 }
-
-}  // namespace
-
-struct ResultReader::State {
-  explicit State(const std::filesystem::path& path)
-      : name(path.string()),
-        file(hdf5::open_file(path)),
-        header(read_result_header(file, name)),
-        collisions_hash(hdf5::read_number<std::uint64_t>(file, names::kCollisionsHash, name)),
-        source(open<std::uint64_t>(names::kGroup, names::kSource, 0)),
-        xyz(open<double>(names::kGroup, names::kXyz, 3)) {
-    if (header.first_pose) {
-      first_pose.emplace(open<std::uint32_t>(names::kGroup, names::kFirstPose, 0));
-    }
-    check_equal(names::kGroup, source.rows(), {xyz.rows(), rows_of(first_pose, source.rows())});
-    if (header.clearance > 0) open_clearances();
-    if (header.profile > 0) open_profile();
-  }
-
-  void open_clearances() {
-    clearance_hash = hdf5::read_number<std::uint64_t>(file, names::kClearanceHash, name);
-    clearance.emplace(
-        ClearanceDatasets{open<std::uint64_t>(names::kClearanceGroup, names::kSource, 0),
-                          {},
-                          open<double>(names::kClearanceGroup, names::kDistance, 0),
-                          open<std::uint32_t>(names::kClearanceGroup, names::kPose, 0)});
-    if (header.has_clearance_xyz()) {
-      clearance->xyz.emplace(open<double>(names::kClearanceGroup, names::kXyz, 3));
-    }
-    const std::uint64_t rows = clearance->source.rows();
-    check_equal(
-        names::kClearanceGroup, rows,
-        {clearance->distance.rows(), clearance->pose.rows(), rows_of(clearance->xyz, rows)});
-  }
-
-  void open_profile() {
-    profile_hash = hdf5::read_number<std::uint64_t>(file, names::kProfileHash, name);
-    profile.emplace(ProfileDatasets{open<double>(names::kProfileGroup, names::kDistance, 0),
-                                    open<std::uint64_t>(names::kProfileGroup, names::kSource, 0),
-                                    open<double>(names::kProfileGroup, names::kXyz, 3),
-                                    open<double>(names::kProfileGroup, names::kChainage, 0),
-                                    {}});
-    if (header.part)
-      profile->squared.emplace(open<double>(names::kProfileGroup, names::kSquared, 0));
-    const std::uint64_t rows = profile->distance.rows();
-    check_equal(names::kProfileGroup, rows,
-                {profile->source.rows(), profile->xyz.rows(), profile->chainage.rows(),
-                 rows_of(profile->squared, rows)});
-    if (profile->distance.rows() != header.poses) {
-      throw InputError(name + ": /profile has " + std::to_string(profile->distance.rows()) +
-                       " rows, expected one for each of " + std::to_string(header.poses) +
-                       " poses");
-    }
-  }
-
-  template <typename Number>
-  hdf5::Rows<Number> open(const char* group, const char* dataset, std::uint64_t columns) const {
-    const std::string path = std::string(group) + "/" + dataset;
-    return hdf5::Rows<Number>::open(file, path, columns, name);
-  }
-
-  template <typename Rows>
-  static std::uint64_t rows_of(const std::optional<Rows>& dataset, std::uint64_t otherwise) {
-    return dataset ? dataset->rows() : otherwise;
-  }
-
-  void check_equal(const char* group, std::uint64_t rows,
-                   std::initializer_list<std::uint64_t> others) const {
-    for (const std::uint64_t other : others) {
-      if (other == rows) continue;
-      throw InputError(name + ": the datasets of /" + group + " differ in their rows");
-    }
-  }
-
-  RowChecks checks(const char* group, std::uint64_t first) const {
-    return {name, header, group, first};
-  }
-
-  struct ClearanceDatasets {
-    hdf5::Rows<std::uint64_t> source;
-    std::optional<hdf5::Rows<double>> xyz;
-    hdf5::Rows<double> distance;
-    hdf5::Rows<std::uint32_t> pose;
-  };
-
-  struct ProfileDatasets {
-    hdf5::Rows<double> distance;
-    hdf5::Rows<std::uint64_t> source;
-    hdf5::Rows<double> xyz, chainage;
-    std::optional<hdf5::Rows<double>> squared;
-  };
-
-  std::string name;
-  hdf5::Id file;
-  ResultHeader header;
-  std::uint64_t collisions_hash, clearance_hash = 0, profile_hash = 0;
-  hdf5::Rows<std::uint64_t> source;
-  hdf5::Rows<double> xyz;
-  std::optional<hdf5::Rows<std::uint32_t>> first_pose;
-  std::optional<ClearanceDatasets> clearance;
-  std::optional<ProfileDatasets> profile;
-};
-
-namespace {
 
 template <typename... Columns>
 void add_to(std::span<Xxh64Stream> hashes, const Columns&... columns) {
