@@ -90,9 +90,12 @@ std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& quer
   return work;
 }
 
-std::uint64_t cell_work_bytes(const PackedCloud& cloud) {
+std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query) {
   constexpr std::uint64_t kCellBytes = 128;  // with its motion nodes
-  return kFieldBytes + kFieldBytes / 4 + kCellBytes * cloud.cells().size();
+  // What the filter keeps of model and motion for clearances, at the most.
+  const std::uint64_t for_clearances =
+      query.clearance > 0 ? 64 * (query.model.size() + query.poses.size()) : 0;
+  return kFieldBytes + kFieldBytes / 4 + kCellBytes * cloud.cells().size() + for_clearances;
 }
 
 }  // namespace clearway

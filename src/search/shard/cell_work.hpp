@@ -16,6 +16,6 @@ std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& quer
                                      const QueryTrees& trees, int threads);
 
 /// Memory that it takes beside the trees, bytes.
-std::uint64_t cell_work_bytes(const PackedCloud& cloud);
+std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query);
 
 }  // namespace clearway

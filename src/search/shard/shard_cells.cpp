@@ -22,7 +22,7 @@ std::uint64_t division_of(const StoreReader& store, std::span<const std::uint32_
 std::vector<std::uint64_t> work_of_cells(const StoreReader& store, const Query& query, int threads,
                                          std::uint64_t memory_bytes) {
   check_memory(program_bytes(threads) + input_bytes(store, query) + tree_building_bytes(query) +
-                   cell_work_bytes(store),
+                   cell_work_bytes(store, query),
                memory_bytes);
   if (query.model.empty() || query.poses.empty()) {
     return std::vector<std::uint64_t>(store.cells().size());
