@@ -155,7 +155,7 @@ class CampaignPage {
              html_text(task.vehicle + " on " + task.route + ": " + cell_details(task, look)) +
              "\">";
     if (!link.empty()) text_ += "<a href=\"" + link + "\">";
-    text_ += std::string("<span class=\"sign\" aria-hidden=\"true\">") + kind.sign +
+    text_ += std::string(R"(<span class="sign" aria-hidden="true">)") + kind.sign +
              R"(</span> <span class="word">)" + cell_word(look) + "</span>";
     if (!distance.empty()) text_ += "<br><b>" + distance + "</b>";
     text_ += link.empty() ? "</td>" : "</a></td>";
