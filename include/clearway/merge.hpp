@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "clearway/found_place.hpp"
@@ -24,6 +25,7 @@ struct MergeOptions {
 struct MergeReport {
   bool was_finished = false;  ///< the result was there already: it has the places
   QueryParameters parameters;
+  std::string length_unit;  ///< of the environment, as Store::length_unit
   std::uint32_t parts = 0;
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
   std::uint64_t colliding_points = 0, clearance_points = 0, profile_poses = 0;

@@ -10,12 +10,15 @@
 namespace clearway {
 namespace {
 
-/// Whether the output is there, and intact: what it says follows from the question.
+/// Whether the output is there, and intact: what it says follows from the question, but with a
+/// tolerance or in floats.
 bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress& progress) {
   if (!std::filesystem::exists(output)) return false;
+  if (set.header().tolerance > 0 || set.header().float_precision) return false;
   try {
     const ResultReader result(output);
-    return result.header() == set.header() && !verify_result(result, progress);
+    return result.header() == set.header() && result.collisions() == set.collisions() &&
+           result.clearances() == set.clearances() && !verify_result(result, progress);
   } catch (const InputError&) {
     return false;
   }
@@ -24,6 +27,7 @@ bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress
 MergeReport report_of(const PartSet& set) {
   MergeReport report;
   report.parameters = set.header();
+  report.length_unit = set.parts().front().header().part->length_unit;
   report.parts = static_cast<std::uint32_t>(set.parts().size());
   report.environment_points = set.header().environment_points;
   report.model_points = set.header().model_points;

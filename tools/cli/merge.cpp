@@ -18,7 +18,7 @@
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/formats/wkt.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway::tool {
@@ -46,13 +46,17 @@ nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& r
   out["profile_poses"] = report.was_finished ? nlohmann::ordered_json(nullptr)
                                              : nlohmann::ordered_json(report.profile_poses);
   add_verdict(verdict, {}, out);
+  out["warnings"] = nullptr;  // not known here: the runs of the parts told theirs
   out["seconds"] = seconds;
   return out;
 }
 
+/// Parts do not hold warnings. No all-clear without a word of them.
+constexpr const char* kRunsMayHaveWarned = ", unless the run of a part ended with warnings";
+
 /// As clearway run names it: degrees count as metres there.
-std::string unit_of(const ResultHeader& header) {
-  const LengthUnit unit = units_of_wkt(header.crs_wkt).horizontal;
+std::string unit_of(const MergeReport& report) {
+  const LengthUnit unit = length_unit_of(report.length_unit);
   return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
 }
 
@@ -67,7 +71,7 @@ bool run_merge(MergeCommand& options) {
   const ResultHeader& header = result.header();
   const Verdict verdict =
       report.was_finished ? verdict_of(result, {}) : verdict_of(report, header.float_precision);
-  const std::string sentence = verdict_text(verdict, {}, unit_of(header), "");
+  const std::string sentence = verdict_text(verdict, {}, unit_of(report), kRunsMayHaveWarned);
   spdlog::info("{}: {} {}; {} of {} {}", options.output.string(),
                report.was_finished ? "is there already, of" : "merged",
                counted(report.parts, "part"), format_count(report.colliding_points),

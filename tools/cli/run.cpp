@@ -152,9 +152,12 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
                  caveat(report));
     return;
   }
-  const std::string found = fmt::format("{} of {} {}", format_count(report.colliding_points),
-                                        counted(report.environment_points, "environment point"),
-                                        report.colliding_points == 1 ? "collides" : "collide");
+  const std::string part =
+      options.search.shard ? "part " + to_string(*options.search.shard) + ": " : "";
+  const std::string found =
+      part + fmt::format("{} of {} {}", format_count(report.colliding_points),
+                         counted(report.environment_points, "environment point"),
+                         report.colliding_points == 1 ? "collides" : "collide");
   const std::string how =
       fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
   const bool doubtful = !report.warnings.empty();

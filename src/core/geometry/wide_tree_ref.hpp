@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "core/geometry/box.hpp"
 
@@ -37,10 +36,15 @@ struct WideTreeRef {
   std::uint32_t levels;              ///< of nodes; 0 where there is one packet
   std::uint32_t first[kMostLevels];  ///< node of a level
 
+  static constexpr float kLeastFloat = 0x1p-126F;  ///< that keeps all its digits
+  static constexpr float kMostFloat = 0x1.fffffep127F;
+
+  /// Bounds of a value that are floats. Beyond the range of floats they may be infinite or no
+  /// number, which visits.
   CLEARWAY_HD static float below(double value) { return -above(-value); }
   CLEARWAY_HD static float above(double value) {
     const auto near = static_cast<float>(value);
-    return near + ((near < 0 ? -near : near) * 0x1p-22F + std::numeric_limits<float>::min());
+    return near + ((near < 0 ? -near : near) * 0x1p-22F + kLeastFloat);
   }
 
   /// Visits every point whose squared distance is at most within(), and perhaps others, nearer
@@ -56,7 +60,7 @@ struct WideTreeRef {
     open[count++] = {0, 0, 0};
     while (count > 0) {
       const Open next = open[--count];
-      if (static_cast<double>(next.squared) > within()) continue;
+      if (next.squared > above(within())) continue;
       if (next.level == levels) {
         const PointPacket& packet = packets[next.index];
         double squared[PointPacket::kMost];
@@ -110,16 +114,15 @@ struct WideTreeRef {
   }
 
   /// Squared distances, at most the true ones: a difference, a square and two sums round by 2^-24
-  /// each.
+  /// each, and by less than above() adds where a square is too small for that.
   CLEARWAY_HD static void to_boxes_one_by_one(const Node& node, const Target& from,
                                               float* squared) {
-    constexpr float kLargest = std::numeric_limits<float>::max();
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       const float x = gap(node.lo[0][i], node.hi[0][i], from.lo[0], from.hi[0]);
       const float y = gap(node.lo[1][i], node.hi[1][i], from.lo[1], from.hi[1]);
       const float z = gap(node.lo[2][i], node.hi[2][i], from.lo[2], from.hi[2]);
       const float sum = x * x + y * y + z * z;
-      squared[i] = (sum < kLargest ? sum : kLargest) * (1 - 0x1p-20F);
+      squared[i] = (sum > kMostFloat ? kMostFloat : sum) * (1 - 0x1p-20F);
     }
   }
 

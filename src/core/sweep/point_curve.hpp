@@ -36,12 +36,12 @@ class PointCurve {
     const double bent = std::sqrt(squared_length(bend.x, bend.y, bend.z));
     const double slowest = length - bent;
     const double convexity = slowest * slowest - 2 * bent * (reach + length + bent);
-    if (slowest > 0 && convexity > 0.25 * squared_way && squared_way > 1e-280) {
+    if (slowest > 0 && convexity > 0.25 * squared_way && squared_way > kLeastSquaredWay) {
       start_ = first;
       way_ = way;
       bend_ = bend;
       per_squared_way_ = 1 / squared_way;
-      convexity_ = convexity * (1 - 64 * kUnitRoundoff);
+      convexity_ = convexity * (1 - 128 * kUnitRoundoff);
       per_convexity_ = 1 / convexity_;
     } else {
       beside_ = (length + bent) * kRoundedUp;
@@ -89,6 +89,9 @@ class PointCurve {
   }
 
  private:
+  /// Where the way is shorter, squares of squares of it lose digits to underflow.
+  static constexpr double kLeastSquaredWay = 1e-140;
+
   /// A model point seen from a place of the curve.
   struct From {
     double squared;  ///< distance

@@ -21,6 +21,7 @@ namespace clearway {
 struct ResultPart {
   Shard shard;
   std::uint64_t division = 0;  ///< hash of which cells of which store are in which part
+  std::string length_unit;     ///< of the store: for what merge() says
   friend bool operator==(const ResultPart&, const ResultPart&) = default;
 };
 

@@ -82,7 +82,8 @@ void read_profile_distance(const hdf5::Id& file, const std::string& name, double
 ResultPart read_part(const hdf5::Id& file, const std::string& name) {
   const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
   const ResultPart part{{shard[0], shard[1]},
-                        hdf5::read_number<std::uint64_t>(file, names::kDivision, name)};
+                        hdf5::read_number<std::uint64_t>(file, names::kDivision, name),
+                        hdf5::read_text_attribute(file, names::kLengthUnit, name)};
   if (part.shard.is_valid()) return part;
   refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
                    std::to_string(Shard::kMost));
@@ -122,6 +123,7 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   const std::uint32_t shard[]{header.part->shard.number, header.part->shard.count};
   hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
   hdf5::write_number(file, names::kDivision, header.part->division);
+  hdf5::write_attribute(file, names::kLengthUnit, header.part->length_unit);
 }
 
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
@@ -153,6 +155,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     read_model_box(file, name, header.model_box);
     read_profile_distance(file, name, header.profile);
   }
+  if (is_part && header.version < 3) refuse(name, "is a part of version 2, which has none");
   if (is_part) header.part = read_part(file, name);
   return header;
 }

@@ -34,6 +34,7 @@ inline constexpr const char* kClosedWay = "closed way";
 
 inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
 inline constexpr const char* kDivision = "division";
+inline constexpr const char* kLengthUnit = "length_unit";
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";

@@ -71,6 +71,9 @@ TEST_CASE("a wide tree far from the origin and of odd sizes") {
   check(random_points(3000, {1e12, 0, -1e12}, 1), {1e12, 0, -1e12}, 1);
   check(random_points(3000, {0, 0, 0}, 1e-30), {0, 0, 0}, 1e-30);
   check(random_points(3000, {0, 0, 0}, 1e25), {0, 0, 0}, 1e25);
+  for (const double size : {1e-19, 1e-21, 3e-22, 1e-22, 3e-23, 1e-23}) {
+    check(random_points(3000, {0, 0, 0}, size), {0, 0, 0}, size);
+  }
 }
 
 TEST_CASE("a wide tree of points at few places") {

@@ -53,6 +53,7 @@ TEST_CASE("the verdict of a part is never clear") {
   CHECK_THAT(part.out, Contains("part 1 of 2: no point of this part is closer than 0.1 m") &&
                            Contains("clearway merge gives the answer of all parts"));
   CHECK_THAT(part.out, !Contains("clear:"));
+  CHECK_THAT(part.err, Contains("part 1/2: 0 of 2,001 environment points collide"));
   const Outcome as_json = street.run("--shard 2/2 --radius 0.1 -o part2.h5 --json");
   const json report = json::parse(as_json.out);
   CHECK(report["verdict"] == "unknown");
@@ -64,7 +65,22 @@ TEST_CASE("the verdict of a part is never clear") {
   const Outcome all = street.program("merge part1.h5 part2.h5 -o out.h5 --fail-on-collision");
   INFO(all.err);
   CHECK(all.exit_code == 0);
-  CHECK_THAT(all.out, Contains("clear: no environment point is closer than 0.1 m"));
+  CHECK_THAT(all.out, Contains("clear: no environment point is closer than 0.1 m") &&
+                          Contains("unless the run of a part ended with warnings"));
+}
+
+TEST_CASE("a merge names the unit of the scan as its runs do") {
+  const Street street;
+  put_bytes(street.folder / "feet.xyz", "x [ft] y [ft] z [ft]\n0 1 0\n7 0.25 0\n9 1 0\n");
+  REQUIRE(street.program("convert feet.xyz -o site.h5 --force").exit_code == 0);
+  const Outcome run = street.run("--radius 0.5 -o whole.h5");
+  INFO(run.err);
+  CHECK_THAT(run.out, Contains("closer than 0.5 ft"));
+  street.make_parts("--radius 0.5");
+  CHECK_THAT(street.program("merge part1.h5 part2.h5 -o out.h5").out,
+             Contains("closer than 0.5 ft"));
+  CHECK_THAT(street.program("merge part1.h5 part2.h5 -o out.h5 --resume").out,
+             Contains("closer than 0.5 ft"));
 }
 
 TEST_CASE("a merge answers as a run does") {
