@@ -81,9 +81,9 @@ void read_profile_distance(const hdf5::Id& file, const std::string& name, double
 
 ResultPart read_part(const hdf5::Id& file, const std::string& name) {
   const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
-  const ResultPart part{{shard[0], shard[1]},
-                        hdf5::read_number<std::uint64_t>(file, names::kDivision, name),
-                        hdf5::read_text_attribute(file, names::kLengthUnit, name)};
+  ResultPart part{{shard[0], shard[1]},
+                  hdf5::read_number<std::uint64_t>(file, names::kDivision, name),
+                  hdf5::read_text_attribute(file, names::kLengthUnit, name)};
   if (part.shard.is_valid()) return part;
   refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
                    std::to_string(Shard::kMost));
