@@ -2,7 +2,8 @@
 """Writes the manual pages of programs, from their help: man_pages.py VERSION FOLDER PROGRAM...
 
 The commands of clearway have pages of their own, such as clearway-run.1.gz. All commands below
-those, and those of other programs, are sections of the page above them. Exit codes are those of docs/guide/command-line.md.
+those, and those of other programs, are sections of the page above them. Exit codes are those of
+docs/guide/command-line.md.
 """
 
 import gzip

@@ -22,4 +22,9 @@ inline std::string to_string(const Shard& shard) {
   return std::to_string(shard.number) + "/" + std::to_string(shard.count);
 }
 
+/// "part 2 of 7"
+inline std::string in_words(const Shard& shard) {
+  return "part " + std::to_string(shard.number) + " of " + std::to_string(shard.count);
+}
+
 }  // namespace clearway

@@ -70,8 +70,7 @@ struct RunFacts {
 };
 
 /// Vehicles, routes and radii in the order of the file, radii innermost. The shards of a run come
-/// before their merge. facts_of reads what a task
-/// would read, and refuses what that would refuse.
+/// before their merge. facts_of reads what a task would read, and refuses what that would refuse.
 Plan make_plan(const Campaign& campaign,
                const std::function<RunFacts(const PlannedRun&)>& facts_of);
 

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <string_view>
 
+#include "core/util/number_ranges.hpp"
+
 namespace clearway::campaign {
 namespace {
 
@@ -20,13 +22,7 @@ std::optional<std::size_t> task_number(std::string_view text) {
 
 std::string task_list_text(const TaskList& tasks) {
   std::string text;
-  for (std::size_t i = 0; i < tasks.size();) {
-    std::size_t last = i;
-    while (last + 1 < tasks.size() && tasks[last + 1] == tasks[last] + 1) ++last;
-    text += (text.empty() ? "" : ",") + std::to_string(tasks[i]);
-    if (last > i) text += "-" + std::to_string(tasks[last]);
-    i = last + 1;
-  }
+  for (const std::string& range : number_ranges(tasks)) text += (text.empty() ? "" : ",") + range;
   return text;
 }
 

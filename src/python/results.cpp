@@ -20,13 +20,20 @@ struct ProfileColumns : Columns {
   py::array chainage;
 };
 
-py::object clearance(const Result& result) {
-  if (!(result.parameters().clearance > 0)) return py::none();
-  Clearances read = without_gil([&] { return result.clearance(); });
-  ClearanceColumns columns;
+/// What clearances and profile have alike; the arrays take the vectors.
+template <typename Shared, typename Read>
+Shared common_columns(Read& read) {
+  Shared columns;
   columns.source = to_array(std::move(read.source));
   columns.xyz = to_array(std::move(read.xyz));
   columns.distance = to_array(std::move(read.distance));
+  return columns;
+}
+
+py::object clearance(const Result& result) {
+  if (!(result.parameters().clearance > 0)) return py::none();
+  Clearances read = without_gil([&] { return result.clearance(); });
+  auto columns = common_columns<ClearanceColumns>(read);
   columns.pose = to_array(std::move(read.pose));
   return py::cast(std::move(columns));
 }
@@ -34,10 +41,7 @@ py::object clearance(const Result& result) {
 py::object profile(const Result& result) {
   if (!(result.parameters().profile > 0)) return py::none();
   Profile read = without_gil([&] { return result.profile(); });
-  ProfileColumns columns;
-  columns.source = to_array(std::move(read.source));
-  columns.xyz = to_array(std::move(read.xyz));
-  columns.distance = to_array(std::move(read.distance));
+  auto columns = common_columns<ProfileColumns>(read);
   columns.chainage = to_array(std::move(read.chainage));
   return py::cast(std::move(columns));
 }

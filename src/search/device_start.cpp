@@ -1,7 +1,5 @@
 #include "search/device_start.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 
 #include "core/util/stopwatch.hpp"
@@ -9,6 +7,7 @@
 #include "search/check_query.hpp"
 #include "search/choice/device_estimate.hpp"
 #include "search/devices.hpp"
+#include "search/threads.hpp"
 
 namespace clearway {
 
@@ -44,8 +43,7 @@ double DeviceStart::seconds() const {
 
 std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options, const Store* store) {
   if (fallback_allowed(options)) {
-    const int threads =
-        options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+    const int threads = threads_or_all(options.threads);
     if (store == nullptr || store->reader().point_count() < surely_many_points(threads))
       return nullptr;
   }

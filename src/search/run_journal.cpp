@@ -60,15 +60,6 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
   return identity;
 }
 
-bool answers(const fs::path& file, const ResultHeader& query, Progress& progress) {
-  try {
-    const ResultReader result(file, Parts::kAccepted);
-    return result.header() == query && !verify_result(result, progress);
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 void remove_file(const fs::path& path) {
   std::error_code failed;
   fs::remove(path, failed);
@@ -126,7 +117,7 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
                               Progress& progress) {
   if (replaces_) return false;
   if (options_.resume && fs::exists(output_) && is_of(store, header) &&
-      answers(output_, header, progress)) {
+      is_intact_result(output_, header, progress)) {
     if (read_ || !unwanted_.empty()) remove_file(path_);
     return true;
   }

@@ -1,7 +1,5 @@
 #include "clearway/search.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -94,13 +92,10 @@ class Search {
   void divide() {
     if (!options_.shard) return;
     throw_if_stopped(progress_);
-    shard_.emplace(store_, query_, *options_.shard, threads(), options_.memory_bytes);
+    shard_.emplace(store_, query_, *options_.shard, threads_or_all(options_.threads),
+                   options_.memory_bytes);
     header_.part = shard_->part();
     report_.shard_share = shard_->share();
-  }
-
-  int threads() const {
-    return options_.threads > 0 ? options_.threads : tbb::this_task_arena::max_concurrency();
   }
 
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
@@ -128,7 +123,7 @@ class Search {
   }
 
   Found find() {
-    options_.threads = threads();
+    options_.threads = threads_or_all(options_.threads);
     const bool gpu = gpu_pays() && may_take_gpus(options_);
     check_threads(options_.threads);
     if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);

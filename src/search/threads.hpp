@@ -10,11 +10,16 @@ namespace clearway {
 /// program instead.
 void check_threads(int threads);
 
+/// threads: 0 for as many as there are cores.
+inline int threads_or_all(int threads) {
+  return threads != 0 ? threads : tbb::this_task_arena::max_concurrency();
+}
+
 /// Calls body() where oneTBB has that many threads; 0: as many as there are cores. Throws as
 /// check_threads does.
 template <typename Body>
 auto in_threads(int threads, const Body& body) {
-  if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
+  threads = threads_or_all(threads);
   check_threads(threads);
   const ThreadLimit limit(threads);
   return tbb::task_arena(threads).execute(body);

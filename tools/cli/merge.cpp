@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/exit_code.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
@@ -18,7 +19,6 @@
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/formats/length_unit.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway::tool {
@@ -54,12 +54,6 @@ nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& r
 /// Parts do not hold warnings. No all-clear without a word of them.
 constexpr const char* kRunsMayHaveWarned = ", unless the run of a part ended with warnings";
 
-/// As clearway run names it: degrees count as metres there.
-std::string unit_of(const MergeReport& report) {
-  const LengthUnit unit = length_unit_of(report.length_unit);
-  return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
-}
-
 /// Whether no point collides.
 bool run_merge(MergeCommand& options) {
   const Stopwatch total;
@@ -71,12 +65,12 @@ bool run_merge(MergeCommand& options) {
   const ResultHeader& header = result.header();
   const Verdict verdict =
       report.was_finished ? verdict_of(result, {}) : verdict_of(report, header.float_precision);
-  const std::string sentence = verdict_text(verdict, {}, unit_of(report), kRunsMayHaveWarned);
-  spdlog::info("{}: {} {}; {} of {} {}", options.output.string(),
+  const std::string sentence =
+      verdict_text(verdict, {}, symbol_of_unit(report.length_unit), kRunsMayHaveWarned);
+  spdlog::info("{}: {} {}; {}", options.output.string(),
                report.was_finished ? "is there already, of" : "merged",
-               counted(report.parts, "part"), format_count(report.colliding_points),
-               counted(report.environment_points, "environment point"),
-               report.colliding_points == 1 ? "collides" : "collide");
+               counted(report.parts, "part"),
+               found_text(report.colliding_points, report.environment_points));
   if (options.json) {
     spdlog::info("{}", sentence);
     print(text_of_json(json_of(options, report, verdict, total.seconds())));

@@ -22,7 +22,6 @@
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/formats/length_unit.hpp"
 #include "io/system/pending_file.hpp"
 #include "search/threads.hpp"
 
@@ -154,10 +153,7 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
   }
   const std::string part =
       options.search.shard ? "part " + to_string(*options.search.shard) + ": " : "";
-  const std::string found =
-      part + fmt::format("{} of {} {}", format_count(report.colliding_points),
-                         counted(report.environment_points, "environment point"),
-                         report.colliding_points == 1 ? "collides" : "collide");
+  const std::string found = part + found_text(report.colliding_points, report.environment_points);
   const std::string how =
       fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
   const bool doubtful = !report.warnings.empty();
@@ -189,12 +185,6 @@ Store open_environment(const std::filesystem::path& path) {
     check_is_store(path);
     throw;
   }
-}
-
-/// What follows a length; degrees are warned of, and count as metres here.
-std::string unit_of(const Store& store) {
-  const LengthUnit unit = length_unit_of(store.length_unit());
-  return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
 }
 
 Verdict find_verdict(const SearchReport& report, const Query& query, const RunOptions& options) {
@@ -246,11 +236,11 @@ bool run(RunOptions& options) {
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();
-  log_report(report, options, unit_of(store), program.total_seconds);
+  log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   answer.verdict = find_verdict(report, query, options);
-  const std::string sentence =
-      verdict_text(answer.verdict, answer.labels, unit_of(store), caveat(report));
+  const std::string sentence = verdict_text(answer.verdict, answer.labels,
+                                            symbol_of_unit(store.length_unit()), caveat(report));
   if (options.json) {
     spdlog::info("{}", sentence);
     print(text_of_json(json_of(report, options, answer, program)));

@@ -110,30 +110,30 @@ std::optional<AnswerPlace> answer_place(const std::optional<FoundPlace>& found, 
   return place;
 }
 
-}  // namespace
-
-Verdict verdict_of(const SearchReport& report, const Query& query, const SearchOptions& options) {
+/// Of what a report counts and names, of a search or a merge.
+template <typename Report>
+Verdict verdict_of_found(const Report& report, const QueryParameters& query, bool float_precision) {
   Verdict out;
-  out.shard = options.shard;
   out.colliding_points = report.colliding_points;
   out.query = query;
-  out.float_precision = options.float_precision;
-  out.first = answer_place(report.first_place, false);
-  out.least_clearance = answer_place(report.least_clearance, true);
-  out.least_profile = answer_place(report.least_profile, true);
-  set_chainages(out, query.poses);
-  return out;
-}
-
-Verdict verdict_of(const MergeReport& report, bool float_precision) {
-  Verdict out;
-  out.colliding_points = report.colliding_points;
-  out.query = report.parameters;
   out.float_precision = float_precision;
   out.first = answer_place(report.first_place, false);
   out.least_clearance = answer_place(report.least_clearance, true);
   out.least_profile = answer_place(report.least_profile, true);
   return out;
+}
+
+}  // namespace
+
+Verdict verdict_of(const SearchReport& report, const Query& query, const SearchOptions& options) {
+  Verdict out = verdict_of_found(report, query, options.float_precision);
+  out.shard = options.shard;
+  set_chainages(out, query.poses);
+  return out;
+}
+
+Verdict verdict_of(const MergeReport& report, bool float_precision) {
+  return verdict_of_found(report, report.parameters, float_precision);
 }
 
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
@@ -149,13 +149,17 @@ Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
   return out;
 }
 
+std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points) {
+  return fmt::format("{} of {} {}", format_count(colliding_points),
+                     counted(environment_points, "environment point"),
+                     colliding_points == 1 ? "collides" : "collide");
+}
+
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat) {
   const std::string limit = fmt::format("{} {}", verdict.query.radius, unit);
   std::string text;
-  if (verdict.shard) {
-    text = fmt::format("part {} of {}: ", verdict.shard->number, verdict.shard->count);
-  }
+  if (verdict.shard) text = in_words(*verdict.shard) + ": ";
   if (verdict.is_clear()) {
     text += "clear: no environment point is closer than " + limit + " to the model on its way";
   } else if (!verdict.is_conflict()) {

@@ -51,6 +51,9 @@ Verdict verdict_of(const MergeReport& report, bool float_precision);
 /// where they are not at hand. Throws as ResultReader does.
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses);
 
+/// "3 of 2,001 environment points collide"
+std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points);
+
 /// One sentence, without what `caveat` adds before its end. unit: of lengths, "m".
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat);

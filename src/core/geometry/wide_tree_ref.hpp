@@ -60,7 +60,8 @@ struct WideTreeRef {
     open[count++] = {0, 0, 0};
     while (count > 0) {
       const Open next = open[--count];
-      if (next.squared > above(within())) continue;
+      const float limit = above(within());
+      if (next.squared > limit) continue;
       if (next.level == levels) {
         const PointPacket& packet = packets[next.index];
         double squared[PointPacket::kMost];
@@ -71,7 +72,6 @@ struct WideTreeRef {
         continue;
       }
       float squared[kWidth];
-      const float limit = above(within());
       to_boxes(nodes[first[next.level] + next.index], from, squared);
       const std::uint32_t width = children(next.level);
       const std::uint32_t begin = count;

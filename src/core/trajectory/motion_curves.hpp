@@ -8,11 +8,11 @@
 
 namespace clearway {
 
-/// How straight the poses of every node of a motion tree move, seen from the model.
+/// How smoothly the poses of every node of a motion tree move, seen from the model.
 class MotionCurves {
  public:
   /// For points that are at most `reach` metres from the model, the rounding of a test included.
-  /// spacing: of the model's points, metres. Nodes whose chord is of no use beside it have none.
+  /// spacing: of the model's points, metres. Nodes whose curve is of no use beside it have none.
   MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing,
                int threads);
   MotionCurves() = default;

@@ -55,11 +55,10 @@ class PartMerge {
       : set_(set),
         batch_rows_(batch_rows),
         progress_(progress),
-        out_{.collisions = set.collisions(), .clearances = set.clearances()},
-        writer_(path, set.header(), out_.collisions, out_.clearances) {}
+        writer_(path, set.header(), set.collisions(), set.clearances()) {}
 
   MergedResult run() {
-    progress_.begin("merge", out_.collisions + out_.clearances, "points");
+    progress_.begin("merge", set_.collisions() + set_.clearances(), "points");
     merge_collisions();
     if (set_.header().clearance > 0) merge_clearances();
     if (set_.header().profile > 0) merge_profile();
@@ -179,7 +178,7 @@ class PartMerge {
   const PartSet& set_;
   const std::size_t batch_rows_;
   Progress& progress_;
-  MergedResult out_;
+  MergedResult out_{};
   ResultWriter writer_;
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "core/util/number_ranges.hpp"
 #include "io/result/compare_results.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/xxh64.hpp"
@@ -13,10 +14,7 @@ namespace {
 
 const Shard& shard_of(const ResultReader& part) { return part.header().part->shard; }
 
-std::string part_text(const ResultReader& part) {
-  return "part " + std::to_string(shard_of(part).number) + " of " +
-         std::to_string(shard_of(part).count);
-}
+std::string part_text(const ResultReader& part) { return in_words(shard_of(part)); }
 
 ResultReader open_part(const std::filesystem::path& file) {
   ResultReader part(file, Parts::kAccepted);
@@ -59,18 +57,13 @@ std::string difference_of(const ResultReader& part, const ResultReader& other) {
 
 /// "2", "2, 5-7"; after many numbers "...".
 std::string numbers_text(const std::vector<std::uint32_t>& numbers) {
-  constexpr int kMostRanges = 10;
+  constexpr std::size_t kMostRanges = 10;
+  const std::vector<std::string> ranges = number_ranges(numbers);
   std::string text;
-  int ranges = 0;
-  for (std::size_t i = 0; i < numbers.size();) {
-    std::size_t last = i;
-    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
-    if (++ranges > kMostRanges) return text + ", ...";
-    text += (text.empty() ? "" : ", ") + std::to_string(numbers[i]);
-    if (last > i) text += "-" + std::to_string(numbers[last]);
-    i = last + 1;
+  for (std::size_t i = 0; i < std::min(ranges.size(), kMostRanges); ++i) {
+    text += (i == 0 ? "" : ", ") + ranges[i];
   }
-  return text;
+  return ranges.size() > kMostRanges ? text + ", ..." : text;
 }
 
 void refuse_missing(const std::vector<ResultReader>& parts) {

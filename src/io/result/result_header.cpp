@@ -155,8 +155,10 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     read_model_box(file, name, header.model_box);
     read_profile_distance(file, name, header.profile);
   }
-  if (is_part && header.version < 3) refuse(name, "is a part of version 2, which has none");
-  if (is_part) header.part = read_part(file, name);
+  if (is_part) {
+    if (header.version < 3) refuse(name, "is a part of version 2, which has none");
+    header.part = read_part(file, name);
+  }
   return header;
 }
 

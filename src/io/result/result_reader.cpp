@@ -56,9 +56,8 @@ void add_to(std::span<Xxh64Stream> hashes, const Columns&... columns) {
 ResultReader::ResultReader(const std::filesystem::path& path, Parts parts) {
   state_ = as_input(path.string(), [&] { return std::make_unique<State>(path); });
   if (parts == Parts::kAccepted || !header().part) return;
-  const Shard& shard = header().part->shard;
-  throw InputError(name() + ": is part " + std::to_string(shard.number) + " of " +
-                       std::to_string(shard.count) + " of a result, and says nothing of the rest",
+  throw InputError(name() + ": is " + in_words(header().part->shard) +
+                       " of a result, and says nothing of the rest",
                    Remedy::kMerge);
 }
 

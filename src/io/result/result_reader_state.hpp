@@ -58,9 +58,10 @@ struct ResultReader::State {
                         open<double>(result_names::kProfileGroup, result_names::kXyz, 3),
                         open<double>(result_names::kProfileGroup, result_names::kChainage, 0),
                         {}});
-    if (header.part)
+    if (header.part) {
       profile->squared.emplace(
           open<double>(result_names::kProfileGroup, result_names::kSquared, 0));
+    }
     const std::uint64_t rows = profile->distance.rows();
     check_equal(result_names::kProfileGroup, rows,
                 {profile->source.rows(), profile->xyz.rows(), profile->chainage.rows(),

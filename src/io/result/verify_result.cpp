@@ -49,4 +49,14 @@ std::optional<std::string> verify_result(const ResultReader& result, Progress& p
   return fault;
 }
 
+bool is_intact_result(const std::filesystem::path& file, const ResultHeader& header,
+                      Progress& progress) {
+  try {
+    const ResultReader result(file, Parts::kAccepted);
+    return result.header() == header && !verify_result(result, progress);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace clearway

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -12,5 +13,9 @@ namespace clearway {
 /// environment points, coordinates finite and on the result's scale, poses below their number,
 /// distances within what was asked for, chainages ascending. Gives the first fault found.
 std::optional<std::string> verify_result(const ResultReader& result, Progress& progress);
+
+/// Whether the file is an intact result, or part of one, with this header. It is there.
+bool is_intact_result(const std::filesystem::path& file, const ResultHeader& header,
+                      Progress& progress);
 
 }  // namespace clearway

@@ -270,8 +270,8 @@ def search(
     engine: Literal["auto", "sweep", "grid", "kdtree"] = "auto",
     device: Literal["auto", "cpu", "cuda"] = "auto", gpus: Sequence[int] = (), threads: int = 0,
     memory_bytes: int = 4294967296, device_memory_bytes: int = 0, field_voxel: float = 0.0,
-    grid_cell: float = 0.0, float_precision: bool = False, shard: tuple[int, int] | None = None, overwrite: bool = False,
-    resume: bool = False, strict: bool = False, input_warnings: Iterable[Message] = (),
+    grid_cell: float = 0.0, float_precision: bool = False, shard: tuple[int, int] | None = None,
+    overwrite: bool = False, resume: bool = False, strict: bool = False, input_warnings: Iterable[Message] = (),
     end_gpus: bool = False, journal_interval_seconds: float = 5.0,
     progress: _Progress | None = None, message: _Tell | None = None, stop: _Stop | None = None,
 ) -> SearchReport: ...

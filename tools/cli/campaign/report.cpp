@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "campaign/campaign_page.hpp"
+#include "campaign/page/campaign_page.hpp"
 #include "campaign/plan_file.hpp"
 #include "campaign/task_state.hpp"
 #include "clearway/error.hpp"

@@ -136,6 +136,11 @@ std::optional<double> metres_of_unit(const std::string& length_unit) {
   return metres > 0 && metres != 1 ? std::optional(metres) : std::nullopt;
 }
 
+std::string symbol_of_unit(const std::string& length_unit) {
+  const LengthUnit unit = length_unit_of(length_unit);
+  return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
+}
+
 CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,
                              const std::string& description) {
   std::vector<std::string> known;

@@ -32,6 +32,10 @@ enum class LengthRange { kAboveZero, kFromZero, kAny };
 ParsedLength parse_length(const std::string& option, const std::string& text,
                           LengthRange range = LengthRange::kAboveZero);
 
+/// What follows a length in the unit of a store's coordinates, by its name there. Degrees are
+/// warned of elsewhere, and count as metres here.
+std::string symbol_of_unit(const std::string& length_unit);
+
 /// Metres of the unit of a store's coordinates, by its name there; none where it is the metre.
 std::optional<double> metres_of_unit(const std::string& length_unit);
 

@@ -1,12 +1,12 @@
-#include "campaign/campaign_page.hpp"
+#include "campaign/page/campaign_page.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
 
-#include "campaign/campaign_style.hpp"
-#include "campaign/page_cell.hpp"
+#include "campaign/page/campaign_style.hpp"
+#include "campaign/page/page_cell.hpp"
 #include "campaign/task_list.hpp"
 #include "core/util/format.hpp"
 #include "io/conflicts/json_text.hpp"

@@ -1,4 +1,4 @@
-#include "campaign/page_cell.hpp"
+#include "campaign/page/page_cell.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "campaign/campaign_style.hpp"
+#include "campaign/page/campaign_style.hpp"
 
 namespace clearway::campaign {
 
