@@ -3,6 +3,7 @@
 /// Clearway: which points of a scanned environment lie within the search radius of a moving model?
 /// docs/guide/library.md walks through it.
 
+#include "clearway/body.hpp"        // IWYU pragma: export
 #include "clearway/conflicts.hpp"   // IWYU pragma: export
 #include "clearway/convert.hpp"     // IWYU pragma: export
 #include "clearway/error.hpp"       // IWYU pragma: export

@@ -56,6 +56,9 @@ struct Conflict {
   /// and up. The model's box is not needed. None where the pose's rotation cannot be inverted.
   std::optional<double> lateral = {}, height = {};
   std::uint64_t group = 0;  ///< smallest source of the whole group, before it was cut
+  /// Of a vehicle's result, as an index of Result::bodies(): the one that has the least distance,
+  /// or else the one that touches its smallest source of the first pose. Its side is not known.
+  std::optional<std::uint32_t> body = {};
 };
 
 struct Conflicts {

@@ -11,7 +11,8 @@ struct FoundPlace {
   std::uint64_t source = 0;
   std::uint32_t pose = 0;
   Vec3 xyz{};
-  double distance = 0;  ///< metres, where one was asked for
+  double distance = 0;     ///< metres, where one was asked for
+  std::uint32_t body = 0;  ///< of a query with bodies; not of a profile
   friend bool operator==(const FoundPlace&, const FoundPlace&) = default;
 };
 

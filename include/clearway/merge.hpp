@@ -30,6 +30,7 @@ struct MergeReport {
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
   std::uint64_t colliding_points = 0, clearance_points = 0, profile_poses = 0;
   std::optional<FoundPlace> first_place = {}, least_clearance = {}, least_profile = {};
+  std::vector<std::string> bodies = {};  ///< names, where the query has several
 };
 
 /// Makes one result of all parts that searches with SearchOptions::shard wrote, in any order: the

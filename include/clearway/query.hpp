@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "clearway/body.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 
@@ -30,8 +31,11 @@ struct Query : QueryParameters {
   Query(std::vector<Vec3> moved, std::vector<Pose> along, const QueryParameters& parameters)
       : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
 
-  std::vector<Vec3> model;  ///< in the model's own frame, metres
-  std::vector<Pose> poses;
+  std::vector<Vec3> model;  ///< in the model's own frame, metres; empty where there are bodies
+  std::vector<Pose> poses;  ///< the path, where there are bodies
+  /// Several models in the place of one, each with poses of its own. A first pose, a clearance's
+  /// pose and a pose of the profile are then of the path.
+  std::vector<Body> bodies = {};
 };
 
 }  // namespace clearway

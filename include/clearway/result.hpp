@@ -18,9 +18,10 @@ class ResultReader;
 /// Distances of environment points to the model, ascending by source.
 struct Clearances {
   std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;            ///< empty in files before version 3
-  std::vector<double> distance;     ///< metres, the least over all poses
-  std::vector<std::uint32_t> pose;  ///< the first one that has it
+  std::vector<Vec3> xyz;                 ///< empty in files before version 3
+  std::vector<double> distance;          ///< metres, the least over all poses
+  std::vector<std::uint32_t> pose;       ///< the first one that has it
+  std::vector<std::uint32_t> body = {};  ///< that has it there; empty without bodies
 };
 
 /// Of every pose of the trajectory the least distance between the model and the environment.
@@ -52,6 +53,11 @@ class Result {
   /// As QueryParameters::first_pose defines it; empty unless the query asked for it. Files of 0.1.0
   /// with motion between poses may be one higher: their ways did not include their ends.
   std::vector<std::uint32_t> first_pose() const;
+  /// Names of the bodies, where the query has several; otherwise none.
+  const std::vector<std::string>& bodies() const;
+  /// Of the first pose, as an index of bodies(); empty unless the query has bodies and asked for
+  /// first poses.
+  std::vector<std::uint32_t> first_body() const;
   Clearances clearance() const;  ///< empty unless the query asked for it
   Profile profile() const;       ///< likewise
   /// Of the model's points; none in files before version 3.

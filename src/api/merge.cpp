@@ -28,6 +28,7 @@ MergeReport report_of(const PartSet& set) {
   report.environment_points = set.header().environment_points;
   report.model_points = set.header().model_points;
   report.poses = set.header().poses;
+  report.bodies = set.header().bodies;
   report.colliding_points = set.collisions();
   report.clearance_points = set.clearances();
   return report;

@@ -33,6 +33,15 @@ std::vector<std::uint32_t> Result::first_pose() const {
   return out;
 }
 
+const std::vector<std::string>& Result::bodies() const { return reader_->header().bodies; }
+
+std::vector<std::uint32_t> Result::first_body() const {
+  if (!reader_->header().has_first_bodies()) return {};
+  std::vector<std::uint32_t> out(size());
+  reader_->read_first_body(0, out);
+  return out;
+}
+
 Clearances Result::clearance() const {
   const std::uint64_t rows = reader_->clearances();
   Clearances out;
@@ -41,6 +50,9 @@ Clearances Result::clearance() const {
   out.distance.resize(rows);
   out.pose.resize(rows);
   if (rows > 0) reader_->read_clearances(0, out.source, out.xyz, out.distance, out.pose);
+  if (bodies().empty()) return out;
+  out.body.resize(rows);
+  if (rows > 0) reader_->read_clearance_body(0, out.body);
   return out;
 }
 

@@ -19,6 +19,7 @@
 #include "findings/path_stretches.hpp"
 #include "findings/side.hpp"
 #include "findings/tally_points.hpp"
+#include "io/result/result_rows.hpp"
 #include "io/system/thread_limit.hpp"
 
 namespace clearway {
@@ -32,7 +33,7 @@ class ConflictSearch {
       : reader_(result.reader()),
         poses_(poses),
         options_(options),
-        model_box_(options.model_box ? options.model_box : result.model_box()),
+        model_box_(box_of_one_model(result, options)),
         progress_(progress),
         memory_(options.memory_bytes, reader_.collisions(), poses.size()),
         chainage_(chainage_of(poses)) {}
@@ -78,6 +79,7 @@ class ConflictSearch {
     grid_.reset();
     make_conflicts(groups, parts, tallies);
     number(part_of_row, tallies.size());
+    if (!reader_.header().bodies.empty()) add_first_bodies(part_of_row);
     add_distances(part_of_row);
     for (Conflict& conflict : out_.listed) complete(conflict);
     return part_of_row;
@@ -161,6 +163,27 @@ class ConflictSearch {
     for (std::uint32_t& part : part_of_row) part = id_of_part[part];
   }
 
+  /// Of a vehicle's bodies each has its own frame, so that no one box says on which side it is.
+  static std::optional<Box> box_of_one_model(const Result& result, const ConflictOptions& options) {
+    if (!result.bodies().empty()) return std::nullopt;
+    return options.model_box ? options.model_box : result.model_box();
+  }
+
+  void add_first_bodies(const std::vector<std::uint32_t>& conflict_of_row) {
+    ResultRowStream stream(reader_);
+    std::size_t row = 0;
+    for (ResultRows rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+        if (conflict_of_row[row] == 0) continue;
+        Conflict& conflict = out_.listed[conflict_of_row[row] - 1];
+        if (!conflict.body && rows.first_pose[i] == conflict.first_pose) {
+          conflict.body = rows.body[i];
+        }
+      }
+    }
+  }
+
   void add_distances(const std::vector<std::uint32_t>& conflict_of_row) {
     if (!(reader_.header().clearance > 0)) return;
     const auto least =
@@ -172,6 +195,7 @@ class ConflictSearch {
       conflict.nearest_pose = found.pose;
       conflict.nearest_source = found.source;
       conflict.nearest_point = found.xyz;
+      if (found.body) conflict.body = found.body;
       conflict.encroachment = reader_.header().radius - found.distance;
     }
   }

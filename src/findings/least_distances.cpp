@@ -21,7 +21,8 @@ std::vector<LeastDistance> least_distances(const ResultReader& result,
       LeastDistance& least = out[conflict_of[row]];
       if (least.source == LeastDistance::kNone || rows.distance[i] < least.distance) {
         least = {rows.distance[i], rows.source[i], rows.pose[i],
-                 rows.xyz.empty() ? std::nullopt : std::optional(rows.xyz[i])};
+                 rows.xyz.empty() ? std::nullopt : std::optional(rows.xyz[i]),
+                 rows.body.empty() ? std::nullopt : std::optional(rows.body[i])};
       }
     }
     progress.advance(rows.size());

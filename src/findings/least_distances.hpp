@@ -17,7 +17,8 @@ struct LeastDistance {
   double distance = 0;
   std::uint64_t source = kNone;  ///< of equally near ones the smallest
   std::uint32_t pose = 0;
-  std::optional<Vec3> xyz;  ///< none in files before version 3
+  std::optional<Vec3> xyz;                 ///< none in files before version 3
+  std::optional<std::uint32_t> body = {};  ///< of a vehicle
 };
 
 /// Joins the clearances with the colliding points, of which both are ascending by source. For each

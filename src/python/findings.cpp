@@ -36,6 +36,9 @@ void add_conflict(py::module_& module) {
       .def_readonly("box", &Conflict::box, "Of its points, metres.")
       .def_property_readonly(
           "centroid", [](const Conflict& c) { return to_array(c.centroid); }, "3 float64, metres.")
+      .def_readonly("body", &Conflict::body,
+                    "Of a vehicle's result, as an index of Result.bodies(): the one that has the "
+                    "least distance, or else touches first. None where there is one model.")
       .def_readonly("first_pose", &Conflict::first_pose, "The smallest first pose of its points.")
       .def_readonly("last_pose", &Conflict::last_pose, "The greatest first pose of its points.")
       .def_readonly("chainage_from", &Conflict::chainage_from, "Metres along the path.")

@@ -14,7 +14,7 @@ struct Columns {
   py::array source, xyz, distance;
 };
 struct ClearanceColumns : Columns {
-  py::array pose;
+  py::array pose, body;
 };
 struct ProfileColumns : Columns {
   py::array chainage;
@@ -35,6 +35,7 @@ py::object clearance(const Result& result) {
   Clearances read = without_gil([&] { return result.clearance(); });
   auto columns = common_columns<ClearanceColumns>(read);
   columns.pose = to_array(std::move(read.pose));
+  columns.body = to_array(std::move(read.body));
   return py::cast(std::move(columns));
 }
 
@@ -51,6 +52,11 @@ py::object first_pose(const Result& result) {
   return to_array(without_gil([&] { return result.first_pose(); }));
 }
 
+py::object first_body(const Result& result) {
+  if (result.bodies().empty() || !result.parameters().first_pose) return py::none();
+  return to_array(without_gil([&] { return result.first_body(); }));
+}
+
 void add_columns(py::module_& module) {
   py::class_<ClearanceColumns>(
       module, "Clearances",
@@ -61,6 +67,9 @@ void add_columns(py::module_& module) {
       .def_readonly("distance", &ClearanceColumns::distance,
                     "The least over all poses: float64, metres.")
       .def_readonly("pose", &ClearanceColumns::pose, "The first pose that has it: uint32.")
+      .def_readonly("body", &ClearanceColumns::body,
+                    "The body that has it there, as an index of Result.bodies(): uint32. Empty "
+                    "where there is one model.")
       .def("__len__", [](const ClearanceColumns& c) { return c.source.size(); });
   py::class_<ProfileColumns> profiles(
       module, "Profile", "Of every pose the least distance between the model and the environment.");
@@ -114,6 +123,11 @@ void add_results(py::module_& module) {
           "Coordinates: n x 3 float64, metres.")
       .def("first_pose", first_pose,
            "The first pose that touches each point: n uint32. None: the query did not ask for it.")
+      .def("bodies", &Result::bodies,
+           "Names of a vehicle's bodies; empty where there is one model.")
+      .def("first_body", first_body,
+           "The body that touches each point at its first pose, as an index of bodies(): n uint32. "
+           "None: there is one model, or the query did not ask for first poses.")
       .def("clearance", clearance, "Clearances. None: the query did not ask for them.")
       .def("profile", profile, "A Profile. None: the query did not ask for it.")
       .def("model_box", &Result::model_box, "Of the model's points: a Box, or None.")

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "core/query/body_numbers.hpp"
+#include "core/query/hit_set.hpp"
 
 namespace clearway {
 namespace {
@@ -57,6 +59,42 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   }
   if (options.overwrite && options.resume) {
     throw UsageError("a run either resumes or overwrites");
+  }
+}
+
+void check_model_size(const std::string& what, const std::vector<Vec3>& model) {
+  if (model.empty()) throw InputError(what + " has no points");
+  if (model.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(what + " has " + std::to_string(model.size()) +
+                     " points, expected fewer than 2^32");
+  }
+}
+
+void check_body(const Body& body, const Query& query, std::set<std::string>& names) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError("body " + body.name + ": " + what);
+  };
+  if (body.name.empty() || body.name.find('\n') != std::string::npos ||
+      body.name.find('\0') != std::string::npos || body.name.size() > kMostNameBytes) {
+    refuse("expected a name of at most " + std::to_string(kMostNameBytes) + " bytes in one line");
+  }
+  if (!names.insert(body.name).second) refuse("another body has this name too");
+  if (body.poses.size() != body.path_pose.size()) {
+    refuse("has " + std::to_string(body.poses.size()) + " poses, and says of " +
+           std::to_string(body.path_pose.size()) + " which pose of the path they are");
+  }
+  for (std::size_t i = 0; i < body.path_pose.size(); ++i) {
+    const bool ascends = i == 0 || body.path_pose[i] > body.path_pose[i - 1];
+    if (!ascends || body.path_pose[i] >= query.poses.size()) {
+      refuse("its poses are not in the order of the path");
+    }
+    if (query.between_poses && i > 0 && body.path_pose[i] != body.path_pose[i - 1] + 1) {
+      throw UsageError("body " + body.name + " has no pose between poses " +
+                       std::to_string(body.path_pose[i - 1]) + " and " +
+                       std::to_string(body.path_pose[i]) +
+                       " of the path, so that its way there is not known: search at poses, or "
+                       "split the path");
+    }
   }
 }
 
@@ -115,11 +153,33 @@ void check_sizes(const Query& query) {
     throw InputError("the trajectory has " + std::to_string(query.poses.size()) +
                      " poses, expected fewer than " + std::to_string(kEnd));
   }
-  if (query.model.empty()) throw InputError("the model has no points");
-  if (query.model.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError("the model has " + std::to_string(query.model.size()) +
-                     " points, expected fewer than 2^32");
+  if (query.bodies.empty()) check_model_size("the model", query.model);
+  for (const Body& body : query.bodies) check_model_size("body " + body.name, body.model);
+}
+
+void check_bodies(const Query& query, const SearchOptions& options) {
+  if (query.bodies.empty()) return;
+  if (chosen_engine(options) != Engine::kSweep) {
+    refuse_engine(name_of(options.engine), "searches one model, and no vehicle of several bodies");
   }
+  if (options.device == Device::kCuda || !options.gpus.empty()) {
+    throw UsageError("a vehicle of several bodies is searched on the CPU alone");
+  }
+  if (query.tolerance > 0) {
+    throw UsageError("a tolerance and a vehicle of several bodies cannot be combined");
+  }
+  if (!query.model.empty()) throw InputError("a query has either a model or bodies");
+  if (query.bodies.size() > kMostBodies) {
+    throw InputError("the vehicle has " + std::to_string(query.bodies.size()) +
+                     " bodies, expected at most " + std::to_string(kMostBodies));
+  }
+  if (BodyNumbers(query).end(query.poses.size()) >= HitSet::kNever) {
+    throw InputError("the path has " + std::to_string(query.poses.size()) + " poses for " +
+                     std::to_string(query.bodies.size()) +
+                     " bodies, expected fewer than 2^32 - 1 poses of bodies together");
+  }
+  std::set<std::string> names;
+  for (const Body& body : query.bodies) check_body(body, query, names);
 }
 
 }  // namespace clearway

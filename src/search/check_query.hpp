@@ -14,4 +14,8 @@ void check_query(const QueryParameters& query, const SearchOptions& options);
 /// Throws InputError where the trees over model and poses cannot have as many nodes.
 void check_sizes(const Query& query);
 
+/// Throws UsageError where the engine cannot search bodies so, and InputError where they contradict
+/// each other or the path.
+void check_bodies(const Query& query, const SearchOptions& options);
+
 }  // namespace clearway

@@ -13,8 +13,14 @@ std::uint64_t program_bytes(int threads) {
 }
 
 std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
-  return store.allocated_bytes() + query.model.size() * sizeof(Vec3) +
-         query.poses.size() * sizeof(Pose);
+  std::uint64_t bytes = store.allocated_bytes() + query.model.size() * sizeof(Vec3) +
+                        query.poses.size() * sizeof(Pose);
+  for (const Body& body : query.bodies) {
+    // The search has a copy of them.
+    bytes += 2 * body.model.size() * sizeof(Vec3) +
+             body.poses.size() * (2 * sizeof(Pose) + sizeof(std::uint32_t));
+  }
+  return bytes;
 }
 
 std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) {
@@ -25,7 +31,13 @@ std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) 
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {
-  return 52 * query.model.size() + 168 * query.poses.size();
+  std::uint64_t points = query.model.size();
+  std::uint64_t poses = query.bodies.empty() ? query.poses.size() : 0;
+  for (const Body& body : query.bodies) {
+    points += body.model.size();
+    poses += body.poses.size();
+  }
+  return 52 * points + 168 * poses;
 }
 
 void check_memory(std::uint64_t needed, std::uint64_t allowed) {

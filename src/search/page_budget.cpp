@@ -5,7 +5,6 @@
 #include "cpu/cell_search.hpp"
 #include "search/memory_budget.hpp"
 #include "stream/paginate.hpp"
-#include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #include "stream/write_result.hpp"
 
@@ -29,13 +28,14 @@ std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t leas
   return out;
 }
 
-std::uint64_t most_poses_of(const MotionTree& motion, const std::vector<PlannedCell>& cells) {
+}  // namespace
+
+std::uint64_t PageEngineKind::most_poses(const MotionTree& motion,
+                                         std::span<const PlannedCell> cells) const {
   std::uint64_t most = 0;
   for (const PlannedCell& cell : cells) most = std::max(most, pose_count(motion, cell.nodes));
   return most;
 }
-
-}  // namespace
 
 PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
                        std::uint64_t thinned_bytes, std::uint64_t memory_bytes,
@@ -45,7 +45,7 @@ PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query
       memory_bytes_(memory_bytes),
       kind_(kind),
       only_(only),
-      trees_(searched, kind.needs().threads - kind.needs().waiting_threads),
+      trees_(kind.whose_trees(searched), kind.needs().threads - kind.needs().waiting_threads),
       building_bytes_(tree_building_bytes(asked)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
                   search_result_bytes(store, asked)) {}
@@ -90,7 +90,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   const Stopwatch clock;
   const PoseReach& reach = kind_.build_index(trees_, size.bytes);
   const double indexed = clock.seconds();
-  cells_ = plan(store_, reach);
+  cells_ = kind_.plan_cells(store_, reach);
   if (only_ != nullptr) {
     std::erase_if(cells_, [&](const PlannedCell& cell) { return !only_->contains(cell.cell); });
   }
@@ -98,7 +98,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   plan_seconds_ += clock.seconds() - indexed;
   kind_.resolve_devices();
   const std::uint64_t planned = planned_bytes();
-  const std::uint64_t most_poses = most_poses_of(trees_.motion, cells_);
+  const std::uint64_t most_poses = kind_.most_poses(trees_.motion, cells_);
   for (const SlotLayout& layout : layouts(kind_.needs(), smallest_page_bytes(store_, cells_))) {
     if (fits(layout, planned, building, most_poses)) {
       fits(as_needed(layout), planned, building, most_poses);

@@ -1,10 +1,45 @@
 #include "search/result_header.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include "core/geometry/point_box.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 
 namespace clearway {
+
+namespace {
+
+std::uint64_t points_of(const Query& query) {
+  std::uint64_t points = query.model.size();
+  for (const Body& body : query.bodies) points += body.model.size();
+  return points;
+}
+
+/// Of several bodies that of all, each in its own frame.
+Box model_box(const Query& query) {
+  if (query.bodies.empty()) return query.model.empty() ? Box{} : box_of(query.model);
+  std::optional<Box> all;
+  for (const Body& body : query.bodies) {
+    if (body.model.empty()) continue;
+    const Box box = box_of(body.model);
+    if (!all) all = box;
+    for (int k = 0; k < 3; ++k) {
+      all->lo[k] = std::min(all->lo[k], box.lo[k]);
+      all->hi[k] = std::max(all->hi[k], box.hi[k]);
+    }
+  }
+  return all.value_or(Box{});
+}
+
+std::vector<std::string> names_of(const Query& query) {
+  std::vector<std::string> names;
+  for (const Body& body : query.bodies) names.push_back(body.name);
+  return names;
+}
+
+}  // namespace
 
 ResultHeader result_header(const StoreReader& store, const Query& query,
                            const SearchOptions& options) {
@@ -12,8 +47,8 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
   return {query,
           metadata.input_points,
           metadata.points_hash,
-          query.model.size(),
-          hash_of_model(query.model),
+          points_of(query),
+          query.bodies.empty() ? hash_of_model(query.model) : hash_of_bodies(query.bodies),
           query.poses.size(),
           hash_of_trajectory(query.poses),
           query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
@@ -21,8 +56,10 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
           metadata.quantisation,
           metadata.crs_wkt,
           false,
-          query.model.empty() ? Box{} : box_of(query.model),
-          std::nullopt};
+          model_box(query),
+          std::nullopt,
+          names_of(query),
+          query.bodies.empty() ? std::uint32_t{3} : std::uint32_t{4}};
 }
 
 }  // namespace clearway

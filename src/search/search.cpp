@@ -19,6 +19,7 @@
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
 #include "search/kdtree_search.hpp"
+#include "search/kinds/body_kind.hpp"
 #include "search/kinds/cuda_kind.hpp"
 #include "search/kinds/grid_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
@@ -49,6 +50,7 @@ class Search {
         journal_(pending_, output, options_, log_),
         header_(result_header(store_, query_, options_)) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
+    if (!query.bodies.empty()) options_.device = Device::kCpu;
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
@@ -85,6 +87,11 @@ class Search {
     report_.environment_points = store_.point_count();
     report_.model_points = query_.model.size();
     report_.poses = query_.poses.size();
+    report_.searches = report_.poses * report_.model_points;
+    for (const Body& body : query_.bodies) {
+      report_.model_points += body.model.size();
+      report_.searches += body.poses.size() * body.model.size();
+    }
     report_.cells_total = store_.cells().size();
   }
 
@@ -124,12 +131,15 @@ class Search {
 
   Found find() {
     options_.threads = threads_or_all(options_.threads);
-    const bool gpu = gpu_pays() && may_take_gpus(options_);
+    const bool gpu = query_.bodies.empty() && gpu_pays() && may_take_gpus(options_);
     check_threads(options_.threads);
     if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
-    choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
+    if (query_.bodies.empty()) {
+      choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
+    } else {
+      options_.engine = Engine::kSweep;
+    }
     report_.engine = options_.engine;
-    report_.searches = report_.poses * report_.model_points;
     Found found =
         options_.engine == Engine::kKdtree
             ? search_kdtree(store_, query_, only(), options_, open_journal(), progress_, report_)
@@ -187,6 +197,7 @@ class Search {
       return cuda_kind(store_, query_, options_, [this] { return open_gpus(); });
     }
 #endif
+    if (!query_.bodies.empty()) return std::make_unique<CpuBodyKind>(store_, query_, options_);
     if (options_.engine == Engine::kGrid) {
       return std::make_unique<CpuGridKind>(store_, query_, options_);
     }
@@ -280,6 +291,7 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
 SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
                     const SearchOptions& options) {
   check_query(query, options);
+  check_bodies(query, options);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

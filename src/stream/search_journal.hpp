@@ -66,6 +66,8 @@ class SearchJournal final : public PoseJournal {
   void replay_marks(JournalPayload& payload, HitSet* hits) const;
   std::uint32_t take_cell(JournalPayload& payload) const;
   std::uint32_t take_pose(JournalPayload& payload) const;
+  /// As BodyNumbers.
+  std::uint32_t take_number(JournalPayload& payload) const;
   std::uint64_t take_points(JournalPayload& payload, std::uint64_t word) const;
 
   const PackedCloud& cloud_;

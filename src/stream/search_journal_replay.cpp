@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/geometry/predicate.hpp"
+#include "core/query/body_numbers.hpp"
 #include "stream/each_bit.hpp"
 #include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"
@@ -21,6 +22,12 @@ struct PoseRange {
   }
   std::uint64_t first, count;
 };
+
+std::uint32_t take_below(JournalPayload& payload, std::uint64_t end) {
+  const std::uint64_t pose = payload.take_count();
+  if (pose >= end) payload.refuse("a pose past the trajectory's end");
+  return static_cast<std::uint32_t>(pose);
+}
 
 }  // namespace
 
@@ -68,9 +75,11 @@ std::uint32_t SearchJournal::take_cell(JournalPayload& payload) const {
 }
 
 std::uint32_t SearchJournal::take_pose(JournalPayload& payload) const {
-  const std::uint64_t pose = payload.take_count();
-  if (pose >= query_.poses.size()) payload.refuse("a pose past the trajectory's end");
-  return static_cast<std::uint32_t>(pose);
+  return take_below(payload, query_.poses.size());
+}
+
+std::uint32_t SearchJournal::take_number(JournalPayload& payload) const {
+  return take_below(payload, BodyNumbers(query_).end(query_.poses.size()));
 }
 
 /// The bits of a word, all of them points of the cloud.
@@ -103,15 +112,15 @@ void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
     if (hits != nullptr) hits->mark_word(word, bits);
     if (!query_.first_pose) return;
     for_each_bit(bits, [&](std::size_t i) {
-      const std::uint32_t pose = take_pose(payload);
-      if (hits != nullptr) hits->mark(word * kBlockPoints + i, pose);
+      const std::uint32_t number = take_number(payload);
+      if (hits != nullptr) hits->mark(word * kBlockPoints + i, number);
     });
   });
   if (!(query_.clearance > 0)) return;
   for_each_word([&](std::uint64_t word, std::uint64_t bits) {
     for_each_bit(bits, [&](std::size_t i) {
       const auto squared = payload.take<double>();
-      const Clearance clearance{squared, take_pose(payload)};
+      const Clearance clearance{squared, take_number(payload)};
       if (!(squared >= 0 && clearance.found())) payload.refuse("a distance that is none");
       if (clearances != nullptr) clearances->set(word * kBlockPoints + i, clearance);
     });

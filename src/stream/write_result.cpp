@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/query/body_numbers.hpp"
 #include "io/system/thread_limit.hpp"
 #include "stream/write/gather_rows.hpp"
 #include "stream/write/write_profile.hpp"
@@ -19,14 +20,14 @@ namespace {
 struct CollisionRow {
   std::uint64_t source;
   std::int32_t q[3];
-  std::uint32_t first_pose;
+  std::uint32_t first_pose;  ///< as BodyNumbers
 };
 
 struct ClearanceRow {
   std::uint64_t source;
   double distance;
   std::int32_t q[3];
-  std::uint32_t pose;
+  std::uint32_t pose;  ///< as BodyNumbers
 };
 
 /// Chunks that the file's writer holds back, and what the profile is written from.
@@ -99,45 +100,63 @@ struct Strip {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<double> distance;
-  std::vector<std::uint32_t> pose;
+  std::vector<std::uint32_t> pose, body;
+};
+
+/// What encoding rows needs to know beside them.
+struct RowMeaning {
+  const Quantisation& quantisation;
+  const ResultHeader& header;
+  BodyNumbers numbers;
 };
 
 using CollisionPiece = WritePiece<EncodedCollisions>;
 using ClearancePiece = WritePiece<EncodedClearances>;
 
-std::shared_ptr<CollisionPiece> encode(const ResultWriter& writer, bool first_pose,
-                                       const Quantisation& quantisation,
+std::shared_ptr<CollisionPiece> encode(const ResultWriter& writer, const RowMeaning& meaning,
                                        std::span<const CollisionRow> rows) {
+  const Quantisation& quantisation = meaning.quantisation;
+  const BodyNumbers numbers = meaning.numbers;
+  const bool first_pose = meaning.header.first_pose;
+  const auto pose_of = [&](const auto& row) { return numbers.pose_of(row.first_pose); };
+  const auto body_of = [&](const auto& row) { return numbers.body_of(row.first_pose); };
   auto out = std::make_shared<CollisionPiece>(writer.new_collisions());
   Strip columns;
   for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
     set_column(columns.source, strip, [](const auto& row) { return row.source; });
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
-    if (first_pose) set_column(columns.pose, strip, [](const auto& row) { return row.first_pose; });
-    out->rows.add(columns.source, columns.xyz, columns.pose);
+    if (first_pose) set_column(columns.pose, strip, pose_of);
+    if (meaning.header.has_first_bodies()) set_column(columns.body, strip, body_of);
+    out->rows.add(columns.source, columns.xyz, columns.pose, columns.body);
   });
   out->rows.seal();
   if (first_pose) {
-    const CollisionRow& first = least_row(rows, &CollisionRow::first_pose);
-    out->place = {first.source, first.first_pose, xyz_of(quantisation, first.q), 0};
+    const CollisionRow& first = least_row(rows, pose_of);
+    out->place = {first.source, pose_of(first), xyz_of(quantisation, first.q), 0, body_of(first)};
   }
   return out;
 }
 
-std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const Quantisation& quantisation,
+std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const RowMeaning& meaning,
                                        std::span<const ClearanceRow> rows) {
+  const Quantisation& quantisation = meaning.quantisation;
+  const BodyNumbers numbers = meaning.numbers;
+  const auto pose_of = [&](const auto& row) { return numbers.pose_of(row.pose); };
+  const auto body_of = [&](const auto& row) { return numbers.body_of(row.pose); };
   auto out = std::make_shared<ClearancePiece>(writer.new_clearances());
   Strip columns;
   for_each_strip(rows, [&](std::span<const ClearanceRow> strip) {
     set_column(columns.source, strip, [](const auto& row) { return row.source; });
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
     set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
-    set_column(columns.pose, strip, [](const auto& row) { return row.pose; });
-    out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose);
+    set_column(columns.pose, strip, pose_of);
+    if (!meaning.header.bodies.empty()) set_column(columns.body, strip, body_of);
+    out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose, columns.body);
   });
   out->rows.seal();
   const ClearanceRow& least = least_row(rows, &ClearanceRow::distance);
-  out->place = {least.source, least.pose, xyz_of(quantisation, least.q), least.distance};
+  out->place = {least.source, pose_of(least), xyz_of(quantisation, least.q), least.distance,
+                body_of(least)};
   return out;
 }
 
@@ -185,10 +204,11 @@ void write_set(const StoreReader& store, const Set& set, const SetCells& in, con
 /// Writes one result, table by table.
 class ResultWriting {
  public:
-  ResultWriting(const StoreReader& store, const SearchResult& answer, std::uint64_t memory_bytes,
-                ResultWriter& writer, Progress& progress)
+  ResultWriting(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
+                std::uint64_t memory_bytes, ResultWriter& writer, Progress& progress)
       : store_(store),
         answer_(answer),
+        meaning_{store.quantisation(), header, BodyNumbers(header.bodies.size())},
         memory_bytes_(memory_bytes),
         writer_(writer),
         progress_(progress) {}
@@ -205,7 +225,7 @@ class ResultWriting {
       };
     };
     const auto encode_rows = [&](std::span<const CollisionRow> rows) {
-      return encode(writer_, first_pose, store_.quantisation(), rows);
+      return encode(writer_, meaning_, rows);
     };
     const auto keep_first = [&](const CollisionPiece& piece) {
       if (!piece.place || (first && first->pose <= piece.place->pose)) return;
@@ -230,7 +250,7 @@ class ResultWriting {
       };
     };
     const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
-      return encode(writer_, store_.quantisation(), rows);
+      return encode(writer_, meaning_, rows);
     };
     const auto keep_least = [&](const ClearancePiece& piece) {
       if (least && least->distance <= piece.place->distance) return;
@@ -246,6 +266,7 @@ class ResultWriting {
  private:
   const StoreReader& store_;
   const SearchResult& answer_;
+  const RowMeaning meaning_;
   std::uint64_t memory_bytes_;
   ResultWriter& writer_;
   Progress& progress_;
@@ -263,7 +284,7 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
   out.clearances = clearances.entries;
   ResultWriter writer(path, header, out.collisions, out.clearances);
   progress.begin("write", out.collisions + out.clearances, "points");
-  ResultWriting writing(store, answer, memory_bytes, writer, progress);
+  ResultWriting writing(store, answer, header, memory_bytes, writer, progress);
   writing.write_collisions(collisions, out.first_place);
   writing.write_clearances(clearances, out.least_clearance);
   if (header.profile > 0) {

@@ -78,6 +78,7 @@ ordered_json describe(const ResultReader& result) {
                            {"environment_hash", hash_text(h.environment_hash)},
                            {"model_hash", hash_text(h.model_hash)},
                            {"trajectory_hash", hash_text(h.trajectory_hash)}};
+  if (!h.bodies.empty()) description["bodies"] = h.bodies;
   if (h.tolerance > 0) {
     description["tolerance"] = h.tolerance;
     description["engine"] = h.engine;

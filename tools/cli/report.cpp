@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "clearway/clearway.hpp"
+#include "clearway/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
@@ -95,6 +96,12 @@ void run_report(ReportCommand& options) {
   check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
+  if (!result.bodies().empty()) {
+    throw InputError(
+        options.result.string() +
+        ": is of a vehicle of several bodies, and the report draws one model; expected "
+        "a result of run --model. clearway conflicts and export take this one");
+  }
   const Store store(options.environment);
   const double unit = metres_of_unit(store.length_unit()).value_or(1);
   options.lengths.convert(unit);

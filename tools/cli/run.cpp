@@ -19,6 +19,8 @@
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
+#include "cli/vehicle/read_vehicle.hpp"
+#include "cli/vehicle/vehicle_file.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
@@ -96,10 +98,12 @@ nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
                                const Answer& answer, const ProgramReport& program) {
   const bool searched = !report.was_finished;
-  nlohmann::ordered_json out = program_json({{"env", options.environment},
-                                             {"model", options.model},
-                                             {"trajectory", options.trajectory},
-                                             {"output", options.output}});
+  const bool vehicle = !options.vehicle.empty();
+  nlohmann::ordered_json out =
+      program_json({{"env", options.environment},
+                    {vehicle ? "vehicle" : "model", vehicle ? options.vehicle : options.model},
+                    {"trajectory", options.trajectory},
+                    {"output", options.output}});
   out["radius"] = options.query.radius;
   out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
@@ -170,12 +174,16 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
 Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   std::vector<Message>& warnings = options.search.input_warnings;
   const ModelOptions how = with_spacing(options.model_options, options.query.radius);
-  std::vector<Vec3> model = read_model(options.model, how, &warnings);
+  Query query({}, {}, options.query);
+  if (options.vehicle.empty()) query.model = read_model(options.model, how, &warnings);
   options.trajectory_options.default_crs = store.crs_wkt();
-  std::vector<Pose> poses =
-      read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
+  query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
+  if (!options.vehicle.empty()) {
+    query.bodies = read_vehicle(options.vehicle, query.poses, how, options.trajectory_options,
+                                threads_or_all(options.search.threads), warnings);
+  }
   for (const Message& warning : warnings) log_message(warning);
-  return {std::move(model), std::move(poses), options.query};
+  return query;
 }
 
 Store open_environment(const std::filesystem::path& path) {
@@ -210,18 +218,50 @@ void prepare_device(const SearchOptions& options) {
   if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
 }
 
+/// All files that are read, those of a vehicle's bodies too.
+std::vector<std::filesystem::path> inputs_of(const RunOptions& options) {
+  std::vector<std::filesystem::path> inputs{options.environment, options.trajectory};
+  if (options.vehicle.empty()) {
+    inputs.push_back(options.model);
+    return inputs;
+  }
+  inputs.push_back(options.vehicle);
+  for (const BodyEntry& body : read_vehicle_file(options.vehicle, 1)) {
+    inputs.push_back(body.model);
+    if (!body.trajectory.empty()) inputs.push_back(body.trajectory);
+  }
+  return inputs;
+}
+
+/// Before large inputs are read, what the library would refuse after that.
+void check_vehicle_search(SearchOptions& options) {
+  if (options.device == Device::kCuda || !options.gpus.empty()) {
+    throw UsageError(
+        "--vehicle: a vehicle of several bodies is searched on the CPU alone; give "
+        "--device cpu");
+  }
+  if (options.engine == Engine::kGrid || options.engine == Engine::kKdtree) {
+    throw UsageError(std::string("--vehicle: engine ") + name_of(options.engine) +
+                         " searches one model, and no vehicle of several bodies",
+                     Remedy::kSweepEngine);
+  }
+  options.device = Device::kCpu;
+}
+
 /// Whether no point collides.
 bool run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
   ConsoleProgress progress;
   watch_call(options.search, progress);
-  refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
+  if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
+  refuse_overwriting(options.output, inputs_of(options));
+  if (!options.vehicle.empty()) check_vehicle_search(options.search);
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
   prepare_device(options.search);
   options.search.started = start_devices(options.search);
-  check_is_model(options.model);
+  if (options.vehicle.empty()) check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
   if (!options.search.started) options.search.started = start_devices(options.search, &store);

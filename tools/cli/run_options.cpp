@@ -16,11 +16,17 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("--env", options.environment, "The environment: a store of clearway convert")
       ->type_name("FILE")
       ->required();
+  CLI::Option* model =
+      command
+          .add_option("--model", options.model,
+                      "The model: a mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
+          ->type_name("FILE");
   command
-      .add_option("--model", options.model,
-                  "The model: a mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
+      .add_option("--vehicle", options.vehicle,
+                  "In the place of --model: a JSON file of several bodies that follow the "
+                  "trajectory, each in its own way; engine sweep on the CPU")
       ->type_name("FILE")
-      ->required();
+      ->excludes(model);
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();

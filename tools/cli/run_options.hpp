@@ -15,7 +15,7 @@ namespace clearway::tool {
 
 /// The command line of `clearway run`.
 struct RunOptions {
-  std::filesystem::path environment, model, trajectory, output;
+  std::filesystem::path environment, model, vehicle, trajectory, output;
   QueryParameters query;
   SearchOptions search;
   ModelOptions model_options;

@@ -21,6 +21,7 @@ std::optional<AnswerPlace> first_place(const ResultReader& result) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (first && rows.first_pose[i] >= first->pose) continue;
       first = {.source = rows.source[i], .pose = rows.first_pose[i], .xyz = rows.xyz[i]};
+      if (!rows.body.empty()) first->body = result.header().bodies[rows.body[i]];
     }
   }
   return first;
@@ -34,6 +35,7 @@ std::optional<AnswerPlace> least_clearance(const ResultReader& result) {
       if (least && rows.distance[i] >= *least->distance) continue;
       least = {.source = rows.source[i], .pose = rows.pose[i], .distance = rows.distance[i]};
       if (!rows.xyz.empty()) least->xyz = rows.xyz[i];
+      if (!rows.body.empty()) least->body = result.header().bodies[rows.body[i]];
     }
   }
   return least;
@@ -63,6 +65,7 @@ std::string place_text(const AnswerPlace& place, const PoseLabels& labels,
     if (!labels.time.empty()) text += fmt::format("time {}, ", labels.time[place.pose]);
     text += fmt::format("{:.2f} {} along the path)", *place.chainage, unit);
   }
+  if (place.body) text += ", body " + *place.body;
   if (place.xyz) {
     text += fmt::format(", point {:.3f} {:.3f} {:.3f}", place.xyz->x, place.xyz->y, place.xyz->z);
   }
@@ -91,6 +94,7 @@ ordered_json place_json(const std::optional<AnswerPlace>& place, const PoseLabel
   for (int k = 0; k < 3; ++k) {
     out[axes[k]] = place->xyz ? ordered_json((*place->xyz)[k]) : ordered_json(nullptr);
   }
+  if (place->body) out["body"] = *place->body;
   if (!labels.time.empty()) out["time"] = labels.time[place->pose];
   if (!labels.name.empty()) out["name"] = labels.name[place->pose];
   return out;
@@ -123,17 +127,30 @@ Verdict verdict_of_found(const Report& report, const QueryParameters& query, boo
   return out;
 }
 
+/// bodies: none where there is one model.
+template <typename Report>
+void name_bodies(const Report& report, const std::vector<std::string>& bodies, Verdict& out) {
+  if (bodies.empty()) return;
+  if (out.first) out.first->body = bodies[report.first_place->body];
+  if (out.least_clearance) out.least_clearance->body = bodies[report.least_clearance->body];
+}
+
 }  // namespace
 
 Verdict verdict_of(const SearchReport& report, const Query& query, const SearchOptions& options) {
   Verdict out = verdict_of_found(report, query, options.float_precision);
   out.shard = options.shard;
+  std::vector<std::string> bodies;
+  for (const Body& body : query.bodies) bodies.push_back(body.name);
+  name_bodies(report, bodies, out);
   set_chainages(out, query.poses);
   return out;
 }
 
 Verdict verdict_of(const MergeReport& report, bool float_precision) {
-  return verdict_of_found(report, report.parameters, float_precision);
+  Verdict out = verdict_of_found(report, report.parameters, float_precision);
+  name_bodies(report, report.bodies, out);
+  return out;
 }
 
 Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {

@@ -21,6 +21,7 @@ struct AnswerPlace {
   std::optional<double> chainage{};  ///< of the pose, in the unit of the path
   std::optional<Vec3> xyz{};
   std::optional<double> distance{};
+  std::optional<std::string> body{};  ///< its name, where there are several
 };
 
 /// The answer of a run in short.

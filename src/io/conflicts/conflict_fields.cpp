@@ -13,30 +13,38 @@ FieldValue value_of(const std::optional<Number>& number) {
 }  // namespace
 
 std::vector<ConflictField> fields_of(const Conflict& c) {
-  return {{"id", std::uint64_t{c.id}},
-          {"points", c.points},
-          {"source", c.source},
-          {"lo_x", c.box.lo.x},
-          {"lo_y", c.box.lo.y},
-          {"lo_z", c.box.lo.z},
-          {"hi_x", c.box.hi.x},
-          {"hi_y", c.box.hi.y},
-          {"hi_z", c.box.hi.z},
-          {"centroid_x", c.centroid.x},
-          {"centroid_y", c.centroid.y},
-          {"centroid_z", c.centroid.z},
-          {"first_pose", std::uint64_t{c.first_pose}},
-          {"last_pose", std::uint64_t{c.last_pose}},
-          {"chainage_from", c.chainage_from},
-          {"chainage_to", c.chainage_to},
-          {"least_distance", value_of<double>(c.least_distance)},
-          {"nearest_pose", value_of<std::uint64_t>(c.nearest_pose)},
-          {"nearest_source", value_of<std::uint64_t>(c.nearest_source)},
-          {"encroachment", value_of<double>(c.encroachment)},
-          {"side", std::string_view(name_of(c.side))},
-          {"lateral", value_of<double>(c.lateral)},
-          {"height", value_of<double>(c.height)},
-          {"group", c.group}};
+  std::vector<ConflictField> fields{{"id", std::uint64_t{c.id}},
+                                    {"points", c.points},
+                                    {"source", c.source},
+                                    {"lo_x", c.box.lo.x},
+                                    {"lo_y", c.box.lo.y},
+                                    {"lo_z", c.box.lo.z},
+                                    {"hi_x", c.box.hi.x},
+                                    {"hi_y", c.box.hi.y},
+                                    {"hi_z", c.box.hi.z},
+                                    {"centroid_x", c.centroid.x},
+                                    {"centroid_y", c.centroid.y},
+                                    {"centroid_z", c.centroid.z},
+                                    {"first_pose", std::uint64_t{c.first_pose}},
+                                    {"last_pose", std::uint64_t{c.last_pose}},
+                                    {"chainage_from", c.chainage_from},
+                                    {"chainage_to", c.chainage_to},
+                                    {"least_distance", value_of<double>(c.least_distance)},
+                                    {"nearest_pose", value_of<std::uint64_t>(c.nearest_pose)},
+                                    {"nearest_source", value_of<std::uint64_t>(c.nearest_source)},
+                                    {"encroachment", value_of<double>(c.encroachment)},
+                                    {"side", std::string_view(name_of(c.side))},
+                                    {"lateral", value_of<double>(c.lateral)},
+                                    {"height", value_of<double>(c.height)},
+                                    {"group", c.group}};
+  if (c.body) fields.push_back({"body", std::uint64_t{*c.body}});
+  return fields;
+}
+
+std::vector<ConflictField> sample_fields(const ResultHeader& header) {
+  Conflict conflict;
+  if (!header.bodies.empty()) conflict.body = 0;
+  return fields_of(conflict);
 }
 
 }  // namespace clearway

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "io/result/result.hpp"
 
 namespace clearway {
 
@@ -18,7 +19,10 @@ struct ConflictField {
   FieldValue value;
 };
 
-/// The same names in the same order for every conflict.
+/// The same names in the same order for every conflict of a result; body only where it has one.
 std::vector<ConflictField> fields_of(const Conflict& conflict);
+
+/// Of conflicts of such a result: what a table of them has for columns.
+std::vector<ConflictField> sample_fields(const ResultHeader& header);
 
 }  // namespace clearway

@@ -24,6 +24,12 @@ std::string warnings_json(const std::vector<Message>& warnings) {
   return "[" + out + "]";
 }
 
+std::string names_json(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + json_string(name);
+  return "[" + out + "]";
+}
+
 class Members {
  public:
   void add(std::string_view name, const std::string& json) {
@@ -57,6 +63,7 @@ std::string summary_json(const ConflictFile& file) {
   out.add_count("environment_points", header.environment_points);
   out.add_count("model_points", header.model_points);
   out.add_count("poses", header.poses);
+  if (!header.bodies.empty()) out.add("bodies", names_json(header.bodies));
   out.add_hash("environment_hash", header.environment_hash);
   out.add_hash("model_hash", header.model_hash);
   out.add_hash("trajectory_hash", header.trajectory_hash);

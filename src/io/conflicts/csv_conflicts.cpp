@@ -18,7 +18,7 @@ std::string csv_value(const FieldValue& value) {
 void write_csv(const ConflictFile& conflicts, const File& file) {
   TextWriter out(file);
   const char* between = "";
-  for (const ConflictField& field : fields_of(Conflict{})) {
+  for (const ConflictField& field : sample_fields(conflicts.header)) {
     out << between << field.name;
     between = ",";
   }

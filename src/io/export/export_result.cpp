@@ -9,11 +9,15 @@ namespace clearway {
 namespace {
 
 ExportRows export_rows(const ResultRows& rows) {
-  return {.source = rows.source, .xyz = rows.xyz, .first_pose = rows.first_pose};
+  return {.source = rows.source, .xyz = rows.xyz, .first_pose = rows.first_pose, .body = rows.body};
 }
 
 ExportRows export_rows(const ClearanceRows& rows) {
-  return {.source = rows.source, .xyz = rows.xyz, .distance = rows.distance, .pose = rows.pose};
+  return {.source = rows.source,
+          .xyz = rows.xyz,
+          .distance = rows.distance,
+          .pose = rows.pose,
+          .body = rows.body};
 }
 
 /// Calls visit(rows) for all rows of a table.
@@ -59,7 +63,8 @@ void export_result(const ResultReader& result, const std::filesystem::path& outp
   export_table<ResultRowStream, ResultRows>({.result = result,
                                              .group = "collisions",
                                              .rows = result.collisions(),
-                                             .first_pose = result.header().first_pose},
+                                             .first_pose = result.header().first_pose,
+                                             .body = result.header().has_first_bodies()},
                                             output, overwrite, progress);
 }
 
@@ -73,9 +78,12 @@ void export_clearances(const ResultReader& result, const std::filesystem::path& 
                      ": is of version 2 and has no coordinates of clearances; run the query again, "
                      "or export a .csv without coordinates");
   }
-  export_table<ClearanceRowStream, ClearanceRows>(
-      {.result = result, .group = "clearance", .rows = result.clearances(), .distance = true},
-      output, overwrite, progress);
+  export_table<ClearanceRowStream, ClearanceRows>({.result = result,
+                                                   .group = "clearance",
+                                                   .rows = result.clearances(),
+                                                   .distance = true,
+                                                   .body = !result.header().bodies.empty()},
+                                                  output, overwrite, progress);
 }
 
 }  // namespace clearway

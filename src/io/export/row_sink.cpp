@@ -54,15 +54,15 @@ class LasSink final : public RowSink {
       : table_(table), writer_(file, header_of(table)) {}
 
   void write(const ExportRows& rows) override {
-    writer_.write(quanta_of(table_, rows), {rows.first_pose, rows.distance, rows.pose});
+    writer_.write(quanta_of(table_, rows), {rows.first_pose, rows.distance, rows.pose, rows.body});
   }
   void finish() override { writer_.finish(); }
 
  private:
   static LasHeader header_of(const ExportTable& table) {
     const ResultHeader& header = table.result.header();
-    return {header.quantisation, table.rows,       table.bounds,
-            header.crs_wkt,      table.first_pose, table.distance};
+    return {header.quantisation, table.rows,     table.bounds, header.crs_wkt,
+            table.first_pose,    table.distance, table.body};
   }
 
   const ExportTable table_;
@@ -75,10 +75,11 @@ class PlySink final : public RowSink {
       : writer_(file, PlyOutput{.points = table.rows,
                                 .coordinates = PlyCoordinates::kFloat64,
                                 .first_pose = table.first_pose,
-                                .distance = table.distance}) {}
+                                .distance = table.distance,
+                                .body = table.body}) {}
 
   void write(const ExportRows& rows) override {
-    writer_.write(rows.xyz, {rows.first_pose, rows.distance, rows.pose});
+    writer_.write(rows.xyz, {rows.first_pose, rows.distance, rows.pose, rows.body});
   }
   void finish() override { writer_.finish(); }
 
@@ -118,6 +119,7 @@ class CsvSink final : public RowSink {
     if (!table.distance || table.result.header().has_clearance_xyz()) out << ",x,y,z";
     if (table.first_pose) out << ",first_pose";
     if (table.distance) out << ",distance,pose";
+    if (table.body) out << ",body";
     out << "\n";
     out.flush();
   }
@@ -138,6 +140,7 @@ class CsvSink final : public RowSink {
     if (!rows.xyz.empty()) position.write(out << ",", rows.xyz[i], ",");
     if (!rows.first_pose.empty()) out << "," << rows.first_pose[i];
     if (!rows.distance.empty()) out << "," << rows.distance[i] << "," << rows.pose[i];
+    if (!rows.body.empty()) out << "," << rows.body[i];
     out << "\n";
   }
 

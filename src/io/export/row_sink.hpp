@@ -19,6 +19,7 @@ struct ExportRows {
   std::span<const std::uint32_t> first_pose{};
   std::span<const double> distance{};
   std::span<const std::uint32_t> pose{};
+  std::span<const std::uint32_t> body{};
 };
 
 /// What a file has to say before its first row.
@@ -28,7 +29,8 @@ struct ExportTable {
   std::uint64_t rows = 0;
   bool first_pose = false;
   bool distance = false;  ///< and pose
-  QuantumBox bounds{};    ///< of the points; only .las asks for them
+  bool body = false;
+  QuantumBox bounds{};  ///< of the points; only .las asks for them
 };
 
 /// Receives the rows front to back.

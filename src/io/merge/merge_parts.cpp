@@ -79,7 +79,7 @@ class PartMerge {
     auto all = cursors<RowCursor>();
     ResultRows rows;
     const auto flush = [&] {
-      writer_.append(rows.source, rows.xyz, rows.first_pose);
+      writer_.append(rows.source, rows.xyz, rows.first_pose, rows.body);
       written(rows);
       rows.first_pose.clear();
     };
@@ -89,9 +89,10 @@ class PartMerge {
       if (const auto pose = row.first_pose()) {
         rows.first_pose.push_back(*pose);
         if (!out_.first_place || *pose < out_.first_place->pose) {
-          out_.first_place = {row.source(), *pose, row.xyz(), 0};
+          out_.first_place = {row.source(), *pose, row.xyz(), 0, row.body().value_or(0)};
         }
       }
+      if (const auto body = row.body()) rows.body.push_back(*body);
       if (rows.size() == kRows) flush();
     });
     flush();
@@ -101,7 +102,7 @@ class PartMerge {
     auto all = cursors<ClearanceCursor>();
     ClearanceRows rows;
     const auto flush = [&] {
-      writer_.append_clearances(rows.source, rows.xyz, rows.distance, rows.pose);
+      writer_.append_clearances(rows.source, rows.xyz, rows.distance, rows.pose, rows.body);
       written(rows);
       rows.distance.clear();
       rows.pose.clear();
@@ -112,8 +113,10 @@ class PartMerge {
       rows.distance.push_back(row.distance());
       rows.pose.push_back(row.pose());
       if (!out_.least_clearance || row.distance() < out_.least_clearance->distance) {
-        out_.least_clearance = {row.source(), row.pose(), row.xyz(), row.distance()};
+        out_.least_clearance = {row.source(), row.pose(), row.xyz(), row.distance(),
+                                row.body().value_or(0)};
       }
+      if (const auto body = row.body()) rows.body.push_back(*body);
       if (rows.size() == kRows) flush();
     });
     flush();
@@ -125,6 +128,7 @@ class PartMerge {
     progress_.advance(rows.size());
     rows.source.clear();
     rows.xyz.clear();
+    rows.body.clear();
   }
 
   /// Of each pose the part with the least d2, of several the one with the smallest source.

@@ -39,6 +39,12 @@ std::string first_pose_text(const ResultHeader& header) {
   return header.ways_without_ends ? "asked for, as version 0.1.0 defined them" : "asked for";
 }
 
+std::string bodies_text(const ResultHeader& header) {
+  std::string text;
+  for (const std::string& body : header.bodies) text += (text.empty() ? "" : ", ") + body;
+  return text.empty() ? "one model" : text;
+}
+
 class Merge {
  public:
   Merge(const ResultReader& a, const ResultReader& b, std::size_t kept)
@@ -47,6 +53,7 @@ class Merge {
     out_.in_b = b.collisions();
     out_.queries = query_differences(a.header(), b.header());
     if (a.header().first_pose && b.header().first_pose) out_.differing_first_poses = 0;
+    same_bodies_ = a.header().bodies == b.header().bodies;
   }
 
   Comparison run() {
@@ -71,7 +78,8 @@ class Merge {
     ++out_.common;
     const PointDifference point{Kind::kFirstPose, a_.source(), a_.xyz(), a_.first_pose(),
                                 b_.first_pose()};
-    if (out_.differing_first_poses && point.first_pose_a != point.first_pose_b) {
+    const bool same_body = !same_bodies_ || a_.body() == b_.body();
+    if (out_.differing_first_poses && (point.first_pose_a != point.first_pose_b || !same_body)) {
       ++*out_.differing_first_poses;
       keep(point);
     }
@@ -87,6 +95,7 @@ class Merge {
 
   RowCursor a_, b_;
   std::size_t kept_;
+  bool same_bodies_;
   Comparison out_;
 };
 
@@ -95,13 +104,15 @@ ClearanceComparison compare_clearances(const ResultReader& a, const ResultReader
   out.in_a = a.clearances();
   out.in_b = b.clearances();
   const bool xyz = a.header().has_clearance_xyz() && b.header().has_clearance_xyz();
+  const bool bodies = a.header().bodies == b.header().bodies;
   ClearanceCursor from_a(a), from_b(b);
   merge_rows(
       from_a, from_b, [&] { ++out.only_in_a; }, [&] { ++out.only_in_b; },
       [&] {
         ++out.common;
-        const bool same = from_a.distance() == from_b.distance() &&
-                          from_a.pose() == from_b.pose() && (!xyz || from_a.xyz() == from_b.xyz());
+        const bool same =
+            from_a.distance() == from_b.distance() && from_a.pose() == from_b.pose() &&
+            (!bodies || from_a.body() == from_b.body()) && (!xyz || from_a.xyz() == from_b.xyz());
         if (!same) ++out.differing;
       });
   return out;
@@ -139,6 +150,7 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
   };
   differ("model", content_text(a.model_points, "points", a.model_hash),
          content_text(b.model_points, "points", b.model_hash));
+  differ("bodies", bodies_text(a), bodies_text(b));
   differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
          content_text(b.poses, "poses", b.trajectory_hash));
   differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");

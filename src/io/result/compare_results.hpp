@@ -29,8 +29,8 @@ struct PointDifference {
 struct ClearanceComparison {
   std::uint64_t in_a = 0, in_b = 0;
   std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
-  std::uint64_t differing =
-      0;  ///< of common points, in distance, pose or, where both have them, coordinates
+  /// Of common points, in distance, pose or, where both have them, body and coordinates.
+  std::uint64_t differing = 0;
 
   bool equal() const { return only_in_a == 0 && only_in_b == 0 && differing == 0; }
   friend bool operator==(const ClearanceComparison&, const ClearanceComparison&) = default;
@@ -49,9 +49,10 @@ struct ProfileComparison {
 struct Comparison {
   std::uint64_t in_a = 0, in_b = 0;
   std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
-  std::uint64_t differing_coordinates = 0;             ///< of common points
-  std::optional<std::uint64_t> differing_first_poses;  ///< of common points, where both have them
-  std::optional<ClearanceComparison> clearances;       ///< where both have them
+  std::uint64_t differing_coordinates = 0;  ///< of common points
+  /// Of common points, where both have them, in pose or, of the same bodies, in body.
+  std::optional<std::uint64_t> differing_first_poses;
+  std::optional<ClearanceComparison> clearances;  ///< where both have them
   /// Where both have one, of the same trajectory.
   std::optional<ProfileComparison> profiles;
   std::vector<QueryDifference> queries;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "clearway/box.hpp"
 #include "clearway/query.hpp"
@@ -41,12 +42,15 @@ struct ResultHeader : QueryParameters {
   std::string crs_wkt;
   /// First poses between poses are those of version 0.1.0, whose ways did not include their ends.
   bool ways_without_ends = false;
-  Box model_box{};                 ///< of the model's points
-  std::optional<ResultPart> part;  ///< of what merge() makes a result of
-  /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances.
+  Box model_box{};                       ///< of the model's points
+  std::optional<ResultPart> part;        ///< of what merge() makes a result of
+  std::vector<std::string> bodies = {};  ///< names, of a query with several; else none
+  /// Of the file. Version 4 has bodies. Version 2 has no model box, no profile and no coordinates
+  /// of clearances.
   std::uint32_t version = 3;
 
   bool has_poses_of_ways() const { return first_pose && between_poses; }
+  bool has_first_bodies() const { return first_pose && !bodies.empty(); }
   bool has_model_box() const { return version >= 3; }
   bool has_clearance_xyz() const { return version >= 3; }
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
@@ -68,12 +72,14 @@ class ResultWriter {
                std::uint64_t collisions, std::uint64_t clearances = 0);
   ~ResultWriter();
 
-  /// The next rows. first_pose: empty unless the header has it.
+  /// The next rows. first_pose: empty unless the header has it; body: of it, likewise.
   void append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
-              std::span<const std::uint32_t> first_pose);
-  /// The next clearances; distance in metres. Only where the header asks for them.
+              std::span<const std::uint32_t> first_pose, std::span<const std::uint32_t> body = {});
+  /// The next clearances; distance in metres. Only where the header asks for them. body: empty
+  /// unless the header has bodies.
   void append_clearances(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
-                         std::span<const double> distance, std::span<const std::uint32_t> pose);
+                         std::span<const double> distance, std::span<const std::uint32_t> pose,
+                         std::span<const std::uint32_t> body = {});
   /// The next poses' rows, as Profile has them. Only where the header asks for a profile. squared:
   /// the computed d2 of which distance is the root; empty unless the header is of a part.
   void append_profile(std::span<const double> distance, std::span<const std::uint64_t> source,
@@ -112,22 +118,25 @@ class ResultReader {
   const std::string& name() const;  ///< the file's, for messages
   const ResultHeader& header() const;
   std::uint64_t collisions() const;
-  /// ColumnHashes of source, xyz and, where there is one, first_pose.
+  /// ColumnHashes of source, xyz and, where there are such, first_pose and body.
   std::uint64_t collisions_hash() const;
   /// Strictly ascending and below header().environment_points.
   void read_source(std::uint64_t first, std::span<std::uint64_t> out) const;
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
   /// Below header().poses. Only where the header has first poses.
   void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
-  /// All three; first_pose: empty unless the header has it. Adds the columns to their hashes. With
-  /// many threads where first is a multiple of kEncodedRows, and so is their number or they are the
-  /// last ones.
+  /// Below the number of bodies. Only where the header has_first_bodies().
+  void read_first_body(std::uint64_t first, std::span<std::uint32_t> out) const;
+  /// Those three; first_pose: empty unless the header has it. Adds the columns to their hashes.
+  /// With many threads where first is a multiple of kEncodedRows, and so is their number or they
+  /// are the last ones.
   void read_collisions(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<std::uint32_t> first_pose, std::span<Xxh64Stream> hashes) const;
 
   /// Rows of the clearances, 0 where the header has none.
   std::uint64_t clearances() const;
-  /// ColumnHashes of source, xyz (where the header has it), distance and pose; 0 without any.
+  /// ColumnHashes of source, xyz (where the header has it), distance, pose and, where there are
+  /// bodies, body; 0 without any.
   std::uint64_t clearances_hash() const;
   /// source as read_source, distance from 0 to header().clearance, pose as read_first_pose. Only
   /// where the header has clearances. xyz: empty unless the header has them.
@@ -138,6 +147,9 @@ class ResultReader {
   void read_clearances(std::uint64_t first, std::span<std::uint64_t> source, std::span<Vec3> xyz,
                        std::span<double> distance, std::span<std::uint32_t> pose,
                        std::span<Xxh64Stream> hashes) const;
+
+  /// Below the number of bodies. Only where the header has clearances and bodies.
+  void read_clearance_body(std::uint64_t first, std::span<std::uint32_t> out) const;
 
   /// Rows of the profile: header().poses, or 0 where the header has none.
   std::uint64_t profile_rows() const;

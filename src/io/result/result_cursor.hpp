@@ -40,6 +40,10 @@ class RowCursor : public ResultCursor<ResultRowStream, ResultRows> {
   std::optional<std::uint32_t> first_pose() const {
     return rows_.first_pose.empty() ? std::nullopt : std::optional(rows_.first_pose[at_]);
   }
+  /// Of the first pose.
+  std::optional<std::uint32_t> body() const {
+    return rows_.body.empty() ? std::nullopt : std::optional(rows_.body[at_]);
+  }
 };
 
 class ClearanceCursor : public ResultCursor<ClearanceRowStream, ClearanceRows> {
@@ -48,6 +52,9 @@ class ClearanceCursor : public ResultCursor<ClearanceRowStream, ClearanceRows> {
   Vec3 xyz() const { return rows_.xyz[at_]; }  ///< only where the result has them
   double distance() const { return rows_.distance[at_]; }
   std::uint32_t pose() const { return rows_.pose[at_]; }
+  std::optional<std::uint32_t> body() const {
+    return rows_.body.empty() ? std::nullopt : std::optional(rows_.body[at_]);
+  }
 };
 
 /// Advances two cursors together to their ends, calling for each source index what applies.

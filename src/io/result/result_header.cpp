@@ -1,8 +1,10 @@
 #include "io/result/result_header.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "clearway/body.hpp"
 #include "clearway/error.hpp"
 #include "io/result/as_numbers.hpp"
 #include "io/result/result_names.hpp"
@@ -79,6 +81,28 @@ void read_profile_distance(const hdf5::Id& file, const std::string& name, double
   refuse(name, "attribute 'profile' is " + shown(profile) + ", expected a length, or 0 for none");
 }
 
+std::string lines_of(const std::vector<std::string>& texts) {
+  std::string lines;
+  for (const std::string& text : texts) lines += (lines.empty() ? "" : "\n") + text;
+  return lines;
+}
+
+/// Names of bodies, none of them empty.
+std::vector<std::string> read_bodies(const hdf5::Id& file, const std::string& name) {
+  const std::string lines = hdf5::read_text_attribute(file, names::kBodies, name);
+  std::vector<std::string> bodies;
+  for (std::size_t begin = 0; begin <= lines.size();) {
+    const std::size_t end = std::min(lines.find('\n', begin), lines.size());
+    bodies.push_back(lines.substr(begin, end - begin));
+    if (bodies.back().empty() || bodies.size() > kMostBodies) {
+      refuse(name, "attribute 'bodies': expected 1 to " + std::to_string(kMostBodies) +
+                       " names, a line each");
+    }
+    begin = end + 1;
+  }
+  return bodies;
+}
+
 ResultPart read_part(const hdf5::Id& file, const std::string& name) {
   const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
   ResultPart part{{shard[0], shard[1]},
@@ -95,7 +119,8 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   const Vec3 model_box[2] = {header.model_box.lo, header.model_box.hi};
   hdf5::write_attribute(file, "format",
                         std::string(header.part ? names::kPartFormat : names::kFormat));
-  hdf5::write_number(file, "version", names::kVersion);
+  hdf5::write_number(file, "version",
+                     header.bodies.empty() ? names::kVersionOfModel : names::kVersion);
   hdf5::write_number(file, "environment_points", header.environment_points);
   hdf5::write_number(file, "environment_hash", header.environment_hash);
   hdf5::write_number(file, "model_points", header.model_points);
@@ -118,6 +143,9 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.float_precision) hdf5::write_attribute(file, names::kPrecision, names::kFloat);
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
+  }
+  if (!header.bodies.empty()) {
+    hdf5::write_attribute(file, names::kBodies, lines_of(header.bodies));
   }
   if (!header.part) return;
   const std::uint32_t shard[]{header.part->shard.number, header.part->shard.count};
@@ -154,6 +182,11 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   if (header.version >= 3) {
     read_model_box(file, name, header.model_box);
     read_profile_distance(file, name, header.profile);
+  }
+  if (header.version >= 4) {
+    header.bodies = read_bodies(file, name);
+  } else if (hdf5::has_attribute(file, names::kBodies, name)) {
+    refuse(name, "has bodies, which version " + std::to_string(header.version) + " does not have");
   }
   if (is_part) {
     if (header.version < 3) refuse(name, "is a part of version 2, which has none");

@@ -7,13 +7,16 @@ namespace clearway::result_names {
 
 inline constexpr const char* kFormat = "clearway result";
 inline constexpr const char* kPartFormat = "clearway part";  // not for who looks for a result
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;                 // with bodies
+inline constexpr std::uint32_t kVersionOfModel = 3;          // without
 inline constexpr std::uint32_t kOldestVersion = 2;
 
 inline constexpr const char* kGroup = "collisions";
 inline constexpr const char* kSource = "source";
 inline constexpr const char* kXyz = "xyz";
 inline constexpr const char* kFirstPose = "first_pose";
+
+inline constexpr const char* kBody = "body";  // in both groups, where kBodies is there
 
 inline constexpr const char* kClearanceGroup = "clearance";
 inline constexpr const char* kDistance = "distance";
@@ -31,6 +34,8 @@ inline constexpr const char* kPrecision = "precision";  // only where it is kFlo
 inline constexpr const char* kFloat = "float";
 inline constexpr const char* kFirstPoseOf = "first_pose_of";  // only where it is kClosedWay
 inline constexpr const char* kClosedWay = "closed way";
+
+inline constexpr const char* kBodies = "bodies";  // names, a line each; only where there are any
 
 inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
 inline constexpr const char* kDivision = "division";

@@ -122,6 +122,21 @@ void ResultReader::read_first_pose(std::uint64_t first, std::span<std::uint32_t>
   state_->checks(names::kGroup, first).poses(names::kFirstPose, out);
 }
 
+void ResultReader::read_first_body(std::uint64_t first, std::span<std::uint32_t> out) const {
+  check_range(first, out.size(), collisions());
+  if (!state_->body) throw std::logic_error("ResultReader: no bodies");
+  as_input(state_->name, [&] { state_->body->read(first, out); });
+  state_->checks(names::kGroup, first).bodies(out);
+}
+
+void ResultReader::read_clearance_body(std::uint64_t first, std::span<std::uint32_t> out) const {
+  const auto& datasets = state_->clearance;
+  if (!datasets || !datasets->body) throw std::logic_error("ResultReader: no bodies");
+  check_range(first, out.size(), clearances());
+  as_input(state_->name, [&] { datasets->body->read(first, out); });
+  state_->checks(names::kClearanceGroup, first).bodies(out);
+}
+
 std::uint64_t ResultReader::clearances() const {
   return state_->clearance ? state_->clearance->source.rows() : 0;
 }

@@ -28,8 +28,11 @@ struct ResultReader::State {
     if (header.first_pose) {
       first_pose.emplace(open<std::uint32_t>(result_names::kGroup, result_names::kFirstPose, 0));
     }
+    if (header.has_first_bodies()) {
+      body.emplace(open<std::uint32_t>(result_names::kGroup, result_names::kBody, 0));
+    }
     check_equal(result_names::kGroup, source.rows(),
-                {xyz.rows(), rows_of(first_pose, source.rows())});
+                {xyz.rows(), rows_of(first_pose, source.rows()), rows_of(body, source.rows())});
     if (header.clearance > 0) open_clearances();
     if (header.profile > 0) open_profile();
   }
@@ -40,14 +43,19 @@ struct ResultReader::State {
         open<std::uint64_t>(result_names::kClearanceGroup, result_names::kSource, 0),
         {},
         open<double>(result_names::kClearanceGroup, result_names::kDistance, 0),
-        open<std::uint32_t>(result_names::kClearanceGroup, result_names::kPose, 0)});
+        open<std::uint32_t>(result_names::kClearanceGroup, result_names::kPose, 0),
+        {}});
+    if (!header.bodies.empty()) {
+      clearance->body.emplace(
+          open<std::uint32_t>(result_names::kClearanceGroup, result_names::kBody, 0));
+    }
     if (header.has_clearance_xyz()) {
       clearance->xyz.emplace(open<double>(result_names::kClearanceGroup, result_names::kXyz, 3));
     }
     const std::uint64_t rows = clearance->source.rows();
-    check_equal(
-        result_names::kClearanceGroup, rows,
-        {clearance->distance.rows(), clearance->pose.rows(), rows_of(clearance->xyz, rows)});
+    check_equal(result_names::kClearanceGroup, rows,
+                {clearance->distance.rows(), clearance->pose.rows(), rows_of(clearance->xyz, rows),
+                 rows_of(clearance->body, rows)});
   }
 
   void open_profile() {
@@ -101,6 +109,7 @@ struct ResultReader::State {
     std::optional<hdf5::Rows<double>> xyz;
     hdf5::Rows<double> distance;
     hdf5::Rows<std::uint32_t> pose;
+    std::optional<hdf5::Rows<std::uint32_t>> body;
   };
 
   struct ProfileDatasets {
@@ -116,7 +125,7 @@ struct ResultReader::State {
   std::uint64_t collisions_hash, clearance_hash = 0, profile_hash = 0;
   hdf5::Rows<std::uint64_t> source;
   hdf5::Rows<double> xyz;
-  std::optional<hdf5::Rows<std::uint32_t>> first_pose;
+  std::optional<hdf5::Rows<std::uint32_t>> first_pose, body;
   std::optional<ClearanceDatasets> clearance;
   std::optional<ProfileDatasets> profile;
 };

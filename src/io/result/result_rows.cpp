@@ -36,12 +36,21 @@ bool ResultRowStream::read(ResultRows& rows) {
   rows.source.resize(count);
   rows.xyz.resize(count);
   rows.first_pose.resize(first_pose ? count : 0);
+  const bool body = reader_.header().has_first_bodies();
+  rows.body.resize(body ? count : 0);
   if (count == 0) {
-    check_hash(reader_, "collisions", std::span(columns_).first(first_pose ? 3 : 2),
+    check_hash(reader_, "collisions",
+               std::span(columns_).first(body         ? 4
+                                         : first_pose ? 3
+                                                      : 2),
                reader_.collisions_hash());
     return false;
   }
   reader_.read_collisions(next_, rows.source, rows.xyz, rows.first_pose, columns_);
+  if (body) {
+    reader_.read_first_body(next_, rows.body);
+    add(columns_[3], rows.body);
+  }
   check_ascending(reader_, "/collisions/source", next_, last_source_, rows.source.front());
   last_source_ = rows.source.back();
   next_ += count;
@@ -55,16 +64,21 @@ bool ClearanceRowStream::read(ClearanceRows& rows) {
   rows.xyz.resize(has_xyz ? count : 0);
   rows.distance.resize(count);
   rows.pose.resize(count);
+  const bool body = !reader_.header().bodies.empty();
+  rows.body.resize(body ? count : 0);
+  const auto columns = std::span(columns_).first(body ? 5 : 4).subspan(has_xyz ? 0 : 1);
   if (count == 0) {
     if (reader_.header().clearance > 0) {
-      check_hash(reader_, "clearance", std::span(columns_).subspan(has_xyz ? 0 : 1),
-                 reader_.clearances_hash());
+      check_hash(reader_, "clearance", columns, reader_.clearances_hash());
     }
     return false;
   }
   // Version 2 has three columns, and the hash is of three.
-  reader_.read_clearances(next_, rows.source, rows.xyz, rows.distance, rows.pose,
-                          std::span(columns_).subspan(has_xyz ? 0 : 1));
+  reader_.read_clearances(next_, rows.source, rows.xyz, rows.distance, rows.pose, columns);
+  if (body && reader_.header().clearance > 0) {
+    reader_.read_clearance_body(next_, rows.body);
+    add(columns_[4], rows.body);
+  }
   check_ascending(reader_, "/clearance/source", next_, last_source_, rows.source.front());
   last_source_ = rows.source.back();
   next_ += count;

@@ -10,21 +10,23 @@
 
 namespace clearway {
 
-/// Consecutive rows of a result. first_pose is empty where the result has none.
+/// Consecutive rows of a result. first_pose and body are empty where the result has none.
 struct ResultRows {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<std::uint32_t> first_pose;
+  std::vector<std::uint32_t> body = {};
 
   std::size_t size() const { return source.size(); }
 };
 
-/// Consecutive rows of a result's clearances. xyz is empty where the result has none.
+/// Consecutive rows of a result's clearances. xyz and body are empty where the result has none.
 struct ClearanceRows {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<double> distance;
   std::vector<std::uint32_t> pose;
+  std::vector<std::uint32_t> body = {};
 
   std::size_t size() const { return source.size(); }
 };
@@ -59,7 +61,7 @@ class ResultRowStream {
   const std::size_t batch_rows_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
-  std::array<Xxh64Stream, 3> columns_;  ///< of the rows read
+  std::array<Xxh64Stream, 4> columns_;  ///< of the rows read
 };
 
 /// The same for its clearances; no rows where it has none.
@@ -77,7 +79,7 @@ class ClearanceRowStream {
   const std::size_t batch_rows_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
-  std::array<Xxh64Stream, 4> columns_;  ///< of the rows read
+  std::array<Xxh64Stream, 5> columns_;  ///< of the rows read
 };
 
 /// The same for its profile, of which the chainage ascends; no rows where it has none.

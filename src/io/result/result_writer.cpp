@@ -14,12 +14,19 @@ namespace {
 
 namespace names = result_names;
 
-using CollisionTable = ResultTable<std::uint64_t, Vec3, std::uint32_t>;
-using ClearanceTable = ResultTable<std::uint64_t, Vec3, double, std::uint32_t>;
+using CollisionTable = ResultTable<std::uint64_t, Vec3, std::uint32_t, std::uint32_t>;
+using ClearanceTable = ResultTable<std::uint64_t, Vec3, double, std::uint32_t, std::uint32_t>;
 using ProfileTable = ResultTable<double, std::uint64_t, Vec3, double, double>;
 
-constexpr ClearanceTable::Names kClearanceColumns{names::kSource, names::kXyz, names::kDistance,
-                                                  names::kPose};
+CollisionTable::Names collision_columns(const ResultHeader& header) {
+  return {names::kSource, names::kXyz, header.first_pose ? names::kFirstPose : nullptr,
+          header.has_first_bodies() ? names::kBody : nullptr};
+}
+
+ClearanceTable::Names clearance_columns(const ResultHeader& header) {
+  return {names::kSource, names::kXyz, names::kDistance, names::kPose,
+          header.bodies.empty() ? nullptr : names::kBody};
+}
 
 }  // namespace
 
@@ -29,12 +36,9 @@ struct ResultWriter::State {
       : name(path.string()),
         file(hdf5::create_file(path)),
         output(File::open_for_writing(path)),
-        collisions(std::in_place, file, names::kGroup,
-                   CollisionTable::Names{names::kSource, names::kXyz,
-                                         header.first_pose ? names::kFirstPose : nullptr},
-                   rows) {
+        collisions(std::in_place, file, names::kGroup, collision_columns(header), rows) {
     if (header.clearance > 0) {
-      clearances.emplace(file, names::kClearanceGroup, kClearanceColumns, clearance_rows);
+      clearances.emplace(file, names::kClearanceGroup, clearance_columns(header), clearance_rows);
     }
     if (header.profile > 0) {
       profile.emplace(
@@ -86,18 +90,20 @@ ResultWriter::~ResultWriter() {
 }
 
 void ResultWriter::append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
-                          std::span<const std::uint32_t> first_pose) {
+                          std::span<const std::uint32_t> first_pose,
+                          std::span<const std::uint32_t> body) {
   State& s = *state_;
-  hdf5::naming(s.name, [&] { s.collisions->append(source, xyz, first_pose); });
+  hdf5::naming(s.name, [&] { s.collisions->append(source, xyz, first_pose, body); });
 }
 
 void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
                                      std::span<const Vec3> xyz, std::span<const double> distance,
-                                     std::span<const std::uint32_t> pose) {
+                                     std::span<const std::uint32_t> pose,
+                                     std::span<const std::uint32_t> body) {
   State& s = *state_;
   if (!s.clearances) throw std::logic_error("ResultWriter: no clearances");
   s.complete(s.collisions);
-  hdf5::naming(s.name, [&] { s.clearances->append(source, xyz, distance, pose); });
+  hdf5::naming(s.name, [&] { s.clearances->append(source, xyz, distance, pose, body); });
 }
 
 void ResultWriter::append_profile(std::span<const double> distance,

@@ -45,6 +45,12 @@ void RowChecks::poses(const char* dataset, std::span<const std::uint32_t> pose) 
   }
 }
 
+void RowChecks::bodies(std::span<const std::uint32_t> body) const {
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    if (body[i] >= header.bodies.size()) refuse_row(names::kBody, i, "one of the bodies");
+  }
+}
+
 void RowChecks::clearances(std::span<const double> distance) const {
   for (std::size_t i = 0; i < distance.size(); ++i) {
     if (!(distance[i] >= 0 && distance[i] <= header.clearance)) {

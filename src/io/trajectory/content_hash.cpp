@@ -15,4 +15,20 @@ std::uint64_t hash_of_trajectory(std::span<const Pose> poses) {
   return xxh64(std::as_bytes(poses));
 }
 
+std::uint64_t hash_of_bodies(std::span<const Body> bodies) {
+  Xxh64Stream hash;
+  const auto add = [&hash](std::uint64_t number) {
+    hash.update(std::as_bytes(std::span(&number, 1)));
+  };
+  for (const Body& body : bodies) {
+    add(body.name.size());
+    hash.update(std::as_bytes(std::span(body.name)));
+    add(hash_of_model(body.model));
+    add(body.path_pose.size());
+    hash.update(std::as_bytes(std::span(body.path_pose)));
+    add(hash_of_trajectory(body.poses));
+  }
+  return hash.digest();
+}
+
 }  // namespace clearway

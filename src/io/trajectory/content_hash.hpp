@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "clearway/body.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 
@@ -14,5 +15,10 @@ std::uint64_t hash_of_model(std::span<const Vec3> points);
 
 /// The same over the 12 numbers of every pose: the rotation row by row, then the translation.
 std::uint64_t hash_of_trajectory(std::span<const Pose> poses);
+
+/// Of each body: the length of its name and the name, hash_of_model, the number of its poses, of
+/// each the index of the path's pose (uint32), and hash_of_trajectory. Lengths, numbers and hashes
+/// as 8 little-endian bytes.
+std::uint64_t hash_of_bodies(std::span<const Body> bodies);
 
 }  // namespace clearway

@@ -40,6 +40,41 @@ void note_sizes(const Question& question, MessageLog& log) {
            length_text(question.query.radius, question.unit));
 }
 
+/// What can be said of one body, whatever the others are. Whether the ground is below it, or the
+/// scan beside it, would have to be asked of the vehicle as a whole.
+void warn_of_body(const StoreReader& store, const Query& query, LengthUnit unit, MessageLog& log) {
+  const Question question(store, unit, query);
+  note_sizes(question, log);
+  const PathCover cover(question);
+  check_reach(question, cover, log);
+  check_model(question, log);
+  check_model_spacing(question, log);
+  check_radius(question, log);
+  check_steps(question, log);
+}
+
+void warn_of_bodies(const StoreReader& store, const Query& query, LengthUnit unit,
+                    MessageLog& log) {
+  for (const Body& body : query.bodies) {
+    if (body.poses.empty()) {
+      log.warn("no-poses", "body " + body.name + " has no poses: it cannot collide");
+      continue;
+    }
+    const std::string name = "body " + body.name + ": ";
+    std::vector<Message> none;
+    const MessageCallback named = [&](Message message) {
+      message.text = name + message.text;
+      if (message.severity == Message::Severity::kNote) {
+        log.note(std::move(message.text));
+      } else {
+        log.add(std::move(message));
+      }
+    };
+    MessageLog body_log(named, none);
+    warn_of_body(store, Query(body.model, body.poses, query), unit, body_log);
+  }
+}
+
 }  // namespace
 
 void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
@@ -55,6 +90,10 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
   if (query.poses.empty() || unit == LengthUnit::kDegrees) return;
   if (query.poses.size() == 1) {
     log.note("the trajectory has one pose: the model is checked at that place alone");
+  }
+  if (!query.bodies.empty()) {
+    warn_of_bodies(store, query, unit, log);
+    return;
   }
   const Question question(store, unit, query);
   note_sizes(question, log);

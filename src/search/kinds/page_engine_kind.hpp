@@ -13,6 +13,7 @@
 #include "core/page/pose_reach.hpp"
 #include "core/util/message_log.hpp"
 #include "search/query_trees.hpp"
+#include "stream/plan.hpp"
 
 namespace clearway {
 
@@ -56,8 +57,20 @@ class PageEngineKind {
   /// From the best to the least. With a smaller one the search is slower, never another.
   virtual std::vector<IndexSize> index_sizes() const { return {IndexSize{}}; }
 
+  /// Of which query build_index() gets the trees; searched: the query.
+  virtual const Query& whose_trees(const Query& searched) const { return searched; }
+
   /// Builds the index, in the place of an earlier one. The trees outlive it.
   virtual const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) = 0;
+
+  /// The plan with that index; `reach` is what build_index() gave.
+  virtual std::vector<PlannedCell> plan_cells(const PackedCloud& cloud,
+                                              const PoseReach& reach) const {
+    return plan(cloud, reach);
+  }
+  /// Of the nodes of any of these cells; motion: of the trees.
+  virtual std::uint64_t most_poses(const MotionTree& motion,
+                                   std::span<const PlannedCell> cells) const;
 
   /// Waits for the devices: from here on needs() has their limits. Called with a plan, before
   /// memory is asked for; may be called again.

@@ -29,10 +29,10 @@ class SweepKind : public PageEngineKind {
   }
   void report_index(SearchReport& report, const MessageLog& log) const override;
 
- protected:
   static void report_statistics(const SweepStatistics& statistics, SearchReport& report,
                                 const MessageLog& log);
 
+ protected:
   const StoreReader& store_;
   const Query& query_;
   const SearchOptions& options_;

@@ -1,8 +1,11 @@
 #include "search/shard/shard_cells.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <span>
 
 #include "io/system/xxh64.hpp"
+#include "search/body_queries.hpp"
 #include "search/memory_budget.hpp"
 #include "search/query_trees.hpp"
 #include "search/shard/cell_work.hpp"
@@ -24,10 +27,15 @@ std::vector<std::uint64_t> work_of_cells(const StoreReader& store, const Query& 
   check_memory(program_bytes(threads) + input_bytes(store, query) + tree_building_bytes(query) +
                    cell_work_bytes(store, query),
                memory_bytes);
-  if (query.model.empty() || query.poses.empty()) {
-    return std::vector<std::uint64_t>(store.cells().size());
-  }
-  return cell_work(store, query, QueryTrees(query, threads), threads);
+  std::vector<std::uint64_t> work(store.cells().size());
+  const auto add = [&](const Query& body) {
+    if (body.model.empty() || body.poses.empty()) return;
+    const auto more = cell_work(store, body, QueryTrees(body, threads), threads);
+    std::ranges::transform(work, more, work.begin(), std::plus());
+  };
+  if (query.bodies.empty()) add(query);
+  for (const Query& body : body_queries(query)) add(body);
+  return work;
 }
 
 }  // namespace

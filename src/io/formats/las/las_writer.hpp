@@ -20,6 +20,7 @@ struct LasHeader {
   std::string crs_wkt{};    ///< empty: none
   bool first_pose = false;  ///< adds the extra-bytes field "first_pose", uint32
   bool distance = false;    ///< adds the extra-bytes fields "distance", double, and "pose", uint32
+  bool body = false;        ///< adds the extra-bytes field "body", uint32
 };
 
 /// Of some points, each as many as there are points where the header has it, none otherwise.
@@ -27,6 +28,7 @@ struct LasExtras {
   std::span<const std::uint32_t> first_pose{};
   std::span<const double> distance{};
   std::span<const std::uint32_t> pose{};
+  std::span<const std::uint32_t> body{};
 };
 
 /// Writes LAS front to back, so that the output may be a pipe: version 1.2 with point format 0, or

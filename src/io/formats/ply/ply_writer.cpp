@@ -15,6 +15,7 @@ std::string header_text(const PlyOutput& header) {
   for (const char* axis : {"x", "y", "z"}) text += type + axis + "\n";
   if (header.first_pose) text += "property uint first_pose\n";
   if (header.distance) text += "property double distance\nproperty uint pose\n";
+  if (header.body) text += "property uint body\n";
   return text + "end_header\n";
 }
 
@@ -28,7 +29,8 @@ PlyWriter::PlyWriter(const File& file, const PlyOutput& header) : out_(file), he
 void PlyWriter::write(std::span<const Vec3> points, const PlyExtras& extras) {
   const std::size_t distances = header_.distance ? points.size() : 0;
   if (extras.first_pose.size() != (header_.first_pose ? points.size() : 0) ||
-      extras.distance.size() != distances || extras.pose.size() != distances) {
+      extras.distance.size() != distances || extras.pose.size() != distances ||
+      extras.body.size() != (header_.body ? points.size() : 0)) {
     throw std::logic_error("PlyWriter: properties do not match the header");
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -40,9 +42,11 @@ void PlyWriter::write(std::span<const Vec3> points, const PlyExtras& extras) {
       }
     }
     if (header_.first_pose) out_.put(extras.first_pose[i]);
-    if (!header_.distance) continue;
-    out_.put(extras.distance[i]);
-    out_.put(extras.pose[i]);
+    if (header_.distance) {
+      out_.put(extras.distance[i]);
+      out_.put(extras.pose[i]);
+    }
+    if (header_.body) out_.put(extras.body[i]);
   }
   written_ += points.size();
 }

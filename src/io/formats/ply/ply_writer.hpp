@@ -18,6 +18,7 @@ struct PlyOutput {
   PlyCoordinates coordinates = PlyCoordinates::kFloat64;
   bool first_pose = false;  ///< adds the property "first_pose", uint
   bool distance = false;    ///< adds the properties "distance", double, and "pose", uint
+  bool body = false;        ///< adds the property "body", uint
   std::string comment{};    ///< one line; empty: none
 };
 
@@ -26,6 +27,7 @@ struct PlyExtras {
   std::span<const std::uint32_t> first_pose{};
   std::span<const double> distance{};
   std::span<const std::uint32_t> pose{};
+  std::span<const std::uint32_t> body{};
 };
 
 /// Writes a point cloud as binary little-endian PLY, front to back: the element "vertex" with the

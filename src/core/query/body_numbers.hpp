@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "clearway/query.hpp"
+
+namespace clearway {
+
+/// A pose of the path and a body in one number, pose * bodies + body: the smallest number of a
+/// point is its first pose, and there the lowest body. Hits, clearances, pages and journal hold
+/// numbers in the place of poses. With no bodies, or one, a number is the pose itself.
+class BodyNumbers {
+ public:
+  explicit BodyNumbers(std::uint64_t bodies)
+      : bodies_(static_cast<std::uint32_t>(std::max<std::uint64_t>(bodies, 1))) {}
+  explicit BodyNumbers(const Query& query) : BodyNumbers(query.bodies.size()) {}
+
+  std::uint32_t number(std::uint32_t pose, std::uint32_t body) const {
+    return pose * bodies_ + body;
+  }
+  std::uint32_t pose_of(std::uint32_t number) const { return number / bodies_; }
+  std::uint32_t body_of(std::uint32_t number) const { return number % bodies_; }
+  /// All numbers are below it.
+  std::uint64_t end(std::uint64_t poses) const { return poses * bodies_; }
+
+ private:
+  std::uint32_t bodies_;
+};
+
+}  // namespace clearway

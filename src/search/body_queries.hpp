@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "clearway/query.hpp"
+
+namespace clearway {
+
+/// The question of each body by itself: its model at its own poses. Copies both.
+inline std::vector<Query> body_queries(const Query& query) {
+  std::vector<Query> out;
+  out.reserve(query.bodies.size());
+  for (const Body& body : query.bodies) out.emplace_back(body.model, body.poses, query);
+  return out;
+}
+
+}  // namespace clearway
