@@ -8,27 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include "core/query/body_numbers.hpp"
 #include "io/system/thread_limit.hpp"
+#include "stream/write/encode_rows.hpp"
 #include "stream/write/gather_rows.hpp"
 #include "stream/write/write_profile.hpp"
 #include "stream/write/write_rows.hpp"
 
 namespace clearway {
 namespace {
-
-struct CollisionRow {
-  std::uint64_t source;
-  std::int32_t q[3];
-  std::uint32_t first_pose;  ///< as BodyNumbers
-};
-
-struct ClearanceRow {
-  std::uint64_t source;
-  double distance;
-  std::int32_t q[3];
-  std::uint32_t pose;  ///< as BodyNumbers
-};
 
 /// Chunks that the file's writer holds back, and what the profile is written from.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{12} << 20;
@@ -68,96 +55,6 @@ WritePlan plan_of(const StoreReader& store, std::uint64_t memory_bytes) {
       plan.pieces * kPieceBytes + plan.threads * for_thread + (plan.without_copy ? 0 : order_bytes);
   plan.rows = std::max<std::uint64_t>(kLeastRows, (left - std::min(left, used)) / sizeof(Row));
   return plan;
-}
-
-/// Visits the rows in short pieces, whose columns stay in a core's cache.
-template <typename Row, typename Visit>
-void for_each_strip(std::span<const Row> rows, Visit visit) {
-  constexpr std::size_t kStrip = 1 << 12;
-  for (std::size_t first = 0; first < rows.size(); first += kStrip) {
-    visit(rows.subspan(first, std::min(kStrip, rows.size() - first)));
-  }
-}
-
-template <typename Values, typename Row, typename ValueOf>
-void set_column(std::vector<Values>& column, std::span<const Row> rows, ValueOf value_of) {
-  column.resize(rows.size());
-  std::ranges::transform(rows, column.begin(), value_of);
-}
-
-Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
-  return position(quantisation, q[0], q[1], q[2]);
-}
-
-/// Of the points of equal rank the one with the smallest source, as rows ascend by it.
-template <typename Row, typename RankOf>
-const Row& least_row(std::span<const Row> rows, RankOf rank_of) {
-  return *std::ranges::min_element(rows, {}, rank_of);
-}
-
-/// The columns of a strip of rows.
-struct Strip {
-  std::vector<std::uint64_t> source;
-  std::vector<Vec3> xyz;
-  std::vector<double> distance;
-  std::vector<std::uint32_t> pose, body;
-};
-
-/// What encoding rows needs to know beside them.
-struct RowMeaning {
-  const Quantisation& quantisation;
-  const ResultHeader& header;
-  BodyNumbers numbers;
-};
-
-using CollisionPiece = WritePiece<EncodedCollisions>;
-using ClearancePiece = WritePiece<EncodedClearances>;
-
-std::shared_ptr<CollisionPiece> encode(const ResultWriter& writer, const RowMeaning& meaning,
-                                       std::span<const CollisionRow> rows) {
-  const Quantisation& quantisation = meaning.quantisation;
-  const BodyNumbers numbers = meaning.numbers;
-  const bool first_pose = meaning.header.first_pose;
-  const auto pose_of = [&](const auto& row) { return numbers.pose_of(row.first_pose); };
-  const auto body_of = [&](const auto& row) { return numbers.body_of(row.first_pose); };
-  auto out = std::make_shared<CollisionPiece>(writer.new_collisions());
-  Strip columns;
-  for_each_strip(rows, [&](std::span<const CollisionRow> strip) {
-    set_column(columns.source, strip, [](const auto& row) { return row.source; });
-    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
-    if (first_pose) set_column(columns.pose, strip, pose_of);
-    if (meaning.header.has_first_bodies()) set_column(columns.body, strip, body_of);
-    out->rows.add(columns.source, columns.xyz, columns.pose, columns.body);
-  });
-  out->rows.seal();
-  if (first_pose) {
-    const CollisionRow& first = least_row(rows, pose_of);
-    out->place = {first.source, pose_of(first), xyz_of(quantisation, first.q), 0, body_of(first)};
-  }
-  return out;
-}
-
-std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const RowMeaning& meaning,
-                                       std::span<const ClearanceRow> rows) {
-  const Quantisation& quantisation = meaning.quantisation;
-  const BodyNumbers numbers = meaning.numbers;
-  const auto pose_of = [&](const auto& row) { return numbers.pose_of(row.pose); };
-  const auto body_of = [&](const auto& row) { return numbers.body_of(row.pose); };
-  auto out = std::make_shared<ClearancePiece>(writer.new_clearances());
-  Strip columns;
-  for_each_strip(rows, [&](std::span<const ClearanceRow> strip) {
-    set_column(columns.source, strip, [](const auto& row) { return row.source; });
-    set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
-    set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
-    set_column(columns.pose, strip, pose_of);
-    if (!meaning.header.bodies.empty()) set_column(columns.body, strip, body_of);
-    out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose, columns.body);
-  });
-  out->rows.seal();
-  const ClearanceRow& least = least_row(rows, &ClearanceRow::distance);
-  out->place = {least.source, pose_of(least), xyz_of(quantisation, least.q), least.distance,
-                body_of(least)};
-  return out;
 }
 
 /// The end of the parts from `first` on of which no more than `most` rows come.
@@ -225,7 +122,7 @@ class ResultWriting {
       };
     };
     const auto encode_rows = [&](std::span<const CollisionRow> rows) {
-      return encode(writer_, meaning_, rows);
+      return clearway::encode_rows(writer_, meaning_, rows);
     };
     const auto keep_first = [&](const CollisionPiece& piece) {
       if (!piece.place || (first && first->pose <= piece.place->pose)) return;
@@ -250,7 +147,7 @@ class ResultWriting {
       };
     };
     const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
-      return encode(writer_, meaning_, rows);
+      return clearway::encode_rows(writer_, meaning_, rows);
     };
     const auto keep_least = [&](const ClearancePiece& piece) {
       if (least && least->distance <= piece.place->distance) return;

@@ -20,7 +20,6 @@
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
 #include "cli/vehicle/read_vehicle.hpp"
-#include "cli/vehicle/vehicle_file.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
@@ -218,36 +217,6 @@ void prepare_device(const SearchOptions& options) {
   if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
 }
 
-/// All files that are read, those of a vehicle's bodies too.
-std::vector<std::filesystem::path> inputs_of(const RunOptions& options) {
-  std::vector<std::filesystem::path> inputs{options.environment, options.trajectory};
-  if (options.vehicle.empty()) {
-    inputs.push_back(options.model);
-    return inputs;
-  }
-  inputs.push_back(options.vehicle);
-  for (const BodyEntry& body : read_vehicle_file(options.vehicle, 1)) {
-    inputs.push_back(body.model);
-    if (!body.trajectory.empty()) inputs.push_back(body.trajectory);
-  }
-  return inputs;
-}
-
-/// Before large inputs are read, what the library would refuse after that.
-void check_vehicle_search(SearchOptions& options) {
-  if (options.device == Device::kCuda || !options.gpus.empty()) {
-    throw UsageError(
-        "--vehicle: a vehicle of several bodies is searched on the CPU alone; give "
-        "--device cpu");
-  }
-  if (options.engine == Engine::kGrid || options.engine == Engine::kKdtree) {
-    throw UsageError(std::string("--vehicle: engine ") + name_of(options.engine) +
-                         " searches one model, and no vehicle of several bodies",
-                     Remedy::kSweepEngine);
-  }
-  options.device = Device::kCpu;
-}
-
 /// Whether no point collides.
 bool run(RunOptions& options) {
   const Stopwatch total;
@@ -255,7 +224,9 @@ bool run(RunOptions& options) {
   ConsoleProgress progress;
   watch_call(options.search, progress);
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
-  refuse_overwriting(options.output, inputs_of(options));
+  std::vector<std::filesystem::path> inputs{options.environment, options.model, options.trajectory};
+  if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
+  refuse_overwriting(options.output, inputs);
   if (!options.vehicle.empty()) check_vehicle_search(options.search);
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;

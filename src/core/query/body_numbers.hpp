@@ -19,8 +19,10 @@ class BodyNumbers {
   std::uint32_t number(std::uint32_t pose, std::uint32_t body) const {
     return pose * bodies_ + body;
   }
-  std::uint32_t pose_of(std::uint32_t number) const { return number / bodies_; }
-  std::uint32_t body_of(std::uint32_t number) const { return number % bodies_; }
+  std::uint32_t pose_of(std::uint32_t number) const {
+    return bodies_ == 1 ? number : number / bodies_;
+  }
+  std::uint32_t body_of(std::uint32_t number) const { return bodies_ == 1 ? 0 : number % bodies_; }
   /// All numbers are below it.
   std::uint64_t end(std::uint64_t poses) const { return poses * bodies_; }
 

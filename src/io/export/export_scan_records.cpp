@@ -110,10 +110,16 @@ class CommonFormat {
 class ExtendedRecord {
  public:
   ExtendedRecord(const ResultReader& result, LasRecordFormat& format)
-      : first_pose_(result.header().first_pose), own_bytes_(format.record_bytes) {
+      : first_pose_(result.header().first_pose),
+        body_(result.header().has_first_bodies()),
+        own_bytes_(format.record_bytes) {
     if (first_pose_) {
       add_field(format, sizeof(std::uint32_t),
                 las_extra_bytes("first_pose", LasExtraType::kUint32, "first pose that touches"));
+    }
+    if (body_) {
+      add_field(format, sizeof(std::uint32_t),
+                las_extra_bytes("body", LasExtraType::kUint32, "body that touches first"));
     }
     if (result.header().clearance > 0) {
       distances_.emplace(result);
@@ -132,6 +138,11 @@ class ExtendedRecord {
       const std::uint32_t pose = *row.first_pose();
       std::memcpy(out, &pose, sizeof pose);
       out += sizeof pose;
+    }
+    if (body_) {
+      const std::uint32_t body = *row.body();
+      std::memcpy(out, &body, sizeof body);
+      out += sizeof body;
     }
     if (!distances_) return bytes_;
     const double distance = distance_of(row.source());
@@ -164,7 +175,7 @@ class ExtendedRecord {
                                                                    : kNoDistance;
   }
 
-  bool first_pose_;
+  bool first_pose_, body_;
   std::size_t own_bytes_;
   std::optional<ClearanceCursor> distances_;
   std::vector<std::byte> bytes_;

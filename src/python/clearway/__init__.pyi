@@ -13,16 +13,13 @@ _Poses = NDArray[np.uint32]
 _Axis = Literal["+x", "x", "-x", "+y", "y", "-y", "+z", "z", "-z"]
 _Progress = Callable[["ProgressUpdate"], Any]
 _Tell = Callable[["Message"], Any]
-
 class _Stop(Protocol):
     def is_set(self) -> bool: ...
-
 __version__: str
 METRES_PER_MILLIMETRE: float
 METRES_PER_CENTIMETRE: float
 METRES_PER_INCH: float
 METRES_PER_FOOT: float
-
 class Error(Exception):
     remedy: str | None
     amount: float
@@ -31,7 +28,6 @@ class UsageError(Error, ValueError): ...
 class InputError(Error): ...
 class ResourceError(Error): ...
 class Interrupted(Error): ...
-
 class Message:
     severity: Final[Literal["note", "warning"]]
     code: Final[str]
@@ -218,6 +214,7 @@ class Conflict:
     source: Final[int]
     box: Final[Box]
     centroid: Final[_Doubles]
+    body: Final[int | None]
     first_pose: Final[int]
     last_pose: Final[int]
     chainage_from: Final[float]

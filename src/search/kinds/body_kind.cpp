@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/util/format.hpp"
-#include "cpu/body_sweep_engine.hpp"
+#include "cpu/bodies/body_sweep_engine.hpp"
 #include "search/body_queries.hpp"
 
 namespace clearway {
@@ -104,9 +104,9 @@ std::uint64_t CpuBodyKind::host_bytes(const SlotLayout& layout, std::uint64_t mo
 }
 
 void CpuBodyKind::report_index(SearchReport& report, const MessageLog& log) const {
-  for (std::size_t body = 0; body < sweeps_.size(); ++body) {
+  for (const auto& sweep : sweeps_) {
     SearchReport of_body;
-    sweeps_[body]->report_index(of_body, log);
+    sweep->report_index(of_body, log);
     report.field_voxel = std::max(report.field_voxel, of_body.field_voxel);
   }
 }

@@ -21,8 +21,8 @@ struct Vehicle {
     header.clearance = 0.3;
     rows = sample_rows(header, 100'000);
     near = sample_clearances(header, 70'001);
-    for (std::size_t i = 0; i < rows.size(); ++i) rows.body.push_back(i * 7 % 3);
-    for (std::size_t i = 0; i < near.size(); ++i) near.body.push_back(i * 5 % 3);
+    for (std::uint32_t i = 0; i < rows.size(); ++i) rows.body.push_back(i * 7 % 3);
+    for (std::uint32_t i = 0; i < near.size(); ++i) near.body.push_back(i * 5 % 3);
   }
 
   void write(const std::string& name) const {

@@ -105,6 +105,17 @@ TEST_CASE("each body of a vehicle has its own motion and its own name in the res
   const Outcome info = tunnel().run("info " + tunnel().name("out.h5"));
   CHECK_THAT(info.out, Contains("bogie") && Contains("middle"));
   CHECK(tunnel().run("verify " + tunnel().name("out.h5")).exit_code == 0);
+  const Outcome conflicts = tunnel().run("conflicts " + tunnel().name("out.h5") + " --trajectory " +
+                                         tunnel().name("trajectory.txt") + " -o " +
+                                         tunnel().name("found.json") + " --force");
+  REQUIRE(conflicts.exit_code == 0);
+  const auto found = nlohmann::json::parse(bytes_of(tunnel().folder / "found.json"));
+  CHECK(found["bodies"] == nlohmann::json{"bogie", "middle", "end"});
+  REQUIRE(found["conflicts"].size() > 0);
+  for (const auto& conflict : found["conflicts"]) {
+    CHECK(conflict["body"] > 0);
+    CHECK(conflict["side"] == "unknown");
+  }
   for (const std::string format : {"csv", "ply", "las"}) {
     const std::string file = "clearances." + format;
     CHECK(tunnel()

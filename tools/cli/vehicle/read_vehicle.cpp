@@ -121,4 +121,27 @@ std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vec
   return bodies;
 }
 
+std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& file,
+                                                  std::vector<std::filesystem::path> others) {
+  others.push_back(file);
+  for (const BodyEntry& body : read_vehicle_file(file, 1)) {
+    others.push_back(body.model);
+    if (!body.trajectory.empty()) others.push_back(body.trajectory);
+  }
+  return others;
+}
+
+void check_vehicle_search(SearchOptions& options) {
+  if (options.device == Device::kCuda || !options.gpus.empty()) {
+    throw UsageError(
+        "--vehicle: a vehicle of several bodies is searched on the CPU alone; give --device cpu");
+  }
+  if (options.engine == Engine::kGrid || options.engine == Engine::kKdtree) {
+    throw UsageError(std::string("--vehicle: engine ") + clearway::name_of(options.engine) +
+                         " searches one model, and no vehicle of several bodies",
+                     Remedy::kSweepEngine);
+  }
+  options.device = Device::kCpu;
+}
+
 }  // namespace clearway::tool

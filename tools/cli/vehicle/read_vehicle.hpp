@@ -5,6 +5,7 @@
 
 #include "clearway/body.hpp"
 #include "clearway/model.hpp"
+#include "clearway/search.hpp"
 #include "clearway/trajectory.hpp"
 
 namespace clearway::tool {
@@ -16,5 +17,13 @@ namespace clearway::tool {
 std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vector<Pose>& path,
                                const ModelOptions& model, const TrajectoryOptions& trajectory,
                                int threads, std::vector<Message>& warnings);
+
+/// `others`, and all files that the vehicle's file names, with itself.
+std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& file,
+                                                  std::vector<std::filesystem::path> others);
+
+/// Chooses the device that searches vehicles. Throws UsageError, before large inputs are read, for
+/// what the library would refuse after that.
+void check_vehicle_search(SearchOptions& options);
 
 }  // namespace clearway::tool

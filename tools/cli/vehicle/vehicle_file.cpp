@@ -18,11 +18,11 @@ using campaign::KeyReader;
 double length_of(const KeyReader& key, double environment_unit) {
   const auto& value = key.value();
   if (value.is_number()) return value.get<double>();
-  if (!value.is_string()) key.refuse("expected a length, for example 10.5 or \"10.5m\"");
+  if (!value.is_string()) key.refuse(R"(expected a length, for example 10.5 or "10.5m")");
   try {
     return parse_length("", key.text(), LengthRange::kAny).in_units_of(environment_unit);
   } catch (const CLI::ValidationError&) {
-    key.refuse("is \"" + key.text() + "\", expected a length, for example 10.5 or \"10.5m\"");
+    key.refuse("is \"" + key.text() + R"(", expected a length, for example 10.5 or "10.5m")");
   }
 }
 
@@ -47,7 +47,7 @@ double unit_of(const KeyReader& key) {
 }
 
 std::string name_of(const KeyReader& key, std::set<std::string>& names) {
-  const std::string name = key.text();
+  std::string name = key.text();
   const bool control = std::ranges::any_of(
       name, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; });
   if (control || name.size() > kMostNameBytes) {

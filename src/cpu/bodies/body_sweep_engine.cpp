@@ -1,4 +1,4 @@
-#include "cpu/body_sweep_engine.hpp"
+#include "cpu/bodies/body_sweep_engine.hpp"
 
 #include <algorithm>
 
