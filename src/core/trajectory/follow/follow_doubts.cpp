@@ -58,9 +58,11 @@ std::vector<Message> doubts_about(const FollowedPath& followed, const PathStatio
        "the path turns back between the pivots. They are closer together than half their way "
        "along the path. Split the path where it turns back");
   warn("body-turned", followed.turned,
-       pivots ? "the body's x axis is more than 60 degrees from the path's. If the path is driven "
-                "backwards, give the pivots the other way round"
-              : "the path is driven against its x axis. Stations ahead are behind the model there");
+       pivots
+           ? "the path's x axis is more than 60 degrees from the body's, or its z axis within 30. "
+             "If the path is driven backwards, give the pivots the other way round. Otherwise its "
+             "poses may have other axes than x forward and z up"
+           : "the path is driven against its x axis. Stations ahead are behind the model there");
   return doubts;
 }
 

@@ -15,6 +15,8 @@ enum State : std::uint8_t { kOffPath = 1, kUndefined = 2, kFolded = 4, kTurned =
 
 /// Cosine from which on two axes count as along each other: 60 degrees.
 constexpr double kAlong = 0.5;
+/// Sine from which on an axis counts as across another: 30 degrees.
+constexpr double kAcross = 0.5;
 /// Chords of a smaller share of the way between the pivots have no direction that means anything.
 constexpr double kLeastChord = 1e-6;
 /// The same for the up direction beside the chord: its sine.
@@ -72,7 +74,8 @@ BodyPose on_pivots(const PathStations& path, std::size_t i, const BodyPivots& pi
   BodyPose body;
   body.pose = pose_of(x, up.normalized(), position_of(rear) + share * chord);
   if (length < way / 2) body.state |= kFolded;
-  if (x.dot(axis_of(path.poses()[i], 0)) < kAlong) body.state |= kTurned;
+  // A frame with another axis forward or up, such as a camera's, gives no frame of the body.
+  if (x.dot(axis_of(path.poses()[i], 0)) < kAlong || up.norm() < kAcross) body.state |= kTurned;
   return body;
 }
 

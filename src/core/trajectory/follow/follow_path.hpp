@@ -32,7 +32,7 @@ struct FollowedPath {
   std::vector<std::uint64_t> off_path;   ///< no pose: a station is off the path
   std::vector<std::uint64_t> undefined;  ///< no pose: the chord has no direction, or points up
   std::vector<std::uint64_t> folded;     ///< the chord is shorter than half of the way between
-  std::vector<std::uint64_t> turned;     ///< the body's x axis is not along the path's
+  std::vector<std::uint64_t> turned;     ///< the path's axes are not about the body's
 };
 
 /// Throws InputError for pivots on a path that mirrors the model. docs/design/bodies.md.

@@ -202,6 +202,21 @@ TEST_CASE("a path driven backwards takes its pivots the other way round") {
   }
 }
 
+TEST_CASE("the poses of a camera are warned of") {
+  std::vector<Pose> camera;
+  for (int i = 0; i < 30; ++i) {  // x right, y down, z forward
+    camera.push_back({{0, 0, 1, -1, 0, 0, 0, -1, 0}, {double(i), 0.001 * i * i, 0}});
+  }
+  const auto body = follow(camera, BodyPivots{2, -2});
+  CHECK(body.turned.size() == body.of.size());
+  // With x forward, z is taken as up even where it points sideways.
+  for (Pose& pose : camera) {
+    const double other[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
+    std::copy(other, other + 9, pose.rotation);
+  }
+  CHECK(follow(camera, BodyPivots{2, -2}).turned.empty());
+}
+
 TEST_CASE("a body stands where the path stands") {
   auto poses = straight(31, 0.5);
   poses.insert(poses.begin() + 15, 4, poses[15]);
