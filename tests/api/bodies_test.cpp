@@ -18,7 +18,9 @@ constexpr std::uint32_t kNever = HitSet::kNever;
 /// A pose of the path and a body; none: kNever.
 struct First {
   std::uint32_t pose = kNever, body = kNever;
-  friend auto operator<=>(const First&, const First&) = default;
+  friend bool operator<(const First& a, const First& b) {
+    return a.pose != b.pose ? a.pose < b.pose : a.body < b.body;
+  }
 };
 
 std::vector<First> first_by_hand(const Vehicle& vehicle) {

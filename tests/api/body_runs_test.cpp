@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "api/vehicle_scene.hpp"
 #include "clearway/error.hpp"
@@ -82,6 +83,26 @@ TEST_CASE("bodies that contradict path or engine are refused by name") {
   refused("not in the order");
   vehicle.query.between_poses = true;
   refused("body rear has no pose between poses 1 and 3");
+}
+
+TEST_CASE("bodies follow the path of a query") {
+  std::vector<Pose> path;
+  for (int i = 0; i < 21; ++i) path.push_back(translation({0.5 * i, 0, 0}));
+  std::vector<Message> warnings;
+  const Body body = follow({.name = "wagon", .model = {{0, 0, 0}}, .poses = {}, .path_pose = {}},
+                           path, BodyPivots{2, -1}, &warnings);
+  CHECK(body.path_pose.front() == 2);
+  CHECK(body.path_pose.back() == 16);
+  CHECK(body.poses.size() == 15);
+  CHECK(body.poses[0].translation[0] == Approx(1));
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].code == "body-off-path");
+  CHECK_THAT(warnings[0].text, Contains("body wagon: 6 of 21 poses"));
+  CHECK(follow(body, path, BodyStation{0}).poses == path);
+  CHECK_THROWS_AS(follow(body, path, BodyPivots{1, 1}), UsageError);
+  CHECK_THROWS_AS(follow(body, path, BodyStation{std::numeric_limits<double>::infinity()}),
+                  UsageError);
+  CHECK_THROWS_AS(follow(body, path, BodyStation{11}), InputError);
 }
 
 TEST_CASE("a body without poses finds nothing, and is warned of") {

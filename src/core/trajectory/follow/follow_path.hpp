@@ -2,27 +2,14 @@
 
 #include <cstdint>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "clearway/follow.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "core/trajectory/follow/path_stations.hpp"
 
 namespace clearway {
-
-/// A body that has the path's own pose so many metres ahead of each pose; negative: behind.
-struct BodyStation {
-  double at = 0;
-};
-
-/// A body that lies on the path with two places, so many metres ahead of each pose. Its x axis
-/// points from the rear one to the front one; its origin divides the chord as 0 divides the two.
-struct BodyPivots {
-  double front = 0, rear = 0;  ///< not equal
-};
-
-using BodyMount = std::variant<BodyStation, BodyPivots>;
 
 /// The poses of a body that follows a path. Indices count the path's poses and ascend.
 struct FollowedPath {
