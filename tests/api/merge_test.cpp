@@ -114,6 +114,7 @@ TEST_CASE("parts that are missing or there twice are refused by number") {
   const auto parts = shards.parts(7);
   const auto some = [&](const std::vector<std::size_t>& which) {
     std::vector<std::filesystem::path> out;
+    out.reserve(which.size());
     for (const std::size_t i : which) out.push_back(parts[i - 1]);
     return out;
   };
