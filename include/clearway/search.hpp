@@ -41,8 +41,8 @@ struct SearchOptions {
   bool overwrite = false;  ///< an existing result, and the journal of an earlier run
   bool resume = false;     ///< goes on from the journal of an earlier run
   bool strict = false;     ///< any warning ends with InputError, nothing searched
-  /// Of reading model and trajectory, told already: the report holds them too, and strict counts
-  /// them.
+  /// Of reading model and trajectory, told already: the report holds them too, as a part does, and
+  /// strict counts them. To be given again where a search is resumed.
   std::vector<Message> input_warnings = {};
   std::shared_ptr<const DeviceStart> started = nullptr;  ///< start_devices(), or done here
   /// The process uses CUDA for nothing else: the GPUs' contexts end while the result is written.
@@ -102,6 +102,7 @@ struct SearchReport {
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
   std::string device_name = "the CPU";     ///< for people
+  std::optional<Shard> shard;              ///< where it is the answer of one part alone
   std::optional<double> shard_share;       ///< of a shard: its estimated work over the mean
   std::uint64_t searches = 0;              ///< pairs of pose and model point
   std::optional<ToleranceReport> tolerance;

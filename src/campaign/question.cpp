@@ -7,6 +7,11 @@
 
 namespace clearway::campaign {
 
+void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordered_json& question) {
+  question["shard"] = to_string(shard);
+  question["store"] = store;
+}
+
 nlohmann::ordered_json question_of(const ResultHeader& header) {
   nlohmann::ordered_json question{{"radius", header.radius},
                                   {"first_pose", header.first_pose},
@@ -21,7 +26,7 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
                                   {"model_hash", hash_text(header.model_hash)},
                                   {"poses", header.poses},
                                   {"trajectory_hash", hash_text(header.trajectory_hash)}};
-  if (header.part) question["shard"] = to_string(header.part->shard);
+  if (header.part) ask_for_part(header.part->shard, hash_text(header.part->store), question);
   return question;
 }
 

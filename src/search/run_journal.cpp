@@ -121,8 +121,26 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
     if (read_ || !unwanted_.empty()) remove_file(path_);
     return true;
   }
+  if (options_.resume) refuse_other_part(header);
   pending_.refuse_existing();
   return false;
+}
+
+/// A part in the place of a result, another part, or a result in the place of a part.
+void RunJournal::refuse_other_part(const ResultHeader& header) const {
+  const auto words = [](const std::optional<ResultPart>& part) {
+    return part ? in_words(part->shard) : std::string("the whole result");
+  };
+  std::string found;
+  try {
+    found = words(ResultReader(output_, Parts::kAccepted).header().part);
+  } catch (const Error&) {
+    return;  // nothing is there, or no result
+  }
+  if (found == words(header.part)) return;
+  throw UsageError(
+      output_.string() + ": is " + found + ", and " + words(header.part) + " is asked for",
+      Remedy::kOtherPart);
 }
 
 bool RunJournal::is_of(const StoreReader& store, const ResultHeader& header) const {

@@ -95,6 +95,7 @@ class Search {
     shard_.emplace(store_, query_, *options_.shard, threads_or_all(options_.threads),
                    options_.memory_bytes);
     header_.part = shard_->part();
+    report_.shard = options_.shard;
     report_.shard_share = shard_->share();
   }
 
@@ -214,6 +215,7 @@ class Search {
 
   void publish(const Found& found) {
     const Stopwatch write;
+    describe_part();
     try {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
@@ -229,6 +231,17 @@ class Search {
     report_.bytes_read = touched.bytes;
     report_profile(found.result.profile);
     report_.seconds.write = write.seconds();
+  }
+
+  /// What merging parts asks of them: how an answer that is not exact was computed, and what was
+  /// warned of.
+  void describe_part() {
+    if (!header_.part) return;
+    header_.part->warnings = report_.warnings;
+    if (header_.is_exact()) return;
+    header_.part->device = name_of(report_.device);
+    header_.part->field_voxel = report_.field_voxel;
+    header_.part->grid_cell = report_.grid_cell;
   }
 
   void report_written(const WrittenResult& written) {

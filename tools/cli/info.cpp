@@ -86,6 +86,13 @@ ordered_json describe(const ResultReader& result) {
     description["kind"] = "part of a result";
     description["shard"] = to_string(h.part->shard);
     description["division"] = hash_text(h.part->division);
+    description["store"] = hash_text(h.part->store);
+    if (!h.is_exact()) {
+      description["device"] = h.part->device;
+      description["field_voxel"] = h.part->field_voxel;
+      description["grid_cell"] = h.part->grid_cell;
+    }
+    description["warnings"] = h.part->warnings.size();
   }
   if (h.float_precision) description["precision"] = "float";
   if (h.has_poses_of_ways()) {

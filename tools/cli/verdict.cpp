@@ -155,6 +155,12 @@ std::string found_text(std::uint64_t colliding_points, std::uint64_t environment
                      colliding_points == 1 ? "collides" : "collide");
 }
 
+std::string caveat_of(std::size_t warnings) {
+  if (warnings == 0) return "";
+  return ", but see the " + (warnings == 1 ? "warning" : std::to_string(warnings) + " warnings") +
+         " above";
+}
+
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat) {
   const std::string limit = fmt::format("{} {}", verdict.query.radius, unit);

@@ -54,6 +54,9 @@ Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses);
 /// "3 of 2,001 environment points collide"
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points);
 
+/// ", but see the 2 warnings above": no all-clear where something was warned of. Empty without.
+std::string caveat_of(std::size_t warnings);
+
 /// One sentence, without what `caveat` adds before its end. unit: of lengths, "m".
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat);

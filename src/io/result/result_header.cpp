@@ -5,6 +5,7 @@
 
 #include "clearway/error.hpp"
 #include "io/result/as_numbers.hpp"
+#include "io/result/part_warnings.hpp"
 #include "io/result/result_names.hpp"
 #include "io/system/input_error.hpp"
 
@@ -79,14 +80,43 @@ void read_profile_distance(const hdf5::Id& file, const std::string& name, double
   refuse(name, "attribute 'profile' is " + shown(profile) + ", expected a length, or 0 for none");
 }
 
-ResultPart read_part(const hdf5::Id& file, const std::string& name) {
+/// Of what is not exact, how it was computed.
+void read_means(const hdf5::Id& file, const std::string& name, const ResultHeader& header,
+                ResultPart& part) {
+  if (header.is_exact()) return;
+  part.device = hdf5::read_text_attribute(file, names::kDevice, name);
+  part.field_voxel = hdf5::read_number<double>(file, names::kFieldVoxel, name);
+  part.grid_cell = hdf5::read_number<double>(file, names::kGridCell, name);
+}
+
+ResultPart read_part(const hdf5::Id& file, const std::string& name, const ResultHeader& header) {
   const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
   ResultPart part{{shard[0], shard[1]},
                   hdf5::read_number<std::uint64_t>(file, names::kDivision, name),
+                  hdf5::read_number<std::uint64_t>(file, names::kStore, name),
                   hdf5::read_text_attribute(file, names::kLengthUnit, name)};
-  if (part.shard.is_valid()) return part;
-  refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
-                   std::to_string(Shard::kMost));
+  if (!part.shard.is_valid()) {
+    refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
+                     std::to_string(Shard::kMost));
+  }
+  read_means(file, name, header, part);
+  part.warnings = read_warnings(file, name);
+  return part;
+}
+
+void write_part(const hdf5::Id& file, const ResultHeader& header) {
+  const ResultPart& part = *header.part;
+  const std::uint32_t shard[]{part.shard.number, part.shard.count};
+  hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
+  hdf5::write_number(file, names::kDivision, part.division);
+  hdf5::write_number(file, names::kStore, part.store);
+  hdf5::write_attribute(file, names::kLengthUnit, part.length_unit);
+  if (!header.is_exact()) {
+    hdf5::write_attribute(file, names::kDevice, part.device);
+    hdf5::write_number(file, names::kFieldVoxel, part.field_voxel);
+    hdf5::write_number(file, names::kGridCell, part.grid_cell);
+  }
+  write_warnings(file, part.warnings);
 }
 
 }  // namespace
@@ -119,11 +149,7 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
   }
-  if (!header.part) return;
-  const std::uint32_t shard[]{header.part->shard.number, header.part->shard.count};
-  hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
-  hdf5::write_number(file, names::kDivision, header.part->division);
-  hdf5::write_attribute(file, names::kLengthUnit, header.part->length_unit);
+  if (header.part) write_part(file, header);
 }
 
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
@@ -157,7 +183,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   }
   if (is_part) {
     if (header.version < 3) refuse(name, "is a part of version 2, which has none");
-    header.part = read_part(file, name);
+    header.part = read_part(file, name, header);
   }
   return header;
 }

@@ -34,7 +34,17 @@ inline constexpr const char* kClosedWay = "closed way";
 
 inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
 inline constexpr const char* kDivision = "division";
+inline constexpr const char* kStore = "store";
 inline constexpr const char* kLengthUnit = "length_unit";
+inline constexpr const char* kDevice = "device";  // of parts that are not exact, with one of
+inline constexpr const char* kFieldVoxel = "field_voxel";
+inline constexpr const char* kGridCell = "grid_cell";
+inline constexpr const char* kWarningsGroup = "warnings";  // of parts only: a group each, from 0
+inline constexpr const char* kWarningCount = "count";
+inline constexpr const char* kCode = "code";
+inline constexpr const char* kMessage = "message";
+inline constexpr const char* kNumberNames = "names";  // a line each; only where there are numbers
+inline constexpr const char* kNumbers = "numbers";
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";

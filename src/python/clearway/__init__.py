@@ -31,6 +31,7 @@ from ._clearway import (
     Interrupted,
     MergeReport,
     Message,
+    PartWarning,
     PoseLabels,
     Profile,
     ProgressUpdate,

@@ -151,6 +151,7 @@ class SearchReport:
     device_name: Final[str]
     engine_estimate: Final[EngineEstimate | None]
     estimate: Final[DeviceEstimate | None]
+    shard: Final[tuple[int, int] | None]
     shard_share: Final[float | None]
     searches: Final[int]
     tolerance: Final[ToleranceReport | None]
@@ -168,9 +169,13 @@ class SearchReport:
     pinned_bytes: Final[int]
     peak_device_bytes: Final[int]
     seconds: Final[SearchSeconds]
+class PartWarning(Message):
+    parts: Final[int]
+
 class MergeReport:
     was_finished: Final[bool]
     parameters: Final[QueryParameters]
+    length_unit: Final[str]
     parts: Final[int]
     environment_points: Final[int]
     model_points: Final[int]
@@ -181,6 +186,7 @@ class MergeReport:
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
+    warnings: Final[list[PartWarning]]
 
 class Clearances:
     source: Final[_Sources]
@@ -278,7 +284,8 @@ def search(
 def merge(
     parts: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, threads: int = 0,
     memory_bytes: int = 4294967296, overwrite: bool = False, resume: bool = False,
-    progress: _Progress | None = None, stop: _Stop | None = None,
+    strict: bool = False, progress: _Progress | None = None, message: _Tell | None = None,
+    stop: _Stop | None = None,
 ) -> MergeReport: ...
 def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,

@@ -14,6 +14,7 @@
 #include "core/util/format.hpp"
 #include "io/formats/length_unit.hpp"
 #include "io/store/store_reader.hpp"
+#include "io/system/xxh64.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 
@@ -108,7 +109,7 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   const std::uint32_t shards = named(run.environment.key, [&] {
     return estimate_.shards(options, points.box, points.count, poses.poses);
   });
-  return {campaign::question_of(header), store.unit, shards};
+  return {campaign::question_of(header), store.unit, shards, store.fingerprint};
 }
 
 void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
@@ -186,6 +187,7 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
     facts.header.crs_wkt = metadata.crs_wkt;
     facts.metres = metres_of_unit(store.length_unit());
     facts.unit = short_unit(store.length_unit());
+    facts.fingerprint = hash_text(store.reader().fingerprint());
   });
   return facts;
 }

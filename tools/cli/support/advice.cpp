@@ -98,6 +98,9 @@ std::string advice_on(const Error& error) {
       return "; the same command with --resume, without --force, continues from the finished work";
     case Remedy::kMerge:
       return "; clearway merge makes the result of all parts";
+    case Remedy::kOtherPart:
+      return "; give --shard as its run did, or another output. --force in the place of --resume "
+             "overwrites it";
   }
   return "";
 }
