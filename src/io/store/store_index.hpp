@@ -14,6 +14,7 @@ namespace clearway {
 struct StoreIndex {
   StoreMetadata metadata;
   CellIndex cells;
+  ClassIndex classes;  ///< empty where the store has none
   std::vector<TopNode> top;
   std::vector<BlockBox> blocks;  ///< the same number for every cell
 };

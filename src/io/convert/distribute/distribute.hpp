@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/util/progress.hpp"
 #include "io/convert/checks/same_place.hpp"
@@ -11,11 +12,17 @@
 
 namespace clearway {
 
+/// Of what was counted.
+struct CountedHashes {
+  std::uint64_t points;
+  std::optional<std::uint64_t> classes;  ///< none where all have class 0
+};
+
 /// The distribution pass: puts every point to its unit's, in source order. Throws InputError when
-/// the input is not what was counted, ResourceError when the disk is full. points_hash: of what was
-/// counted. places: counts the points it was made for.
-void distribute(EnvironmentSource& environment, std::uint64_t points_hash, const Lattice& lattice,
-                const SplitTree& tree, PlaceCounter& places, Distribution& distribution,
-                int threads, StageClocks& clocks, Progress& progress);
+/// the input is not what was counted, ResourceError when the disk is full. places: counts the
+/// points it was made for.
+void distribute(EnvironmentSource& environment, const CountedHashes& counted,
+                const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
+                Distribution& distribution, int threads, StageClocks& clocks, Progress& progress);
 
 }  // namespace clearway
