@@ -30,6 +30,7 @@ MergeReport report_of(const PartSet& set) {
   report.poses = set.header().poses;
   report.colliding_points = set.collisions();
   report.clearance_points = set.clearances();
+  report.ignored = set.header().ignored;
   return report;
 }
 

@@ -6,6 +6,19 @@
 #include "io/system/xxh64.hpp"
 
 namespace clearway::campaign {
+namespace {
+
+nlohmann::ordered_json ignored_of(const ResultHeader& header) {
+  nlohmann::ordered_json boxes = nlohmann::ordered_json::array();
+  for (const Box& box : header.ignore_boxes) {
+    boxes.push_back({box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z});
+  }
+  nlohmann::ordered_json ignored{{"classes", header.ignore_classes}, {"boxes", boxes}};
+  if (!header.ignore_classes.empty()) ignored["classes_hash"] = hash_text(header.classes_hash);
+  return ignored;
+}
+
+}  // namespace
 
 nlohmann::ordered_json question_of(const ResultHeader& header) {
   nlohmann::ordered_json question{{"radius", header.radius},
@@ -21,6 +34,7 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
                                   {"model_hash", hash_text(header.model_hash)},
                                   {"poses", header.poses},
                                   {"trajectory_hash", hash_text(header.trajectory_hash)}};
+  if (header.ignores_points()) question["ignored"] = ignored_of(header);
   if (header.part) question["shard"] = to_string(header.part->shard);
   return question;
 }

@@ -85,7 +85,9 @@ void add_parameters(py::module_& module) {
       .def_readonly("between_poses", &Q::between_poses)
       .def_readonly("clearance", &Q::clearance, "Metres; 0: not asked for.")
       .def_readonly("profile", &Q::profile, "Metres; 0: not asked for.")
-      .def_readonly("tolerance", &Q::tolerance, "Metres; 0: exact.");
+      .def_readonly("tolerance", &Q::tolerance, "Metres; 0: exact.")
+      .def_readonly("ignore_classes", &Q::ignore_classes, "Of points left out of the search.")
+      .def_readonly("ignore_boxes", &Q::ignore_boxes, "The same, Box objects.");
 }
 
 }  // namespace

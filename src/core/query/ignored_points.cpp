@@ -74,6 +74,28 @@ std::optional<QuantumBox> quanta_in(const Quantisation& quantisation, const Box&
   return out;
 }
 
+void sort_ignored(QueryParameters& query) {
+  for (Box& box : query.ignore_boxes) {
+    for (int k = 0; k < 3; ++k) {  // no -0
+      box.lo[k] += 0.0;
+      box.hi[k] += 0.0;
+    }
+  }
+  const auto is_before = [](const Box& a, const Box& b) {
+    const auto numbers = [](const Box& box) {
+      return std::array{box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
+    };
+    return numbers(a) < numbers(b);
+  };
+  std::sort(query.ignore_classes.begin(), query.ignore_classes.end());
+  std::sort(query.ignore_boxes.begin(), query.ignore_boxes.end(), is_before);
+  const auto keep_one = [](auto& values) {
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+  };
+  keep_one(query.ignore_classes);
+  keep_one(query.ignore_boxes);
+}
+
 IgnoredPoints::IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query)
     : cloud_(cloud), any_(query.ignores_points()), by_class_(!query.ignore_classes.empty()) {
   for (const std::uint8_t value : query.ignore_classes) is_ignored_[value] = 1;
@@ -89,6 +111,13 @@ IgnoredPoints::Place IgnoredPoints::place_of(const QuantumBox& ignored, const Qu
     inside = inside && points.lo[k] >= ignored.lo[k] && points.hi[k] <= ignored.hi[k];
   }
   return inside ? Place::kInside : Place::kCut;
+}
+
+bool IgnoredPoints::touches(std::uint32_t cell) const {
+  const QuantumBox& points = cloud_.cells()[cell].box;
+  return by_class_ || std::any_of(boxes_.begin(), boxes_.end(), [&](const QuantumBox& box) {
+           return place_of(box, points) != Place::kOutside;
+         });
 }
 
 bool IgnoredPoints::holds(std::uint32_t cell) const {

@@ -18,6 +18,10 @@ namespace clearway {
 /// position is monotone in its integers.
 std::optional<QuantumBox> quanta_in(const Quantisation& quantisation, const Box& box);
 
+/// Puts the lists of what is ignored in ascending order, each value once: the same question then
+/// has the same lists.
+void sort_ignored(QueryParameters& query);
+
 /// Which points of a cloud a query leaves out of the search (docs/design/ignored.md).
 class IgnoredPoints {
  public:
@@ -26,6 +30,9 @@ class IgnoredPoints {
 
   /// Whether the query leaves anything out.
   bool any() const { return any_; }
+
+  /// Whether a point of the cell may be ignored.
+  bool touches(std::uint32_t cell) const;
 
   /// Whether a box holds the whole cell, so that none of its points is searched.
   bool holds(std::uint32_t cell) const;
