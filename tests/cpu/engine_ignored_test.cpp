@@ -55,7 +55,7 @@ TEST_CASE("ignored classes") {
     scene.ignore_classes = {2};
   }
   SECTION("of all but a few") {
-    for (std::uint8_t& value : scene.classes) value = below(scene.random, 50) == 0 ? 6 : 255;
+    for (std::uint8_t& value : scene.classes) value = below(scene.random, 6) == 0 ? 6 : 255;
     scene.ignore_classes = {255};
   }
   const std::uint64_t left = scene.check_ignoring();
@@ -72,16 +72,38 @@ TEST_CASE("everything is ignored") {
 
 TEST_CASE("ignored boxes") {
   IgnoringScene scene;
-  SECTION("one") { scene.ignore_boxes = {{{-4, -3, -1}, {0.5, 4, 2}}}; }
+  const auto around = [&](std::size_t pose, double reach) {
+    const double* at = scene.poses[pose].translation;
+    return Box{{at[0] - reach, at[1] - reach, at[2] - reach},
+               {at[0] + reach, at[1] + reach, at[2] + reach}};
+  };
+  SECTION("one") { scene.ignore_boxes = {around(20, 1)}; }
   SECTION("two that overlap, and one that holds nothing") {
-    scene.ignore_boxes = {
-        {{-1, -1, -1}, {1, 1, 1}}, {{0, 0, 0}, {2, 2, 2}}, {{7, 7, 7}, {8, 8, 8}}};
+    scene.ignore_boxes = {around(10, 0.7), around(14, 0.8), {{7, 7, 7}, {8, 8, 8}}};
   }
   SECTION("with classes") {
     for (std::uint8_t& value : scene.classes) value = below(scene.random, 2) == 0 ? 3 : 9;
-    scene.ignore_boxes = {{{-4, -3, -1}, {0.5, 4, 2}}};
+    scene.ignore_boxes = {around(20, 1)};
     scene.ignore_classes = {9};
   }
+  const std::uint64_t left = scene.check_ignoring();
+  CHECK(left > 0);
+  CHECK(left < scene.check_all());
+}
+
+TEST_CASE("ignored points where floats cannot hold the lengths") {
+  IgnoringScene scene;
+  constexpr double kHuge = 1e15;
+  for (double& scale : scene.quantisation.scale) scale *= kHuge;
+  for (Vec3& m : scene.model) m = {m.x * kHuge, m.y * kHuge, m.z * kHuge};
+  for (Pose& pose : scene.poses) {
+    for (double& t : pose.translation) t *= kHuge;
+  }
+  scene.radius *= kHuge;
+  scene.points.resize(700);
+  scene.classes.resize(700);
+  for (std::uint8_t& value : scene.classes) value = below(scene.random, 3) == 0 ? 1 : 2;
+  scene.ignore_classes = {2};
   const std::uint64_t left = scene.check_ignoring();
   CHECK(left > 0);
   CHECK(left < scene.check_all());

@@ -40,12 +40,12 @@ void add_ignored(CLI::App& command, QueryParameters& query) {
   command
       .add_option_function<std::vector<std::string>>(
           "--ignore-class",
-          [&query](const std::vector<std::string>& words) {
-            query.ignore_classes = parse_classes(words);
+          [&query](const std::vector<std::string>& lists) {
+            query.ignore_classes = parse_classes(lists);
           },
           "Leave points of these classes out of the search, for example 2,7 or 3-5; of a store "
           "with classes")
-      ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("N,...");
   command
       .add_option_function<std::vector<std::string>>(

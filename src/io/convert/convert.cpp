@@ -165,7 +165,7 @@ class Conversion {
     progress_.begin("distribute", counted.points, "points");
     Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
                               static_cast<std::size_t>(threads_));
-    distribute(environment, hashes_of(counted), lattice, tree, places, distribution, threads_,
+    distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
                clocks_, progress_);
     progress_.end();
     environment.refuse_changed();  // the sources' hashes too are of what was converted
@@ -179,11 +179,6 @@ class Conversion {
   }
 
  private:
-  static CountedHashes hashes_of(const CountedEnvironment& counted) {
-    if (!counted.classes) return {counted.points_hash, std::nullopt};
-    return {counted.points_hash, counted.classes->hash};
-  }
-
   EnvironmentOptions environment_options() const {
     return {.scale = options_.scale,
             .ignore_crs = options_.ignore_crs,

@@ -120,45 +120,6 @@ CellIndex read_cells(const hdf5::Id& file, const std::string& name) {
   return index;
 }
 
-/// Of a store that has them. Their counts have to be those of its points.
-void read_classes(const hdf5::Id& file, const std::string& name, StoreIndex& index) {
-  if (H5Lexists(file.get(), kClasses, H5P_DEFAULT) <= 0) return;
-  const hdf5::Id group = hdf5::open_group(file, kClasses, name);
-  const std::uint64_t cells = index.cells.count.size();
-  const auto points = hdf5::read_dataset<std::uint64_t>(group, kClassPoints, 256, 0, name);
-  index.classes.address = hdf5::read_dataset<std::uint64_t>(group, "address", cells, 0, name);
-  index.classes.bytes = hdf5::read_dataset<std::uint32_t>(group, "bytes", cells, 0, name);
-  index.classes.xxh64 = hdf5::read_dataset<std::uint64_t>(group, "xxh64", cells, 0, name);
-  ColumnHashes hashes;
-  hashes.add(points);
-  add_index(index.classes, hashes);
-  if (hashes.digest() != hdf5::read_number<std::uint64_t>(file, "classes_index_hash", name)) {
-    refuse(name, "its index of classes is damaged (its hash is not the one recorded)");
-  }
-  StoreClasses& classes = index.metadata.classes.emplace();
-  classes.hash = hdf5::read_number<std::uint64_t>(file, "classes_hash", name);
-  std::copy(points.begin(), points.end(), classes.points.begin());
-  std::uint64_t left = index.metadata.point_count;
-  for (const std::uint64_t count : points) {
-    if (count > left) break;
-    left -= count;
-  }
-  if (left > 0) {
-    refuse(name, "dataset 'classes/points': expected counts that add up to point_count, " +
-                     std::to_string(index.metadata.point_count));
-  }
-}
-
-void check_classes(const ClassIndex& classes, std::uint64_t file_bytes, const std::string& name) {
-  for (std::size_t i = 0; i < classes.address.size(); ++i) {
-    if (classes.address[i] <= file_bytes && classes.bytes[i] <= file_bytes - classes.address[i]) {
-      continue;
-    }
-    refuse(name, "cell " + std::to_string(i) + " has a chunk of classes past the end of the file " +
-                     "at byte " + std::to_string(file_bytes));
-  }
-}
-
 /// Another tool that copies a store moves its chunks: HDF5 then knows the first and the last of a
 /// dataset at other addresses than the index.
 void check_not_rewritten(const hdf5::Id& file, const CellIndex& index, const std::string& name) {
@@ -250,12 +211,14 @@ StoreIndex read_index(const hdf5::Id& file, std::uint64_t file_bytes, const std:
   const std::uint64_t blocks_per_cell = divide_up(index.metadata.cell_points, kBlockPoints);
   index.blocks = read_blocks(file, index.cells.count.size() * blocks_per_cell, name, hashes);
   index.top = read_tree(file, name, hashes);
-  read_classes(file, name, index);
+  if (has_class_index(file)) {
+    index.classes = read_class_index(file, name, index.cells.count.size(), index.metadata);
+  }
   if (hashes.digest() != hdf5::read_number<std::uint64_t>(file, "index_hash", name)) {
     refuse(name, "its index of cells is damaged (its hash is not the one recorded)");
   }
   check_cells(index, file_bytes, name);
-  check_classes(index.classes, file_bytes, name);
+  index.classes.check(file_bytes, name);
   return index;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cloud/packed_cloud.hpp"
+#include "io/store/class_index.hpp"
 #include "io/store/store_layout.hpp"
 #include "io/store/store_metadata.hpp"
 

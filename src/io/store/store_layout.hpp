@@ -13,11 +13,6 @@ inline const std::string kStoreFormat = "clearway store";
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
 inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
 
-/// The group of the points' classes, in stores that have them, and its datasets.
-inline constexpr const char* kClasses = "classes";
-inline constexpr const char* kClassOfPoints = "class";  ///< [cells, cell_points], packed
-inline constexpr const char* kClassPoints = "points";   ///< of each class, 256
-
 inline constexpr const char* kSourcePoints = "points";  ///< of /sources, where there are several
 
 /// The datasets of /cells, row-major. Four chunks a cell: x, y, z, source.
@@ -28,19 +23,6 @@ struct CellIndex {
   std::vector<std::uint32_t> bytes;    // [cells, 4]
   std::vector<std::uint64_t> xxh64;    // [cells, 4]
 };
-
-/// The other datasets of /classes: where the packed classes of each cell are.
-struct ClassIndex {
-  std::vector<std::uint64_t> address;
-  std::vector<std::uint32_t> bytes;
-  std::vector<std::uint64_t> xxh64;
-};
-
-inline void add_index(const ClassIndex& index, ColumnHashes& hashes) {
-  hashes.add(index.address);
-  hashes.add(index.bytes);
-  hashes.add(index.xxh64);
-}
 
 inline void add_index(const CellIndex& index, ColumnHashes& hashes) {
   hashes.add(index.count);

@@ -11,6 +11,7 @@
 #include "core/cloud/kd_order.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/hdf5/hdf5.hpp"
+#include "io/store/class_index.hpp"
 #include "io/store/store_layout.hpp"
 #include "io/system/file.hpp"
 #include "io/system/growing_file.hpp"
@@ -74,27 +75,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hashes.add(contents);
 }
 
-/// With a hash of its own, as releases before know the other one.
-void write_class_index(const hdf5::Id& file, const StoreClasses& classes, const ClassIndex& index) {
-  const hdf5::Id group = hdf5::open_group(file, kClasses, "the store");
-  ColumnHashes hashes;
-  hdf5::write_dataset<std::uint64_t>(group, kClassPoints, classes.points);
-  hdf5::write_dataset<std::uint64_t>(group, "address", index.address);
-  hdf5::write_dataset<std::uint32_t>(group, "bytes", index.bytes);
-  hdf5::write_dataset<std::uint64_t>(group, "xxh64", index.xxh64);
-  hashes.add(classes.points);
-  add_index(index, hashes);
-  hdf5::write_number(file, "classes_hash", classes.hash);
-  hdf5::write_number(file, "classes_index_hash", hashes.digest());
-}
-
 /// So that it never takes more than it needs.
-void reserve(ClassIndex& index, std::uint64_t cells) {
-  index.address.reserve(cells);
-  index.bytes.reserve(cells);
-  index.xxh64.reserve(cells);
-}
-
 void reserve(CellIndex& index, std::uint64_t cells) {
   index.count.reserve(cells);
   index.box.reserve(6 * cells);
@@ -242,7 +223,7 @@ void StoreWriter::create(std::uint64_t cells) {
   state_->points[3] =
       create_packed<std::uint64_t>(group, kPointDatasets[3], cells, metadata.cell_points);
   if (!metadata.classes) return;
-  reserve(state_->class_index, cells);
+  state_->class_index.reserve(cells);
   const hdf5::Id classes = hdf5::create_group(state_->file, kClasses);
   state_->classes =
       create_packed<std::uint8_t>(classes, kClassOfPoints, cells, metadata.cell_points);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "clearway/error.hpp"
 #include "core/query/ignored_points.hpp"
@@ -57,6 +58,50 @@ std::uint64_t count_in_boxes(const StoreReader& store, const QueryParameters& qu
   return points;
 }
 
+/// "2", "2, 5-7"
+std::string list_of(const std::vector<std::uint32_t>& classes) {
+  std::string text;
+  for (const std::string& range : number_ranges(classes)) {
+    text += (text.empty() ? "" : ", ") + range;
+  }
+  return text;
+}
+
+void warn_of_classes(const StoreReader& store, const QueryParameters& query,
+                     const IgnoredPointCounts& counts, MessageLog& log) {
+  std::vector<std::uint32_t> absent, known;
+  for (std::size_t i = 0; i < counts.of_classes.size(); ++i) {
+    if (counts.of_classes[i] == 0) absent.push_back(query.ignore_classes[i]);
+  }
+  if (absent.empty()) return;
+  const auto& points = store.metadata().classes->points;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (points[i] > 0) known.push_back(i);
+  }
+  const bool one = absent.size() == 1;
+  log.warn("absent-class",
+           std::string("no point has ") + (one ? "class " : "one of the classes ") +
+               list_of(absent) + ": ignoring " + (one ? "it" : "them") +
+               " changes nothing. The environment has " +
+               (known.size() == 1 ? "class " : "classes ") + list_of(known),
+           {{"classes", static_cast<double>(absent.size())}});
+}
+
+void warn_of_boxes(const QueryParameters& query, const IgnoredPointCounts& counts,
+                   MessageLog& log) {
+  std::vector<Box> empty;
+  for (std::size_t i = 0; i < counts.in_boxes.size(); ++i) {
+    if (counts.in_boxes[i] == 0) empty.push_back(query.ignore_boxes[i]);
+  }
+  if (empty.empty()) return;
+  const bool one = empty.size() == 1;
+  log.warn("empty-box",
+           std::string("no point is in the ignored ") + (one ? "box " : "boxes ") +
+               boxes_text(empty) + ": ignoring " + (one ? "it" : "them") +
+               " changes nothing. Boxes are in the environment's coordinates and unit",
+           {{"boxes", static_cast<double>(empty.size())}});
+}
+
 }  // namespace
 
 IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters& query,
@@ -85,30 +130,10 @@ IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters
 
 void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
                      const IgnoredPointCounts& counts, MessageLog& log) {
-  std::vector<std::uint32_t> known;
-  if (const auto& classes = store.metadata().classes) {
-    for (std::uint32_t i = 0; i < classes->points.size(); ++i) {
-      if (classes->points[i] > 0) known.push_back(i);
-    }
-  }
-  for (std::size_t i = 0; i < counts.of_classes.size(); ++i) {
-    if (counts.of_classes[i] > 0) continue;
-    std::string text;
-    for (const std::string& range : number_ranges(known)) {
-      text += (text.empty() ? "" : ", ") + range;
-    }
-    log.warn("absent-class",
-             "no point has class " + std::to_string(query.ignore_classes[i]) +
-                 ": ignoring it changes nothing. The environment has " +
-                 (known.size() == 1 ? "class " : "classes ") + text,
-             {{"class", query.ignore_classes[i]}});
-  }
-  for (std::size_t i = 0; i < counts.in_boxes.size(); ++i) {
-    if (counts.in_boxes[i] > 0) continue;
-    log.warn("empty-box",
-             "the ignored box " + box_text(query.ignore_boxes[i]) +
-                 " holds no point: ignoring it changes nothing. Boxes are in the environment's "
-                 "coordinates");
+  warn_of_classes(store, query, counts, log);
+  warn_of_boxes(query, counts, log);
+  if (query.ignores_points() && counts.points > 0 && counts.points == store.point_count()) {
+    log.warn("all-ignored", "all points of the environment are ignored: nothing is searched");
   }
 }
 

@@ -14,7 +14,8 @@ namespace clearway {
 IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters& query,
                                  int threads);
 
-/// Warns of what leaves nothing out: "absent-class", "empty-box".
+/// Warns of what leaves nothing out: "absent-class", "empty-box"; and where that is
+/// all there is: "all-ignored".
 void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
                      const IgnoredPointCounts& counts, MessageLog& log);
 

@@ -18,17 +18,25 @@ std::optional<std::uint64_t> parse_class(const std::string& text) {
   return number && *number <= kGreatestClass ? number : std::nullopt;
 }
 
+std::vector<std::string> words_of(const std::vector<std::string>& lists) {
+  std::vector<std::string> words;
+  for (const std::string& list : lists) {
+    for (std::string& word : CLI::detail::split(list, ',')) words.push_back(std::move(word));
+  }
+  return words;
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& words) {
+std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& lists) {
   std::set<std::uint8_t> classes;
-  for (const std::string& word : words) {
+  for (const std::string& word : words_of(lists)) {
     const std::size_t dash = std::min(word.find('-'), word.size());
     const auto first = parse_class(word.substr(0, dash));
     const auto last = dash < word.size() ? parse_class(word.substr(dash + 1)) : first;
     if (!first || !last || *last < *first) {
       throw CLI::ValidationError("--ignore-class",
-                                 word + ": expected numbers of classes from 0 to " +
+                                 "'" + word + "': expected numbers of classes from 0 to " +
                                      std::to_string(kGreatestClass) +
                                      ", for example 2,7 or 3-5; clearway info lists those of a "
                                      "store");

@@ -11,8 +11,8 @@
 
 namespace clearway::tool {
 
-/// Of words as "2" and "3-5", ascending, each once. Throws CLI::ValidationError.
-std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& words);
+/// Of lists as "2,7" and "3-5", ascending, each once. Throws CLI::ValidationError.
+std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& lists);
 
 /// Of "x0,y0,z0,x1,y1,z1". Throws CLI::ValidationError.
 Box parse_box(const std::string& text);

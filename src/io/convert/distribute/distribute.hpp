@@ -1,22 +1,14 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-
 #include "core/util/progress.hpp"
 #include "io/convert/checks/same_place.hpp"
+#include "io/convert/count/count.hpp"
 #include "io/convert/distribute/distribution.hpp"
 #include "io/convert/inputs/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
 #include "io/convert/stage_clocks.hpp"
 
 namespace clearway {
-
-/// Of what was counted.
-struct CountedHashes {
-  std::uint64_t points;
-  std::optional<std::uint64_t> classes;  ///< none where all have class 0
-};
 
 /// The distribution pass: puts every point to its unit's, in source order. Throws InputError when
 /// the input is not what was counted, ResourceError when the disk is full. places: counts the
