@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clearway/found_place.hpp"
+#include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 
@@ -37,6 +38,7 @@ struct MergeReport {
   std::uint32_t parts = 0;
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
   std::uint64_t colliding_points = 0, clearance_points = 0, profile_poses = 0;
+  IgnoredPointCounts ignored = {};  ///< of the parameters' lists
   std::optional<FoundPlace> first_place = {}, least_clearance = {}, least_profile = {};
   std::vector<PartWarning> warnings = {};  ///< each once, in the order of the parts
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clearway/found_place.hpp"
+#include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
@@ -91,6 +92,11 @@ struct SearchReport {
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
   std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
+  /// Of the whole environment, in the order of the result's parameters: ascending, each once.
+  IgnoredPointCounts ignored;
+  /// Ignored points of the cells that this search looked at: not of a journal's cells, nor of those
+  /// that no pose comes near.
+  std::uint64_t ignored_looked_at = 0;
   /// Where the query asks for it, and not of a result that was there already: the point with the
   /// smallest first pose, the least clearance and the least distance of the profile, with its
   /// first pose. Of several points the smallest source.

@@ -33,6 +33,7 @@ MergeReport report_of(const PartSet& set) {
   report.colliding_points = set.collisions();
   report.clearance_points = set.clearances();
   report.warnings = set.warnings();
+  report.ignored = set.header().ignored;
   return report;
 }
 

@@ -39,6 +39,7 @@ void add_merge_report(py::module_& module) {
       .def_readonly("colliding_points", &Report::colliding_points)
       .def_readonly("clearance_points", &Report::clearance_points)
       .def_readonly("profile_poses", &Report::profile_poses)
+      .def_readonly("ignored", &Report::ignored, "IgnoredPointCounts.")
       .def_readonly("first_place", &Report::first_place, "A FoundPlace, or None.")
       .def_readonly("least_clearance", &Report::least_clearance, "A FoundPlace, or None.")
       .def_readonly("least_profile", &Report::least_profile, "A FoundPlace, or None.")

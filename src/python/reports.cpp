@@ -52,6 +52,9 @@ void add_findings_of(py::class_<Report>& report) {
                     "Points closer than the clearance asked for.")
       .def_readonly("profile_poses", &Report::profile_poses,
                     "Poses closer than the profile's distance asked for.")
+      .def_readonly("ignored", &Report::ignored, "IgnoredPointCounts of the whole environment.")
+      .def_readonly("ignored_looked_at", &Report::ignored_looked_at,
+                    "Ignored points of the cells that this search looked at.")
       .def_readonly("first_place", &Report::first_place,
                     "The point with the smallest first pose, a FoundPlace, or None.")
       .def_readonly("least_clearance", &Report::least_clearance,

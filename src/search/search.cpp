@@ -18,6 +18,7 @@
 #include "search/choice/device_estimate.hpp"
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
+#include "search/ignored/count_ignored.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/cuda_kind.hpp"
 #include "search/kinds/grid_kind.hpp"
@@ -78,6 +79,7 @@ class Search {
     }
     check_sizes(query_);
     warn_of_query(store_, query_, log_);
+    warn_of_ignored(store_, header_, header_.ignored, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
   }
 
@@ -86,6 +88,7 @@ class Search {
     report_.model_points = query_.model.size();
     report_.poses = query_.poses.size();
     report_.cells_total = store_.cells().size();
+    report_.ignored = header_.ignored;
   }
 
   /// Of a shard, which cells it has.
@@ -228,6 +231,7 @@ class Search {
     journal_.remove_after_publication();
     const StoreReader::Touched touched = store_.touched();
     report_.cells_read = touched.cells;
+    report_.ignored_looked_at = found.result.ignored_points;
     report_.bytes_read = touched.bytes;
     report_profile(found.result.profile);
     report_.seconds.write = write.seconds();

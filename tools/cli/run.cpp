@@ -20,6 +20,7 @@
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
 #include "cli/verdict.hpp"
+#include "core/query/ignored_text.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -109,6 +110,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["clearance_points"] = report.clearance_points;
   out["profile_poses"] = report.profile_poses;
   add_verdict(answer.verdict, answer.labels, out);
+  out["ignored"]["looked_at"] = known(searched, report.ignored_looked_at);
   out["shard_share"] = nullptr;
   if (report.shard_share) out["shard_share"] = *report.shard_share;
   out["engine"] = known(searched, name_of(report.engine));
@@ -149,6 +151,11 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
       fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
   const bool doubtful = !report.warnings.empty();
   spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
+  if (options.query.ignores_points()) {
+    spdlog::info("{} in the whole environment, {} of them in the cells that were searched",
+                 ignored_text(options.query, report.ignored),
+                 format_count(report.ignored_looked_at));
+  }
   if (options.query.clearance > 0) {
     spdlog::info("{} within the clearance of {} {}",
                  counted(report.clearance_points, "point is", "points are"),

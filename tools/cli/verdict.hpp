@@ -27,6 +27,7 @@ struct AnswerPlace {
 struct Verdict {
   std::uint64_t colliding_points = 0;
   QueryParameters query{};
+  IgnoredPointCounts ignored{};
   std::optional<Shard> shard{};  ///< where it is the answer of one part: never clear
   bool float_precision = false;
   std::optional<AnswerPlace> first;            ///< with first poses: at the smallest, least source
@@ -61,8 +62,8 @@ std::string caveat_of(std::size_t warnings);
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat);
 
-/// Adds the keys verdict ("unknown" of a part without colliding points), shard, least_clearance,
-/// least_profile and first_place.
+/// Adds the keys verdict ("unknown" of a part without colliding points), shard, ignored,
+/// least_clearance, least_profile and first_place.
 void add_verdict(const Verdict& verdict, const PoseLabels& labels, nlohmann::ordered_json& out);
 
 }  // namespace clearway::tool

@@ -37,6 +37,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBaseBytes = 64 * kMiB;     // batches, index, libraries
 constexpr std::uint64_t kThreadBytes = 32 * kMiB;   // a counting grid and its refinement
 constexpr std::uint64_t kCellBytes = 160;           // its index, and its nodes in the tree
+constexpr std::uint64_t kCellClassBytes = 20;       // with classes, their index
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
 constexpr std::uint32_t kLeastCellPoints = 64;
@@ -164,7 +165,7 @@ class Conversion {
     progress_.begin("distribute", counted.points, "points");
     Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
                               static_cast<std::size_t>(threads_));
-    distribute(environment, counted.points_hash, lattice, tree, places, distribution, threads_,
+    distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
                clocks_, progress_);
     progress_.end();
     environment.refuse_changed();  // the sources' hashes too are of what was converted
@@ -198,7 +199,8 @@ class Conversion {
                         .crs_wkt = environment.crs_wkt(),
                         .points_hash = counted.points_hash,
                         .sources = std::move(sources),
-                        .source_points = {}};
+                        .source_points = {},
+                        .classes = counted.classes};
     if (environment.files().size() > 1) {
       report_.metadata.source_points = environment.points_of_files();
       report_.metadata.source_points.resize(report_.metadata.sources.size());  // files of poses
@@ -212,7 +214,8 @@ class Conversion {
 
   /// Of the memory, beside the cells' index: at least a unit.
   std::uint64_t bytes_for_units() const {
-    const std::uint64_t others = kBaseBytes + report_.cells * kCellBytes;
+    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? kCellClassBytes : 0);
+    const std::uint64_t others = kBaseBytes + report_.cells * of_cell;
     const std::uint64_t least = others + kUnitBytes;
     if (options_.memory_bytes < least) {
       throw ResourceError(format_size(options_.memory_bytes) + " of memory is too little: " +

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
@@ -56,7 +57,10 @@ struct ResultHeader : QueryParameters {
   bool ways_without_ends = false;
   Box model_box{};                 ///< of the model's points
   std::optional<ResultPart> part;  ///< of what merge() makes a result of
-  /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances.
+  IgnoredPointCounts ignored{};  ///< of ignore_classes and ignore_boxes, as sort_ignored() has them
+  std::uint64_t classes_hash = 0;  ///< of all points; 0 where no class is ignored
+  /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances. Version
+  /// 4 ignores points.
   std::uint32_t version = 3;
 
   bool has_poses_of_ways() const { return first_pose && between_poses; }

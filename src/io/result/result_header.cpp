@@ -5,6 +5,7 @@
 
 #include "clearway/error.hpp"
 #include "io/result/as_numbers.hpp"
+#include "io/result/ignored_lists.hpp"
 #include "io/result/part_warnings.hpp"
 #include "io/result/result_names.hpp"
 #include "io/system/input_error.hpp"
@@ -27,10 +28,11 @@ bool read_format(const hdf5::Id& file, const std::string& name) {
 
 std::uint32_t read_version(const hdf5::Id& file, const std::string& name) {
   const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
-  if (version < names::kOldestVersion || version > names::kVersion) {
+  if (version < names::kOldestVersion || version > names::kIgnoringVersion) {
     throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
                      std::to_string(names::kOldestVersion) + " to " +
-                     std::to_string(names::kVersion) + "; another release of clearway wrote it");
+                     std::to_string(names::kIgnoringVersion) +
+                     "; another release of clearway wrote it");
   }
   if (!hdf5::has_attribute(file, "complete", name) ||
       hdf5::read_number<std::uint8_t>(file, "complete", name) != 1) {
@@ -125,7 +127,8 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   const Vec3 model_box[2] = {header.model_box.lo, header.model_box.hi};
   hdf5::write_attribute(file, "format",
                         std::string(header.part ? names::kPartFormat : names::kFormat));
-  hdf5::write_number(file, "version", names::kVersion);
+  hdf5::write_number(file, "version",
+                     header.ignores_points() ? names::kIgnoringVersion : names::kVersion);
   hdf5::write_number(file, "environment_points", header.environment_points);
   hdf5::write_number(file, "environment_hash", header.environment_hash);
   hdf5::write_number(file, "model_points", header.model_points);
@@ -149,6 +152,7 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
   }
+  if (header.ignores_points()) write_ignored(file, header);
   if (header.part) write_part(file, header);
 }
 
@@ -181,6 +185,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     read_model_box(file, name, header.model_box);
     read_profile_distance(file, name, header.profile);
   }
+  if (header.version == names::kIgnoringVersion) read_ignored(file, name, header);
   if (is_part) {
     if (header.version < 3) refuse(name, "is a part of version 2, which has none");
     header.part = read_part(file, name, header);

@@ -83,6 +83,7 @@ class Store:
     def cell_count(self) -> int: ...
     def box(self) -> Box: ...
     def crs_wkt(self) -> str: ...
+    def class_points(self) -> dict[int, int]: ...
     def length_unit(self) -> str: ...
     path: Final[_Path]
 
@@ -95,11 +96,14 @@ class Query:
     clearance: float
     profile: float
     tolerance: float
+    ignore_classes: list[int]
+    ignore_boxes: list[Box]
     allow_non_rigid: bool
     def __init__(
         self, model: ArrayLike = ..., poses: ArrayLike = ..., radius: float = 0.0, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
-        profile: float = 0.0, tolerance: float = 0.0, allow_non_rigid: bool = False,
+        profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
+        ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
     ) -> None: ...
 class QueryParameters:
     radius: Final[float]
@@ -108,6 +112,12 @@ class QueryParameters:
     clearance: Final[float]
     profile: Final[float]
     tolerance: Final[float]
+    ignore_classes: Final[list[int]]
+    ignore_boxes: Final[list[Box]]
+class IgnoredPointCounts:
+    points: Final[int]
+    of_classes: Final[list[int]]
+    in_boxes: Final[list[int]]
 class SearchSeconds:
     total: Final[float]
     context: Final[float]
@@ -142,6 +152,8 @@ class SearchReport:
     colliding_points: Final[int]
     clearance_points: Final[int]
     profile_poses: Final[int]
+    ignored: Final[IgnoredPointCounts]
+    ignored_looked_at: Final[int]
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
@@ -183,6 +195,7 @@ class MergeReport:
     colliding_points: Final[int]
     clearance_points: Final[int]
     profile_poses: Final[int]
+    ignored: Final[IgnoredPointCounts]
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
@@ -208,6 +221,7 @@ class Result:
     def __len__(self) -> int: ...
     def parameters(self) -> QueryParameters: ...
     def environment_points(self) -> int: ...
+    def ignored(self) -> IgnoredPointCounts: ...
     def poses(self) -> int: ...
     def source(self) -> _Sources: ...
     def xyz(self) -> _Doubles: ...

@@ -199,6 +199,40 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Q
   return colliding;
 }
 
+/// Which points a query ignores, by its own words.
+std::vector<bool> ignored_by(const Query& query, const std::vector<Vec3>& positions,
+                             std::span<const std::uint8_t> classes) {
+  std::vector<bool> ignored;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3& p = positions[i];
+    const bool by_class = std::ranges::count(query.ignore_classes, classes[i]) > 0;
+    const bool by_box = std::ranges::any_of(query.ignore_boxes, [&p](const Box& box) {
+      return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y &&
+             p.z >= box.lo.z && p.z <= box.hi.z;
+    });
+    ignored.push_back(by_class || by_box);
+  }
+  return ignored;
+}
+
+/// By brute force, as if the ignored points were not there.
+std::vector<NearestPoint> nearest_of_searched(const std::vector<Vec3>& positions,
+                                              const std::vector<bool>& ignored,
+                                              const Query& query) {
+  std::vector<Vec3> searched;
+  std::vector<std::uint64_t> sources;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (ignored[i]) continue;
+    searched.push_back(positions[i]);
+    sources.push_back(i);
+  }
+  std::vector<NearestPoint> nearest = nearest_points(searched, query);
+  for (NearestPoint& point : nearest) {
+    if (point.source < sources.size()) point.source = sources[point.source];
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::span<const Engine> engines() { return under_test; }
@@ -218,14 +252,15 @@ SearchResult run_sweep(const PackedCloud& cloud, const Query& asked, int threads
   const MotionTree motion(query.poses, model.box(), query.between_poses);
   const SweepFilter filter(query, motion, model, field, cloud);
   const std::vector<PlannedCell> cells = plan(cloud, filter);
+  const bool masked = asked.ignores_points();
   const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
-                          .page_bytes = 2 * smallest_page_bytes(cloud, cells),
+                          .page_bytes = 2 * smallest_page_bytes(cloud, cells, masked),
                           .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
   const std::unique_ptr<PageEngine> engine = make(filter, cloud, layout);
   PageEngine* const engines[] = {engine.get()};
   StageTimes times;
-  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), engines,
-                   query, threads, progress, times);
+  const auto pages = paginate(cloud, cells, layout.page_bytes, layout.cells, masked);
+  return run_pages(cloud, cells, pages, engines, query, threads, progress, times);
 }
 
 void test_only(std::vector<Engine> engines) { under_test = std::move(engines); }
@@ -251,10 +286,21 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
 
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query) {
+  return check_engines(points, std::vector<std::uint8_t>(points.size()), quantisation, query);
+}
+
+std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
+                            const Quantisation& quantisation, const Query& query) {
   const auto environment = positions_of(points, quantisation);
-  const Expected expected(environment, query);
-  const Oracle least = brute_force_clearances(environment, query);
-  const std::vector<NearestPoint> nearest = nearest_points(environment, query);
+  const std::vector<bool> ignored = ignored_by(query, environment, classes);
+  Expected expected(environment, query);
+  Oracle least = brute_force_clearances(environment, query);
+  for (std::size_t i = 0; i < ignored.size(); ++i) {
+    if (!ignored[i]) continue;
+    expected.at_poses[i] = expected.between_poses[i] = HitSet::kNever;
+    least[i] = {};
+  }
+  const std::vector<NearestPoint> nearest = nearest_of_searched(environment, ignored, query);
   std::uint64_t colliding = 0;
   double of_radius = 0.4;
   bool first_pose = false;
@@ -262,7 +308,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
   for (const MemoryCloudOptions& packing :
        {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
         MemoryCloudOptions{128, 500}}) {
-    const MemoryCloud cloud(points, quantisation, packing);
+    const MemoryCloud cloud(points, classes, quantisation, packing);
     colliding = check_packed(cloud, expected, query);
     check_clearances(cloud, least, expected.at_poses,
                      with_clearance(query, of_radius * query.radius, first_pose));
