@@ -11,6 +11,11 @@ namespace clearway {
 
 /// Its corners, metres. None is refused: without area it is its edges, without length a point.
 struct Triangle {
+  Triangle() = default;
+  /// So that three numbers in braces are never a triangle.
+  CLEARWAY_HD Triangle(const Vec3& at_a, const Vec3& at_b, const Vec3& at_c)
+      : a(at_a), b(at_b), c(at_c) {}
+
   Vec3 a, b, c;
 
   friend bool operator==(const Triangle&, const Triangle&) = default;
