@@ -40,4 +40,9 @@ struct Query : QueryParameters {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// Of a surface its triangles, otherwise the model's points.
+inline std::uint64_t element_count(const Query& query) {
+  return query.is_surface() ? query.triangles.size() : query.model.size();
+}
+
 }  // namespace clearway
