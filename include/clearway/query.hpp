@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -39,8 +40,17 @@ struct Query : QueryParameters {
   Query(std::vector<Vec3> moved, std::vector<Pose> along, const QueryParameters& parameters)
       : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
 
-  std::vector<Vec3> model;  ///< in the model's own frame, metres
+  bool is_surface() const { return !triangles.empty(); }
+
+  std::vector<Vec3> model;  ///< points, or corners of triangles; in the model's own frame, metres
   std::vector<Pose> poses;
+  /// Three indices into `model` each: the model is their surface. None: it is its points.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
 };
+
+/// Of a surface its triangles, otherwise the model's points.
+inline std::uint64_t element_count(const Query& query) {
+  return query.is_surface() ? query.triangles.size() : query.model.size();
+}
 
 }  // namespace clearway

@@ -40,6 +40,7 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
                                   {"poses", header.poses},
                                   {"trajectory_hash", hash_text(header.trajectory_hash)}};
   if (header.ignores_points()) question["ignored"] = ignored_of(header);
+  if (header.model_triangles > 0) question["model_triangles"] = header.model_triangles;
   if (header.part) ask_for_part(header.part->shard, hash_text(header.part->store), question);
   return question;
 }

@@ -11,7 +11,8 @@
 
 namespace clearway {
 
-void CellSearch::run(const PageRef& page, std::uint32_t index, const Output& output) {
+template <typename Element>
+void CellSearchOf<Element>::run(const PageRef& page, std::uint32_t index, const Output& output) {
   page_ = page;
   index_ = index;
   cell_ = &page.cell(index);
@@ -29,19 +30,24 @@ void CellSearch::run(const PageRef& page, std::uint32_t index, const Output& out
   search_blocks(0, static_cast<std::uint32_t>(divide_up(cell_->count, kBlockPoints)), nodes, 0);
 }
 
-SweepStatistics CellSearch::take_statistics() { return std::exchange(statistics_, {}); }
+template <typename Element>
+SweepStatistics CellSearchOf<Element>::take_statistics() {
+  return std::exchange(statistics_, {});
+}
 
-std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Query& query,
-                                     std::uint64_t most_poses) {
+template <typename Element>
+std::uint64_t CellSearchOf<Element>::most_bytes(const PackedCloud& cloud, const Query& query,
+                                                std::uint64_t most_poses) {
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
   // A list for clearances may have grown to twice its need.
   const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
-  return sizeof(CellSearch) +
-         depths * (sizeof(decltype(lists_)::value_type) + most_poses * sizeof(std::uint32_t)) +
+  return sizeof(CellSearchOf) +
+         depths * (sizeof(std::vector<std::uint32_t>) + most_poses * sizeof(std::uint32_t)) +
          of_clearance;
 }
 
-QuantumBox CellSearch::box_of(std::uint32_t first, std::uint32_t count) const {
+template <typename Element>
+QuantumBox CellSearchOf<Element>::box_of(std::uint32_t first, std::uint32_t count) const {
   QuantumBox box = decode_block_box(cell_->box, blocks_[first]);
   for (std::uint32_t i = first + 1; i < first + count; ++i) {
     box = united(box, decode_block_box(cell_->box, blocks_[i]));
@@ -50,7 +56,8 @@ QuantumBox CellSearch::box_of(std::uint32_t first, std::uint32_t count) const {
 }
 
 /// Whether any point of the blocks is to be searched.
-bool CellSearch::has_points(std::uint32_t first, std::uint32_t count) const {
+template <typename Element>
+bool CellSearchOf<Element>::has_points(std::uint32_t first, std::uint32_t count) const {
   if (!page_.shape.masked) return true;
   for (std::uint32_t block = first; block < first + count; ++block) {
     if (page_.searched(index_, block) != 0) return true;
@@ -58,8 +65,9 @@ bool CellSearch::has_points(std::uint32_t first, std::uint32_t count) const {
   return false;
 }
 
-void CellSearch::search_blocks(std::uint32_t first, std::uint32_t count,
-                               std::span<const std::uint32_t> nodes, std::size_t depth) {
+template <typename Element>
+void CellSearchOf<Element>::search_blocks(std::uint32_t first, std::uint32_t count,
+                                          std::span<const std::uint32_t> nodes, std::size_t depth) {
   if (!has_points(first, count)) return;
   if (depth == lists_.size()) lists_.emplace_back();
   std::vector<std::uint32_t> open = std::move(lists_[depth]);
@@ -80,11 +88,14 @@ void CellSearch::search_blocks(std::uint32_t first, std::uint32_t count,
   lists_[depth] = std::move(open);
 }
 
-void CellSearch::mark_all(std::uint32_t block) {
+template <typename Element>
+void CellSearchOf<Element>::mark_all(std::uint32_t block) {
   output_.hits[block] = page_.searched(index_, block);
 }
 
-void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_t> nodes) {
+template <typename Element>
+void CellSearchOf<Element>::search_points(std::uint32_t block,
+                                          std::span<const std::uint32_t> nodes) {
   const std::uint32_t begin = block * kBlockPoints;
   const std::uint32_t count = std::min(kBlockPoints, cell_->count - begin);
   if (clearance_search_) {
@@ -106,8 +117,9 @@ void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_
 }
 
 /// Whether the point collides.
-bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
-                            std::span<const std::uint32_t> nodes) {
+template <typename Element>
+bool CellSearchOf<Element>::search_hit(const Vec3& e, std::uint32_t index,
+                                       std::span<const std::uint32_t> nodes) {
   const Query& query = filter_.query();
   bool hit = false;
   if (query.first_pose) {
@@ -125,12 +137,16 @@ bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
 }
 
 /// Whether its least d2 makes the point collide.
-bool CellSearch::search_clearance(const Vec3& e, std::uint32_t index) {
+template <typename Element>
+bool CellSearchOf<Element>::search_clearance(const Vec3& e, std::uint32_t index) {
   const Clearance clearance = clearance_search_->nearest(e, joined_, statistics_);
   output_.clearances[index] = clearance;
   const double radius = filter_.query().radius;
   return clearance.squared < rounded_product(radius, radius);
 }
+
+template class CellSearchOf<Vec3>;
+template class CellSearchOf<Triangle>;
 
 std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes) {
   std::uint64_t poses = 0;

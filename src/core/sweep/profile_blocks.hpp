@@ -11,7 +11,7 @@ namespace clearway {
 
 /// Which blocks of a cell may hold the nearest point of poses: a bit a block, 32 blocks a word, a
 /// word a lane of one warp, on as many levels as a descent of the motion tree has.
-template <typename Warp>
+template <typename Warp, typename Element>
 class ProfileBlocks {
  public:
   template <typename Value>
@@ -33,7 +33,7 @@ class ProfileBlocks {
     std::uint32_t open[kLevels][kWarpLanes];
   };
 
-  CLEARWAY_HD ProfileBlocks(const SweepRef& sweep, const PageRef& page,
+  CLEARWAY_HD ProfileBlocks(const SweepRefOf<Element>& sweep, const PageRef& page,
                             const Quantisation& quantisation, Shared& shared,
                             PerLane<SweepStatistics>& statistics)
       : sweep_(sweep),
@@ -183,14 +183,14 @@ class ProfileBlocks {
     const ModelFieldRef::Bounds bounds =
         sweep_.field.bounds(sweep_.motion.inverse_poses[pose_].apply(sphere.centre));
     if (bounds.near != ModelFieldRef::kNone) {
-      const Vec3 m = transform(sweep_.motion.poses[pose_], sweep_.model.points[bounds.near]);
+      const Element m = transform(sweep_.motion.poses[pose_], sweep_.model.elements[bounds.near]);
       upper = std::sqrt(squared_distance(sphere.centre, m)) * kRoundedUp + sphere.rho + delta_ +
               2 * sweep_.rounding;
     }
     return bounds.squared_lower;
   }
 
-  const SweepRef& sweep_;
+  const SweepRefOf<Element>& sweep_;
   const PageRef& page_;
   const Quantisation& quantisation_;
   Shared& shared_;

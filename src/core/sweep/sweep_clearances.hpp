@@ -10,13 +10,13 @@ namespace clearway {
 
 /// The clearances of the 32 points of a half block over the poses of some subtrees: improves those
 /// in the answer of the page. A lane a point; no other warp works on the same points.
-template <typename Warp>
+template <typename Warp, typename Element>
 class SweepClearances {
  public:
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  CLEARWAY_HD SweepClearances(const SweepPage& job, std::uint32_t half,
+  CLEARWAY_HD SweepClearances(const SweepPageOf<Element>& job, std::uint32_t half,
                               PerLane<SweepStatistics>& statistics)
       : job_(job),
         block_(half / SweepWork::kHalves),
@@ -34,7 +34,8 @@ class SweepClearances {
       Clearance& answer = job_.clearances[block_ * kBlockPoints + first_ + lane];
       // Pose 0, so that a tie with the limit is no improvement.
       const Clearance best = answer.squared < limit ? answer : Clearance{limit, 0};
-      PointClearance search(job_.sweep, job_.point(cell_, begin + lane), best, statistics_[lane]);
+      PointClearance<Element> search(job_.sweep, job_.point(cell_, begin + lane), best,
+                                     statistics_[lane]);
       search.search(subtrees.nodes, subtrees.count);
       if (!(search.best().squared < limit)) return false;
       answer = search.best();
@@ -47,7 +48,7 @@ class SweepClearances {
   }
 
  private:
-  const SweepPage& job_;
+  const SweepPageOf<Element>& job_;
   std::uint32_t block_;
   std::uint32_t first_;  ///< point of the block
   const PageCell& cell_;

@@ -74,10 +74,13 @@ struct SweepWork {
   }
 };
 
+inline constexpr std::uint32_t kSweepNever = 0xffffffff;  ///< a first pose: there is none
+
 /// A page under search: the query, the points, and where answers and open work go, cell after
 /// cell of the page; null for what is not asked for.
-struct SweepPage {
-  SweepRef sweep;
+template <typename Element>
+struct SweepPageOf {
+  SweepRefOf<Element> sweep;
   PageRef page;
   Quantisation quantisation;
   std::uint64_t* hits;         ///< a word a block
@@ -85,7 +88,7 @@ struct SweepPage {
   Clearance* clearances;       ///< likewise
   SweepWork work;
 
-  static constexpr std::uint32_t kNever = 0xffffffff;
+  static constexpr std::uint32_t kNever = kSweepNever;
 
   CLEARWAY_HD std::uint32_t block_count() const {
     return page.shape.cells * page.shape.blocks_per_cell;
@@ -110,5 +113,7 @@ struct SweepPage {
     return page.position(quantisation, cell, index);
   }
 };
+
+using SweepPage = SweepPageOf<Vec3>;
 
 }  // namespace clearway
