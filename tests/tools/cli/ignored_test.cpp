@@ -29,7 +29,7 @@ struct Garden {
     REQUIRE(program("convert wall.xyz -o wall.h5").exit_code == 0);
   }
 
-  void add(const Quantum& point, std::uint8_t point_class) {
+  void add(const std::array<std::int32_t, 3>& point, std::uint8_t point_class) {
     las.scale = {0.001, 0.001, 0.001};
     las.offset = {0, 0, 0};
     if (las.bytes_of_class.empty()) las.points.clear();
@@ -46,7 +46,6 @@ struct Garden {
   }
   std::string bytes(const std::string& name) const { return bytes_of(folder / name); }
 
-  using Quantum = std::array<std::int32_t, 3>;
   ScratchFolder folder;
   LasBytes las;
 };
