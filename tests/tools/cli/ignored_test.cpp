@@ -69,7 +69,7 @@ TEST_CASE("a verdict says what was ignored") {
   CHECK(report["ignored"]["classes"][1] == json{{"class", 6}, {"points", 2000}});
   CHECK(report["ignored"]["boxes"][0]["points"] == 201);
   CHECK(report["ignored"]["looked_at"].get<std::uint64_t>() <= 2000);
-  CHECK(report["warnings"][0]["code"] == "absent-class");
+  CHECK_THAT(report["warnings"].dump(), Contains("absent-class"));
   const json info = json::parse(garden.program("info d.h5 --json").out);
   CHECK(info["ignored"]["points"] == 2000);
   CHECK(info["version"] == 4);
