@@ -1,7 +1,9 @@
 // Results that ignore points.
 #include <catch2/catch.hpp>
 
+#include "clearway/error.hpp"
 #include "io/result/compare_results.hpp"
+#include "support/leaks_of_hdf5.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;
@@ -44,6 +46,7 @@ TEST_CASE("damage to what was ignored is noticed") {
   const ResultHeader header = ignoring_header();
   write_result(folder / "a.h5", header, sample_rows(header, 10));
   const std::string bytes = bytes_of(folder / "a.h5");
+  const LeaksOfHdf5 of_damaged_files;
   std::uint64_t unseen = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     std::string changed = bytes;

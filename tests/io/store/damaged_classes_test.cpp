@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/classed_scans.hpp"
+#include "support/leaks_of_hdf5.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -12,6 +13,7 @@ TEST_CASE("damaged classes are refused, by who asks for them and by verify") {
   write_classed(folder / "a.las", points, random_classes(points.size(), 9));
   convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
   const std::string bytes = bytes_of(folder / "a.h5");
+  const LeaksOfHdf5 of_damaged_files;
   std::uint64_t unseen = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     std::string changed = bytes;
