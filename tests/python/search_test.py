@@ -32,6 +32,22 @@ class FindsWhatBruteForceFinds(SceneTest):
                 if engine != "auto":
                     self.assertEqual(report.engine, engine)
 
+    def test_ignored_boxes(self):
+        box = clearway.Box((0, -1, -1), (3, 1, 1))
+        inside = np.all((self.points >= (0, -1, -1)) & (self.points <= (3, 1, 1)), axis=1)
+        report = self.search(query=self.query(ignore_boxes=[box]))
+        result = clearway.Result(self.folder / "out.h5")
+        np.testing.assert_array_equal(result.source(), self.expected[~inside[self.expected]])
+        self.assertEqual(result.parameters().ignore_boxes, [box])
+        self.assertEqual(result.ignored().points, np.count_nonzero(inside))
+        self.assertEqual(report.ignored.in_boxes, [np.count_nonzero(inside)])
+        self.assertLessEqual(report.ignored_looked_at, report.ignored.points)
+
+    def test_ignored_classes_of_a_store_without(self):
+        self.assertEqual(clearway.Store(self.folder / "site.h5").class_points(), {})
+        with self.assertRaisesRegex(clearway.UsageError, "have no classes"):
+            self.search(query=self.query(ignore_classes=[2]))
+
     def test_gpu(self):
         try:
             report = self.search(engine="sweep", device="cuda")

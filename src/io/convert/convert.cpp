@@ -37,7 +37,6 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBaseBytes = 64 * kMiB;     // batches, index, libraries
 constexpr std::uint64_t kThreadBytes = 32 * kMiB;   // a counting grid and its refinement
 constexpr std::uint64_t kCellBytes = 160;           // its index, and its nodes in the tree
-constexpr std::uint64_t kCellClassBytes = 20;       // with classes, their index
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the same
 constexpr std::uint32_t kLeastCellPoints = 64;
@@ -212,11 +211,13 @@ class Conversion {
     report_.offset = {quanta.offset[0], quanta.offset[1], quanta.offset[2]};
   }
 
+  std::uint64_t of_unit() const { return unit_bytes(report_.metadata.classes.has_value()); }
+
   /// Of the memory, beside the cells' index: at least a unit.
   std::uint64_t bytes_for_units() const {
-    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? kCellClassBytes : 0);
+    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? 20 : 0);  // their index
     const std::uint64_t others = kBaseBytes + report_.cells * of_cell;
-    const std::uint64_t least = others + kUnitBytes;
+    const std::uint64_t least = others + of_unit();
     if (options_.memory_bytes < least) {
       throw ResourceError(format_size(options_.memory_bytes) + " of memory is too little: " +
                               std::to_string(report_.cells) + " cells need at least " +
@@ -233,9 +234,9 @@ class Conversion {
     report_.cells = top.empty() ? 0 : top[0].cell_count;
     const std::uint64_t waiting = points * sizeof(DistributedPoint);
     units_in_flight_ = std::min(units, static_cast<std::size_t>(threads_) + 1);
-    in_memory_ = bytes_for_units() >= waiting + units_in_flight_ * kUnitBytes &&
+    in_memory_ = bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
                  waiting <= most_waiting_bytes();
-    units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / kUnitBytes, 1,
+    units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / of_unit(), 1,
                                                std::max<std::size_t>(1, units_in_flight_));
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
     check_disk(folder_, {points, padded, in_memory_ ? 0 : points});

@@ -27,6 +27,7 @@ from ._clearway import (
     EngineEstimate,
     Error,
     FoundPlace,
+    IgnoredPointCounts,
     InputError,
     Interrupted,
     MergeReport,

