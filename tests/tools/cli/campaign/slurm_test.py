@@ -127,8 +127,8 @@ class Campaign:
         last = time.monotonic() + seconds
         done_before = set()
         while True:
-            queue = self.slurm.run("squeue", "-h", "-r", "-o", "%i %T").splitlines()
             look = status(self.path)
+            queue = self.slurm.run("squeue", "-h", "-r", "-o", "%i %T").splitlines()
             done = {one["task"] for one in look["list"] if one["status"] == "done"}
             expect(done_before <= done, "a task that was done is no longer")
             for task in done - done_before:
@@ -136,7 +136,7 @@ class Campaign:
             done_before = done
             self.disturb(look)
             if not queue:
-                return look
+                return status(self.path)
             expect(time.monotonic() < last, "it takes too long: " + "; ".join(queue))
             time.sleep(0.1)
 
