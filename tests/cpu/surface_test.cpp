@@ -119,9 +119,9 @@ TEST_CASE("points on a surface and at the radius from it") {
 
 TEST_CASE("random surfaces") {
 #ifdef CLEARWAY_SANITIZED
-  constexpr std::uint64_t kScenes = 10;
+  constexpr std::uint64_t kScenes = 6;
 #else
-  constexpr std::uint64_t kScenes = 60;
+  constexpr std::uint64_t kScenes = 25;
 #endif
   std::uint64_t with_hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {

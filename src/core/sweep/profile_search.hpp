@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 #include "core/sweep/profile_blocks.hpp"
 #include "core/sweep/sweep_profile.hpp"
