@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/support/ignored.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "io/formats/text/text_number.hpp"
