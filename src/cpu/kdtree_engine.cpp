@@ -11,7 +11,7 @@
 #include "clearway/error.hpp"
 #include "core/geometry/predicate.hpp"
 #include "cpu/first_failure.hpp"
-#include "cpu/ignored_entries.hpp"
+#include "cpu/ignored/ignored_entries.hpp"
 #include "cpu/range_search.hpp"
 
 namespace clearway {

@@ -8,7 +8,7 @@
 
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
-#include "cli/support/ignored.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "cli/support/sources_json.hpp"
 #include "cli/support/standard_output.hpp"
 #include "core/geometry/point_box.hpp"

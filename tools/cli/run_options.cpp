@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "cli/support/ignored.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "io/formats/text/text_number.hpp"

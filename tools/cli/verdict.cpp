@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "clearway/result.hpp"
-#include "cli/support/ignored.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/ignored_text.hpp"
 #include "core/trajectory/chainage.hpp"

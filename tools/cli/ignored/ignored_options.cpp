@@ -1,4 +1,4 @@
-#include "cli/support/ignored.hpp"
+#include "cli/ignored/ignored_options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cpu/ignored_entries.hpp"
+#include "cpu/ignored/ignored_entries.hpp"
 
 #include <atomic>
 #include <bit>
