@@ -126,7 +126,8 @@ TEST_CASE("an ignored point is no pose's nearest one, however near it is") {
   const std::size_t others = scene.points.size();
   for (const Pose& pose : scene.poses) {  // whole blocks of them in the middle of the model
     for (int i = 0; i < 64; ++i) {
-      scene.points.push_back(quantise(std::vector{transform(pose, {})}, scene.quantisation)[0]);
+      scene.points.push_back(
+          quantise(std::vector{transform(pose, Vec3{0, 0, 0})}, scene.quantisation)[0]);
     }
   }
   scene.classes.assign(others, 1);

@@ -287,11 +287,11 @@ class ProfileSearch {
   Blocks blocks_;
 
   const PageCell* cell_ = nullptr;
-  std::uint32_t index_ = 0;                      ///< of it, in the page
-  std::uint32_t first_point_ = 0;                ///< of the part, in its cell
-  std::uint32_t first_slot_ = 0;                 ///< likewise, in the page
-  double bound_ = 0;                             ///< d2 above it do not matter at this pose
-  double found_ = kInfinity;                     ///< the least d2 found at the last pose
+  std::uint32_t index_ = 0;                ///< of it, in the page
+  std::uint32_t first_point_ = 0;          ///< of the part, in its cell
+  std::uint32_t first_slot_ = 0;           ///< likewise, in the page
+  double bound_ = 0;                       ///< d2 above it do not matter at this pose
+  double found_ = kInfinity;               ///< the least d2 found at the last pose
   std::uint32_t last_pose_ = kSweepNever;  ///< that was searched, with what was found
   bool was_found_ = false;
   bool has_guess_ = false;

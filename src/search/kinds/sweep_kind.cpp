@@ -120,4 +120,7 @@ std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Q
   return std::make_unique<CpuSweepKindOf<Vec3>>(store, query, options);
 }
 
+template class CpuSweepKindOf<Vec3>;
+template class CpuSweepKindOf<Triangle>;
+
 }  // namespace clearway
