@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "clearway/body.hpp"
+#include "clearway/box.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 
@@ -22,6 +25,13 @@ struct QueryParameters {
   /// Metres: a point whose distance differs from the radius by no more may be answered wrongly; 0:
   /// none. Below the radius, and only without first poses, clearances and motion between poses.
   double tolerance = 0;
+  /// Points of these classes are left out of the search, as if the scans did not have them. Only of
+  /// an environment that has classes.
+  std::vector<std::uint8_t> ignore_classes = {};
+  /// So are points in these closed boxes, in the environment's coordinates and unit.
+  std::vector<Box> ignore_boxes = {};
+
+  bool ignores_points() const { return !ignore_classes.empty() || !ignore_boxes.empty(); }
   friend bool operator==(const QueryParameters&, const QueryParameters&) = default;
 };
 
@@ -31,11 +41,24 @@ struct Query : QueryParameters {
   Query(std::vector<Vec3> moved, std::vector<Pose> along, const QueryParameters& parameters)
       : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
 
-  std::vector<Vec3> model;  ///< in the model's own frame, metres; empty where there are bodies
+  bool is_surface() const { return !triangles.empty(); }
+
+  std::vector<Vec3> model;  ///< points, or corners of triangles; in the model's own frame, metres
   std::vector<Pose> poses;  ///< the path, where there are bodies
-  /// Several models in the place of one, each with poses of its own. A first pose, a clearance's
-  /// pose and a pose of the profile are then of the path.
+  /// Three indices into `model` each: the model is their surface. None: it is its points.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Several models in the place of one, each with poses of its own; then there is no model. A
+  /// first pose, a clearance's pose and a pose of the profile are of the path.
   std::vector<Body> bodies = {};
 };
+
+/// Of a surface its triangles, otherwise the model's points.
+inline std::uint64_t element_count(const Query& query) {
+  return query.is_surface() ? query.triangles.size() : query.model.size();
+}
+
+inline std::uint64_t element_count(const Body& body) {
+  return body.is_surface() ? body.triangles.size() : body.model.size();
+}
 
 }  // namespace clearway

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/geometry/predicate.hpp"
+#include "core/geometry/triangle.hpp"
 #include "core/query/hit_set.hpp"
 
 namespace clearway {
@@ -10,16 +11,36 @@ namespace {
 
 constexpr std::size_t kPairsWorthThreads = 1'000'000;
 
-std::vector<Vec3> moved_model(const Query& query, std::size_t pose) {
-  std::vector<Vec3> moved;
-  moved.reserve(query.model.size());
-  for (const Vec3& m : query.model) moved.push_back(transform(query.poses[pose], m));
+/// What the model consists of: points or triangles.
+template <typename Element>
+std::vector<Element> elements_of(const Query& query);
+
+template <>
+std::vector<Vec3> elements_of(const Query& query) {
+  return query.model;
+}
+
+template <>
+std::vector<Triangle> elements_of(const Query& query) {
+  std::vector<Triangle> triangles;
+  for (const auto& [a, b, c] : query.triangles) {
+    triangles.emplace_back(query.model.at(a), query.model.at(b), query.model.at(c));
+  }
+  return triangles;
+}
+
+template <typename Element>
+std::vector<Element> moved(const std::vector<Element>& elements, const Pose& pose) {
+  std::vector<Element> moved;
+  moved.reserve(elements.size());
+  for (const Element& element : elements) moved.push_back(transform(pose, element));
   return moved;
 }
 
-bool touched(const Vec3& e, const std::vector<Vec3>& moved, double radius) {
-  for (const Vec3& m : moved) {
-    if (collides(e, m, radius)) return true;
+template <typename Element>
+bool touched(const Vec3& e, const std::vector<Element>& moved, double radius) {
+  for (const Element& element : moved) {
+    if (collides(e, element, radius)) return true;
   }
   return false;
 }
@@ -36,16 +57,32 @@ bool touched_on_way(const Vec3& e, const std::vector<Vec3>& from, const std::vec
   return false;
 }
 
-}  // namespace
+template <typename Element>
+std::vector<std::uint32_t> first_poses(std::span<const Vec3> environment, const Query& query) {
+  std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
+  const std::vector<Element> model = elements_of<Element>(query);
+  const bool worth_threads = environment.size() * model.size() > kPairsWorthThreads;
+  for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
+    const std::vector<Element> at_pose = moved(model, query.poses[i]);
+#pragma omp parallel for schedule(static) if (worth_threads)
+    for (std::size_t e = 0; e < environment.size(); ++e) {
+      if (first[e] == HitSet::kNever && touched(environment[e], at_pose, query.radius)) {
+        first[e] = i;
+      }
+    }
+  }
+  return first;
+}
 
-std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
-                                                   const Query& query) {
+std::vector<std::uint32_t> first_poses_of_ways(std::span<const Vec3> environment,
+                                               const Query& query) {
   std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
   const bool worth_threads = environment.size() * query.model.size() > kPairsWorthThreads;
   for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
-    const bool moves_on = query.between_poses && i + 1 < query.poses.size();
-    const std::vector<Vec3> from = moved_model(query, i);
-    const std::vector<Vec3> to = moves_on ? moved_model(query, i + 1) : std::vector<Vec3>();
+    const bool moves_on = i + 1 < query.poses.size();
+    const std::vector<Vec3> from = moved(query.model, query.poses[i]);
+    const std::vector<Vec3> to =
+        moves_on ? moved(query.model, query.poses[i + 1]) : std::vector<Vec3>();
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
       if (first[e] != HitSet::kNever) continue;
@@ -58,14 +95,14 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
   return first;
 }
 
-std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
-                                              const Query& query) {
+template <typename Element>
+std::vector<Clearance> clearances(std::span<const Vec3> environment, const Query& query) {
   std::vector<Clearance> least(environment.size());
+  const std::vector<Element> model = elements_of<Element>(query);
   for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
-    for (const Vec3& model_point : query.model) {
-      const Vec3 m = transform(query.poses[i], model_point);
+    for (const Element& element : moved(model, query.poses[i])) {
       for (std::size_t e = 0; e < environment.size(); ++e) {
-        const double squared = squared_distance(environment[e], m);
+        const double squared = squared_distance(environment[e], element);
         if (squared < least[e].squared) least[e] = {squared, i};
       }
     }
@@ -73,23 +110,45 @@ std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
   return least;
 }
 
-std::vector<NearestPoint> brute_force_profile(std::span<const Vec3> environment,
-                                              const Query& query) {
+template <typename Element>
+std::vector<NearestPoint> profile_of(std::span<const Vec3> environment, const Query& query) {
   const double limit = rounded_product(query.profile, query.profile);
+  const std::vector<Element> model = elements_of<Element>(query);
   std::vector<NearestPoint> profile(query.poses.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t i = 0; i < query.poses.size(); ++i) {
     NearestPoint best{std::numeric_limits<double>::infinity(), ~std::uint64_t{0}};
-    const std::vector<Vec3> moved = moved_model(query, i);
+    const std::vector<Element> at_pose = moved(model, query.poses[i]);
     for (std::size_t e = 0; e < environment.size(); ++e) {
-      for (const Vec3& m : moved) {
-        const double squared = squared_distance(environment[e], m);
+      for (const Element& element : at_pose) {
+        const double squared = squared_distance(environment[e], element);
         if (squared < limit && squared < best.squared) best = {squared, e};
       }
     }
     profile[i] = best;
   }
   return profile;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
+                                                   const Query& query) {
+  if (query.between_poses) return first_poses_of_ways(environment, query);
+  return query.is_surface() ? first_poses<Triangle>(environment, query)
+                            : first_poses<Vec3>(environment, query);
+}
+
+std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
+                                              const Query& query) {
+  return query.is_surface() ? clearances<Triangle>(environment, query)
+                            : clearances<Vec3>(environment, query);
+}
+
+std::vector<NearestPoint> brute_force_profile(std::span<const Vec3> environment,
+                                              const Query& query) {
+  return query.is_surface() ? profile_of<Triangle>(environment, query)
+                            : profile_of<Vec3>(environment, query);
 }
 
 }  // namespace clearway

@@ -12,7 +12,7 @@ namespace clearway {
 
 /// For every environment point its first pose (clearway/query.hpp), or HitSet::kNever. The
 /// oracle of all tests: every pair is put to the predicate, and nothing but the predicate is shared
-/// with the engines. O(|E| |M| |T|), on all cores.
+/// with the engines. O(|E| |M| |T|), on all cores. A surface has no motion between poses.
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
                                                    const Query& query);
 

@@ -11,7 +11,10 @@
 
 namespace clearway {
 
-void CellSearch::run(const PageRef& page, std::uint32_t index, const Output& output) {
+template <typename Element>
+void CellSearchOf<Element>::run(const PageRef& page, std::uint32_t index, const Output& output) {
+  page_ = page;
+  index_ = index;
   cell_ = &page.cell(index);
   blocks_ = page.blocks(index);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -27,19 +30,24 @@ void CellSearch::run(const PageRef& page, std::uint32_t index, const Output& out
   search_blocks(0, static_cast<std::uint32_t>(divide_up(cell_->count, kBlockPoints)), nodes, 0);
 }
 
-SweepStatistics CellSearch::take_statistics() { return std::exchange(statistics_, {}); }
+template <typename Element>
+SweepStatistics CellSearchOf<Element>::take_statistics() {
+  return std::exchange(statistics_, {});
+}
 
-std::uint64_t CellSearch::most_bytes(const PackedCloud& cloud, const Query& query,
-                                     std::uint64_t most_poses) {
+template <typename Element>
+std::uint64_t CellSearchOf<Element>::most_bytes(const PackedCloud& cloud, const Query& query,
+                                                std::uint64_t most_poses) {
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
   // A list for clearances may have grown to twice its need.
   const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
-  return sizeof(CellSearch) +
-         depths * (sizeof(decltype(lists_)::value_type) + most_poses * sizeof(std::uint32_t)) +
+  return sizeof(CellSearchOf) +
+         depths * (sizeof(std::vector<std::uint32_t>) + most_poses * sizeof(std::uint32_t)) +
          of_clearance;
 }
 
-QuantumBox CellSearch::box_of(std::uint32_t first, std::uint32_t count) const {
+template <typename Element>
+QuantumBox CellSearchOf<Element>::box_of(std::uint32_t first, std::uint32_t count) const {
   QuantumBox box = decode_block_box(cell_->box, blocks_[first]);
   for (std::uint32_t i = first + 1; i < first + count; ++i) {
     box = united(box, decode_block_box(cell_->box, blocks_[i]));
@@ -47,8 +55,20 @@ QuantumBox CellSearch::box_of(std::uint32_t first, std::uint32_t count) const {
   return box;
 }
 
-void CellSearch::search_blocks(std::uint32_t first, std::uint32_t count,
-                               std::span<const std::uint32_t> nodes, std::size_t depth) {
+/// Whether any point of the blocks is to be searched.
+template <typename Element>
+bool CellSearchOf<Element>::has_points(std::uint32_t first, std::uint32_t count) const {
+  if (!page_.shape.masked) return true;
+  for (std::uint32_t block = first; block < first + count; ++block) {
+    if (page_.searched(index_, block) != 0) return true;
+  }
+  return false;
+}
+
+template <typename Element>
+void CellSearchOf<Element>::search_blocks(std::uint32_t first, std::uint32_t count,
+                                          std::span<const std::uint32_t> nodes, std::size_t depth) {
+  if (!has_points(first, count)) return;
   if (depth == lists_.size()) lists_.emplace_back();
   std::vector<std::uint32_t> open = std::move(lists_[depth]);
   open.clear();
@@ -68,12 +88,14 @@ void CellSearch::search_blocks(std::uint32_t first, std::uint32_t count,
   lists_[depth] = std::move(open);
 }
 
-void CellSearch::mark_all(std::uint32_t block) {
-  const std::uint32_t count = std::min(kBlockPoints, cell_->count - block * kBlockPoints);
-  output_.hits[block] = ~std::uint64_t{0} >> (kBlockPoints - count);
+template <typename Element>
+void CellSearchOf<Element>::mark_all(std::uint32_t block) {
+  output_.hits[block] = page_.searched(index_, block);
 }
 
-void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_t> nodes) {
+template <typename Element>
+void CellSearchOf<Element>::search_points(std::uint32_t block,
+                                          std::span<const std::uint32_t> nodes) {
   const std::uint32_t begin = block * kBlockPoints;
   const std::uint32_t count = std::min(kBlockPoints, cell_->count - begin);
   if (clearance_search_) {
@@ -83,7 +105,9 @@ void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_
   }
   std::int32_t q[3][kBlockPoints];
   for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
+  const std::uint64_t searched = page_.searched(index_, block);
   for (std::uint32_t i = 0; i < count; ++i) {
+    if ((searched >> i & 1) == 0) continue;
     const Vec3 e = position(cloud_.quantisation(), q[0][i], q[1][i], q[2][i]);
     const bool hit = clearance_search_ && filter_.ref().hits_follow_from_clearance()
                          ? search_clearance(e, begin + i)
@@ -93,8 +117,9 @@ void CellSearch::search_points(std::uint32_t block, std::span<const std::uint32_
 }
 
 /// Whether the point collides.
-bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
-                            std::span<const std::uint32_t> nodes) {
+template <typename Element>
+bool CellSearchOf<Element>::search_hit(const Vec3& e, std::uint32_t index,
+                                       std::span<const std::uint32_t> nodes) {
   const Query& query = filter_.query();
   bool hit = false;
   if (query.first_pose) {
@@ -112,12 +137,16 @@ bool CellSearch::search_hit(const Vec3& e, std::uint32_t index,
 }
 
 /// Whether its least d2 makes the point collide.
-bool CellSearch::search_clearance(const Vec3& e, std::uint32_t index) {
+template <typename Element>
+bool CellSearchOf<Element>::search_clearance(const Vec3& e, std::uint32_t index) {
   const Clearance clearance = clearance_search_->nearest(e, joined_, statistics_);
   output_.clearances[index] = clearance;
   const double radius = filter_.query().radius;
   return clearance.squared < rounded_product(radius, radius);
 }
+
+template class CellSearchOf<Vec3>;
+template class CellSearchOf<Triangle>;
 
 std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes) {
   std::uint64_t poses = 0;

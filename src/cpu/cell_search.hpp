@@ -14,7 +14,8 @@
 namespace clearway {
 
 /// The sweep engine's descent within one cell of a page after the other.
-class CellSearch {
+template <typename Element>
+class CellSearchOf {
  public:
   /// Where the answer of a cell goes: see PageResult. Poses and clearances only where asked for.
   struct Output {
@@ -24,7 +25,7 @@ class CellSearch {
   };
 
   /// Both outlive it.
-  CellSearch(const PackedCloud& cloud, const SweepFilter& filter)
+  CellSearchOf(const PackedCloud& cloud, const SweepFilterOf<Element>& filter)
       : cloud_(cloud), filter_(filter) {}
 
   void run(const PageRef& page, std::uint32_t index, const Output& output);
@@ -38,6 +39,7 @@ class CellSearch {
 
  private:
   QuantumBox box_of(std::uint32_t first, std::uint32_t count) const;
+  bool has_points(std::uint32_t first, std::uint32_t count) const;
   void search_blocks(std::uint32_t first, std::uint32_t count, std::span<const std::uint32_t> nodes,
                      std::size_t depth);
   void mark_all(std::uint32_t block);
@@ -46,17 +48,24 @@ class CellSearch {
   bool search_clearance(const Vec3& e, std::uint32_t index);
 
   const PackedCloud& cloud_;
-  const SweepFilter& filter_;
+  const SweepFilterOf<Element>& filter_;
   const PageCell* cell_ = nullptr;
+  PageRef page_{};
+  std::uint32_t index_ = 0;  ///< of the cell, in the page
   const BlockBox* blocks_ = nullptr;
   std::array<PackedChunk<std::int32_t>, 3> chunks_;
   Output output_;
   std::size_t poses_ = 0;                          ///< that the cell's nodes have together
   std::vector<std::vector<std::uint32_t>> lists_;  ///< of open motion nodes, one a depth
   std::vector<std::uint32_t> joined_;              ///< motion nodes for clearances
-  std::optional<ClearanceSearch> clearance_search_;
+  std::optional<ClearanceSearchOf<Element>> clearance_search_;
   SweepStatistics statistics_;
 };
+
+using CellSearch = CellSearchOf<Vec3>;
+
+extern template class CellSearchOf<Vec3>;
+extern template class CellSearchOf<Triangle>;
 
 /// How many poses motion nodes have together.
 std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes);

@@ -14,11 +14,13 @@ namespace clearway {
 
 /// The sweep engine on the CPU: descends a cell's implicit tree and the motion tree together, down
 /// to points, each decoded once. `start` searches, in the thread that calls it.
-class SweepEngine final : public PageEngine {
+template <typename Element>
+class SweepEngineOf final : public PageEngine {
  public:
   /// The cloud and the filter outlive it. Allocates its slots; beside them, at the most
-  /// CellSearch::most_bytes for each thread that is in `start` at a time, and profile_bytes().
-  SweepEngine(const PackedCloud& cloud, const SweepFilter& filter, const SlotLayout& layout);
+  /// CellSearchOf::most_bytes for each thread that is in `start` at a time, and profile_bytes().
+  SweepEngineOf(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
+                const SlotLayout& layout);
 
   std::uint32_t slots() const override { return pool_.layout().slots; }
   std::span<std::byte> page(std::uint32_t slot) override { return pool_.page(slot); }
@@ -34,18 +36,24 @@ class SweepEngine final : public PageEngine {
 
  private:
   void search_profile(std::uint32_t slot, const PageRef& page);
-  std::unique_ptr<CellSearch> take_search();
-  void give_back(std::unique_ptr<CellSearch> search);
+  std::unique_ptr<CellSearchOf<Element>> take_search();
+  void give_back(std::unique_ptr<CellSearchOf<Element>> search);
 
   const PackedCloud& cloud_;
-  const SweepFilter& filter_;
+  const SweepFilterOf<Element>& filter_;
   PagePool pool_;
   std::vector<PageResult> results_;              ///< by slot
   std::optional<ProfileBestValues> bests_;       ///< with a profile
   std::vector<std::vector<ProfileFact>> facts_;  ///< likewise, by slot
   std::mutex mutex_;
-  std::vector<std::unique_ptr<CellSearch>> idle_;  ///< no more than threads were ever in start
+  std::vector<std::unique_ptr<CellSearchOf<Element>>>
+      idle_;  ///< no more than threads were ever in start
   SweepStatistics statistics_;
 };
+
+using SweepEngine = SweepEngineOf<Vec3>;
+
+extern template class SweepEngineOf<Vec3>;
+extern template class SweepEngineOf<Triangle>;
 
 }  // namespace clearway

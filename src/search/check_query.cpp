@@ -6,8 +6,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
-#include "core/query/body_numbers.hpp"
-#include "core/query/hit_set.hpp"
+#include "core/query/ignored_text.hpp"
 
 namespace clearway {
 namespace {
@@ -62,38 +61,37 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
-void check_model_size(const std::string& what, const std::vector<Vec3>& model) {
-  if (model.empty()) throw InputError(what + " has no points");
-  if (model.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError(what + " has " + std::to_string(model.size()) +
-                     " points, expected fewer than 2^32");
+void check_ignored(const QueryParameters& query) {
+  for (const Box& box : query.ignore_boxes) {
+    for (int k = 0; k < 3; ++k) {
+      if (!std::isfinite(box.lo[k]) || !std::isfinite(box.hi[k])) {
+        throw UsageError("an ignored box has to have finite corners");
+      }
+      if (box.lo[k] <= box.hi[k]) continue;
+      throw UsageError("the ignored box " + box_text(box) +
+                       " has its corners the wrong way round: expected the least x, y and z first");
+    }
   }
 }
 
-void check_body(const Body& body, const Query& query, std::set<std::string>& names) {
-  const auto refuse = [&](const std::string& what) {
-    throw InputError("body " + body.name + ": " + what);
-  };
-  if (body.name.empty() || body.name.find('\n') != std::string::npos ||
-      body.name.find('\0') != std::string::npos || body.name.size() > kMostNameBytes) {
-    refuse("expected a name of at most " + std::to_string(kMostNameBytes) + " bytes in one line");
+/// of: a query, or a body.
+template <typename ModelOwner>
+void check_model_size(const std::string& what, const ModelOwner& of) {
+  if (of.model.empty()) throw InputError(what + " has no points");
+  if (of.model.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(what + " has " + std::to_string(of.model.size()) +
+                     " points, expected fewer than 2^32");
   }
-  if (!names.insert(body.name).second) refuse("another body has this name too");
-  if (body.poses.size() != body.path_pose.size()) {
-    refuse("has " + std::to_string(body.poses.size()) + " poses, and says of " +
-           std::to_string(body.path_pose.size()) + " which pose of the path they are");
+  if (of.triangles.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
+    throw InputError(what + " has " + std::to_string(of.triangles.size()) +
+                     " triangles, expected fewer than 2^31");
   }
-  for (std::size_t i = 0; i < body.path_pose.size(); ++i) {
-    const bool ascends = i == 0 || body.path_pose[i] > body.path_pose[i - 1];
-    if (!ascends || body.path_pose[i] >= query.poses.size()) {
-      refuse("its poses are not in the order of the path");
-    }
-    if (query.between_poses && i > 0 && body.path_pose[i] != body.path_pose[i - 1] + 1) {
-      throw UsageError("body " + body.name + " has no pose between poses " +
-                       std::to_string(body.path_pose[i - 1]) + " and " +
-                       std::to_string(body.path_pose[i]) +
-                       " of the path, so that its way there is not known: search at poses, or "
-                       "split the path");
+  for (std::size_t i = 0; i < of.triangles.size(); ++i) {
+    for (const std::uint32_t corner : of.triangles[i]) {
+      if (corner < of.model.size()) continue;
+      throw InputError("triangle " + std::to_string(i) + " of " + what + " has the corner " +
+                       std::to_string(corner) + ", expected one below " +
+                       std::to_string(of.model.size()));
     }
   }
 }
@@ -106,6 +104,7 @@ Engine chosen_engine(const SearchOptions& options) {
 
 void check_query(const QueryParameters& query, const SearchOptions& options) {
   check_numbers(query, options);
+  check_ignored(query);
   const Engine engine = chosen_engine(options);
   if (query.tolerance > 0) check_tolerance(query, engine);
   if (query.clearance > 0 && query.between_poses) {
@@ -147,39 +146,28 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
+void check_surface(const QueryParameters& query, const SearchOptions& options) {
+  const Engine engine = chosen_engine(options);
+  if (engine != Engine::kSweep) {
+    throw UsageError(std::string("engine ") + name_of(engine) +
+                         " needs a model of points, and this one is a surface: engine sweep "
+                         "searches surfaces",
+                     Remedy::kModelPoints);
+  }
+  if (query.between_poses) {
+    throw UsageError("motion between poses needs a model of points, and this one is a surface",
+                     Remedy::kModelPoints);
+  }
+}
+
 void check_sizes(const Query& query) {
   constexpr std::uint64_t kEnd = std::uint64_t{1} << 31;  // trees have up to 2 n - 1 nodes
   if (query.poses.size() >= kEnd) {
     throw InputError("the trajectory has " + std::to_string(query.poses.size()) +
                      " poses, expected fewer than " + std::to_string(kEnd));
   }
-  if (query.bodies.empty()) check_model_size("the model", query.model);
-  for (const Body& body : query.bodies) check_model_size("body " + body.name, body.model);
-}
-
-void check_bodies(const Query& query, const SearchOptions& options) {
-  if (query.bodies.empty()) return;
-  if (chosen_engine(options) != Engine::kSweep) {
-    refuse_engine(name_of(options.engine), "searches one model, and no vehicle of several bodies");
-  }
-  if (options.device == Device::kCuda || !options.gpus.empty()) {
-    throw UsageError("a vehicle of several bodies is searched on the CPU alone");
-  }
-  if (query.tolerance > 0) {
-    throw UsageError("a tolerance and a vehicle of several bodies cannot be combined");
-  }
-  if (!query.model.empty()) throw InputError("a query has either a model or bodies");
-  if (query.bodies.size() > kMostBodies) {
-    throw InputError("the vehicle has " + std::to_string(query.bodies.size()) +
-                     " bodies, expected at most " + std::to_string(kMostBodies));
-  }
-  if (BodyNumbers(query).end(query.poses.size()) >= HitSet::kNever) {
-    throw InputError("the path has " + std::to_string(query.poses.size()) + " poses for " +
-                     std::to_string(query.bodies.size()) +
-                     " bodies, expected fewer than 2^32 - 1 poses of bodies together");
-  }
-  std::set<std::string> names;
-  for (const Body& body : query.bodies) check_body(body, query, names);
+  if (query.bodies.empty()) check_model_size("the model", query);
+  for (const Body& body : query.bodies) check_model_size("body " + body.name, body);
 }
 
 }  // namespace clearway

@@ -11,7 +11,11 @@ Engine chosen_engine(const SearchOptions& options);
 /// its model and poses, or where the options contradict each other.
 void check_query(const QueryParameters& query, const SearchOptions& options);
 
-/// Throws InputError where the trees over model and poses cannot have as many nodes.
+/// The same of a query whose model is a surface.
+void check_surface(const QueryParameters& query, const SearchOptions& options);
+
+/// Throws InputError where a triangle has a corner that is not there, and where the trees over
+/// model and poses cannot have as many nodes.
 void check_sizes(const Query& query);
 
 /// Throws UsageError where the engine cannot search bodies so, and InputError where they contradict

@@ -14,10 +14,12 @@ std::uint64_t program_bytes(int threads) {
 
 std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
   std::uint64_t bytes = store.allocated_bytes() + query.model.size() * sizeof(Vec3) +
+                        query.triangles.size() * sizeof(query.triangles[0]) +
                         query.poses.size() * sizeof(Pose);
   for (const Body& body : query.bodies) {
     // The search has a copy of them.
     bytes += 2 * body.model.size() * sizeof(Vec3) +
+             2 * body.triangles.size() * sizeof(body.triangles[0]) +
              body.poses.size() * (2 * sizeof(Pose) + sizeof(std::uint32_t));
   }
   return bytes;
@@ -31,13 +33,13 @@ std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) 
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {
-  std::uint64_t points = query.model.size();
-  std::uint64_t poses = query.bodies.empty() ? query.poses.size() : 0;
-  for (const Body& body : query.bodies) {
-    points += body.model.size();
-    poses += body.poses.size();
-  }
-  return 52 * points + 168 * poses;
+  const auto of_model = [](const auto& model) {
+    return model.is_surface() ? 240 * model.triangles.size() : 52 * model.model.size();
+  };
+  if (query.bodies.empty()) return of_model(query) + 168 * query.poses.size();
+  std::uint64_t bytes = 0;
+  for (const Body& body : query.bodies) bytes += of_model(body) + 168 * body.poses.size();
+  return bytes;
 }
 
 void check_memory(std::uint64_t needed, std::uint64_t allowed) {

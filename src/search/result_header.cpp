@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/geometry/point_box.hpp"
+#include "core/query/ignored_points.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
+#include "search/ignored/count_ignored.hpp"
 
 namespace clearway {
 
@@ -15,6 +18,12 @@ std::uint64_t points_of(const Query& query) {
   std::uint64_t points = query.model.size();
   for (const Body& body : query.bodies) points += body.model.size();
   return points;
+}
+
+std::uint64_t triangles_of(const Query& query) {
+  std::uint64_t triangles = query.triangles.size();
+  for (const Body& body : query.bodies) triangles += body.triangles.size();
+  return triangles;
 }
 
 /// Of several bodies that of all, each in its own frame.
@@ -44,22 +53,31 @@ std::vector<std::string> names_of(const Query& query) {
 ResultHeader result_header(const StoreReader& store, const Query& query,
                            const SearchOptions& options) {
   const StoreMetadata& metadata = store.metadata();
-  return {query,
-          metadata.input_points,
-          metadata.points_hash,
-          points_of(query),
-          query.bodies.empty() ? hash_of_model(query.model) : hash_of_bodies(query.bodies),
-          query.poses.size(),
-          hash_of_trajectory(query.poses),
-          query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
-          options.float_precision,
-          metadata.quantisation,
-          metadata.crs_wkt,
-          false,
-          model_box(query),
-          std::nullopt,
-          names_of(query),
-          query.bodies.empty() ? std::uint32_t{3} : std::uint32_t{4}};
+  QueryParameters asked = query;
+  sort_ignored(asked);
+  IgnoredPointCounts ignored = count_ignored(store, asked, options.threads);
+  const bool by_class = !asked.ignore_classes.empty();
+  ResultHeader header{std::move(asked),
+                      metadata.input_points,
+                      metadata.points_hash,
+                      points_of(query),
+                      query.bodies.empty() ? hash_of_model(query.model, query.triangles)
+                                           : hash_of_bodies(query.bodies),
+                      query.poses.size(),
+                      hash_of_trajectory(query.poses),
+                      query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
+                      options.float_precision,
+                      metadata.quantisation,
+                      metadata.crs_wkt,
+                      false,
+                      model_box(query),
+                      std::nullopt,
+                      triangles_of(query),
+                      std::move(ignored),
+                      by_class ? metadata.classes->hash : 0,
+                      names_of(query)};
+  header.version = header.written_version();
+  return header;
 }
 
 }  // namespace clearway

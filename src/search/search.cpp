@@ -18,6 +18,7 @@
 #include "search/choice/device_estimate.hpp"
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
+#include "search/ignored/count_ignored.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/body_kind.hpp"
 #include "search/kinds/cuda_kind.hpp"
@@ -50,7 +51,7 @@ class Search {
         journal_(pending_, output, options_, log_),
         header_(result_header(store_, query_, options_)) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
-    if (!query.bodies.empty()) options_.device = Device::kCpu;
+    if (!query.bodies.empty()) take_cpu_for_bodies();
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
@@ -80,19 +81,23 @@ class Search {
     }
     check_sizes(query_);
     warn_of_query(store_, query_, log_);
+    warn_of_ignored(store_, header_, header_.ignored, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
   }
 
   void report_sizes() {
     report_.environment_points = store_.point_count();
     report_.model_points = query_.model.size();
+    report_.model_triangles = query_.triangles.size();
     report_.poses = query_.poses.size();
-    report_.searches = report_.poses * report_.model_points;
+    report_.searches = report_.poses * element_count(query_);
     for (const Body& body : query_.bodies) {
       report_.model_points += body.model.size();
-      report_.searches += body.poses.size() * body.model.size();
+      report_.model_triangles += body.triangles.size();
+      report_.searches += body.poses.size() * element_count(body);
     }
     report_.cells_total = store_.cells().size();
+    report_.ignored = header_.ignored;
   }
 
   /// Of a shard, which cells it has.
@@ -102,7 +107,15 @@ class Search {
     shard_.emplace(store_, query_, *options_.shard, threads_or_all(options_.threads),
                    options_.memory_bytes);
     header_.part = shard_->part();
+    report_.shard = options_.shard;
     report_.shard_share = shard_->share();
+  }
+
+  void take_cpu_for_bodies() {
+    if (options_.device == Device::kAuto) {
+      log_.note("the CPU is taken: a vehicle of several bodies is searched there alone");
+    }
+    options_.device = Device::kCpu;
   }
 
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
@@ -201,7 +214,7 @@ class Search {
     if (options_.engine == Engine::kGrid) {
       return std::make_unique<CpuGridKind>(store_, query_, options_);
     }
-    return std::make_unique<CpuSweepKind>(store_, query_, options_);
+    return cpu_sweep_kind(store_, query_, options_);
   }
 
   /// Where the search needs them: they have been starting meanwhile. Throws NoGpu.
@@ -225,6 +238,7 @@ class Search {
 
   void publish(const Found& found) {
     const Stopwatch write;
+    describe_part();
     try {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
@@ -237,9 +251,21 @@ class Search {
     journal_.remove_after_publication();
     const StoreReader::Touched touched = store_.touched();
     report_.cells_read = touched.cells;
+    report_.ignored_looked_at = found.result.ignored_points;
     report_.bytes_read = touched.bytes;
     report_profile(found.result.profile);
     report_.seconds.write = write.seconds();
+  }
+
+  /// What merging parts asks of them: how an answer that is not exact was computed, and what was
+  /// warned of.
+  void describe_part() {
+    if (!header_.part) return;
+    header_.part->warnings = report_.warnings;
+    if (header_.is_exact()) return;
+    header_.part->device = name_of(report_.device);
+    header_.part->field_voxel = report_.field_voxel;
+    header_.part->grid_cell = report_.grid_cell;
   }
 
   void report_written(const WrittenResult& written) {
@@ -292,6 +318,7 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
                     const SearchOptions& options) {
   check_query(query, options);
   check_bodies(query, options);
+  if (query.is_surface()) check_surface(query, options);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

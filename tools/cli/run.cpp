@@ -21,6 +21,7 @@
 #include "cli/support/warnings_json.hpp"
 #include "cli/vehicle/read_vehicle.hpp"
 #include "cli/verdict.hpp"
+#include "core/query/ignored_text.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -106,12 +107,15 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["radius"] = options.query.radius;
   out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
+  out["model_as"] = report.model_triangles > 0 ? "surface" : "points";
   out["model_points"] = report.model_points;
+  out["model_triangles"] = report.model_triangles;
   out["poses"] = report.poses;
   out["colliding_points"] = report.colliding_points;
   out["clearance_points"] = report.clearance_points;
   out["profile_poses"] = report.profile_poses;
   add_verdict(answer.verdict, answer.labels, out);
+  out["ignored"]["looked_at"] = known(searched, report.ignored_looked_at);
   out["shard_share"] = nullptr;
   if (report.shard_share) out["shard_share"] = *report.shard_share;
   out["engine"] = known(searched, name_of(report.engine));
@@ -138,43 +142,43 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   return out;
 }
 
-/// No all-clear where something was warned of.
-std::string caveat(const SearchReport& report) {
-  const std::size_t count = report.warnings.size();
-  if (count == 0) return "";
-  return ", but see the " + (count == 1 ? "warning" : std::to_string(count) + " warnings") +
-         " above";
-}
-
 void log_report(const SearchReport& report, const RunOptions& options, const std::string& unit,
                 double seconds) {
   const std::string output = options.output.string();
   if (report.was_finished) {
     spdlog::info("{}: is the finished result of this query already; nothing to do{}", output,
-                 caveat(report));
+                 caveat_of(report.warnings.size()));
     return;
   }
-  const std::string part =
-      options.search.shard ? "part " + to_string(*options.search.shard) + ": " : "";
+  const std::string part = options.search.shard ? in_words(*options.search.shard) + ": " : "";
   const std::string found = part + found_text(report.colliding_points, report.environment_points);
   const std::string how =
       fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
   const bool doubtful = !report.warnings.empty();
   spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
+  if (options.query.ignores_points()) {
+    spdlog::info("{} in the whole environment, {} of them in the cells that were searched",
+                 ignored_text(options.query, report.ignored),
+                 format_count(report.ignored_looked_at));
+  }
   if (options.query.clearance > 0) {
     spdlog::info("{} within the clearance of {} {}",
                  counted(report.clearance_points, "point is", "points are"),
                  options.query.clearance, unit);
   }
-  if (doubtful) spdlog::info("{}{}", found, caveat(report));
+  if (doubtful) spdlog::info("{}{}", found, caveat_of(report.warnings.size()));
 }
 
 /// Warnings of the inputs are told at once, and go into the report with those of the search.
 Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   std::vector<Message>& warnings = options.search.input_warnings;
-  const ModelOptions how = with_spacing(options.model_options, options.query.radius);
+  const ModelOptions how = model_options_of(options);
   Query query({}, {}, options.query);
-  if (options.vehicle.empty()) query.model = read_model(options.model, how, &warnings);
+  if (options.vehicle.empty()) {
+    ModelShape model = read_model_shape(options.model, how, &warnings);
+    query.model = std::move(model.points);
+    query.triangles = std::move(model.triangles);
+  }
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
   if (!options.vehicle.empty()) {
@@ -217,6 +221,14 @@ void prepare_device(const SearchOptions& options) {
   if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
 }
 
+/// A part without a colliding point does not say that there is none.
+void refuse_judging_part(const RunOptions& options) {
+  if (!options.search.shard || !options.fail_on_collision) return;
+  throw UsageError(
+      "--fail-on-collision: one part does not tell whether a point collides; clearway merge "
+      "--fail-on-collision tells it of all parts");
+}
+
 /// Whether no point collides.
 bool run(RunOptions& options) {
   const Stopwatch total;
@@ -224,18 +236,22 @@ bool run(RunOptions& options) {
   ConsoleProgress progress;
   watch_call(options.search, progress);
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
+  refuse_judging_part(options);
   std::vector<std::filesystem::path> inputs{options.environment, options.model, options.trajectory};
   if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
   refuse_overwriting(options.output, inputs);
   if (!options.vehicle.empty()) check_vehicle_search(options.search);
+  model_options_of(options);
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
   prepare_device(options.search);
-  options.search.started = start_devices(options.search);
+  const bool may_use_gpus = options.vehicle.empty();
+  if (may_use_gpus) options.search.started = start_devices(options.search);
   if (options.vehicle.empty()) check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
-  if (!options.search.started) options.search.started = start_devices(options.search, &store);
+  if (may_use_gpus && !options.search.started)
+    options.search.started = start_devices(options.search, &store);
   if (const auto metres = metres_of_unit(store.length_unit())) {
     options.lengths.convert(*metres);
     options.model_options.environment_unit = *metres;
@@ -250,8 +266,9 @@ bool run(RunOptions& options) {
   log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   answer.verdict = find_verdict(report, query, options);
-  const std::string sentence = verdict_text(answer.verdict, answer.labels,
-                                            symbol_of_unit(store.length_unit()), caveat(report));
+  const std::string sentence =
+      verdict_text(answer.verdict, answer.labels, symbol_of_unit(store.length_unit()),
+                   caveat_of(report.warnings.size()));
   if (options.json) {
     spdlog::info("{}", sentence);
     print(text_of_json(json_of(report, options, answer, program)));
@@ -269,8 +286,9 @@ void add_run(CLI::App& program, int& exit_code) {
       "run", "Find every environment point within the radius of the moving model");
   add_run_options(*command, *options);
   command->footer(
-      "A point collides when its distance to a model point at some pose is strictly below the\n"
-      "radius. With --between-poses the way from each pose to the next counts too.\n"
+      "A point collides when its distance to the model at some pose is strictly below the radius.\n"
+      "A mesh is searched as its surface, other models as their points. With --between-poses the "
+      "way from each pose to the next counts too.\n"
       "The first pose is the first one that touches the point. With --between-poses it is the "
       "pose\n"
       "from which the first way starts that touches the point. A way includes both its ends.\n"

@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "clearway/error.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "io/formats/text/text_number.hpp"
+#include "search/check_query.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -37,8 +40,41 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
+  command
+      .add_option_function<std::string>(
+          "--model-as",
+          [&options](const std::string& name) {
+            options.model_as = name == "surface" ? ModelAs::kSurface : ModelAs::kPoints;
+          },
+          "surface: search the triangles of a mesh as they are; points: search points on its "
+          "surface (default: surface, for what engine sweep searches at poses)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"surface", "points"}));
   add_model_options(command, options.model_options, options.lengths);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
+}
+
+void add_ignored(CLI::App& command, QueryParameters& query) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--ignore-class",
+          [&query](const std::vector<std::string>& lists) {
+            query.ignore_classes = parse_classes(lists);
+          },
+          "Leave points of these classes out of the search, for example 2,7 or 3-5; of a store "
+          "with classes")
+      ->allow_extra_args(false)
+      ->type_name("N,...");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--ignore-box",
+          [&query](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) query.ignore_boxes.push_back(parse_box(text));
+          },
+          "Leave points in this box out of the search: its least and its greatest x, y and z, in "
+          "the environment's coordinates; may be given several times")
+      ->allow_extra_args(false)
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
 }
 
 void add_query(CLI::App& command, RunOptions& options) {
@@ -58,6 +94,7 @@ void add_query(CLI::App& command, RunOptions& options) {
       command, "--tolerance", options.query.tolerance,
       "Faster: may decide wrongly for points within this distance of the radius, for example "
       "0.001; engine sweep only");
+  add_ignored(command, options.query);
 }
 
 /// An option that takes the name of one of the values.
@@ -142,7 +179,30 @@ void add_shard(CLI::App& command, SearchOptions& options) {
       ->type_name("I/N");
 }
 
+/// Whether points were asked for, or what only points have.
+bool asks_for_points(const RunOptions& options) {
+  const SearchOptions& search = options.search;
+  return options.model_options.spacing > 0 || options.model_options.vertices_only ||
+         options.query.between_poses || search.engine == Engine::kGrid ||
+         search.engine == Engine::kKdtree || search.float_precision || search.grid_cell > 0;
+}
+
 }  // namespace
+
+ModelOptions model_options_of(const RunOptions& options) {
+  ModelOptions how = options.model_options;
+  how.as = options.model_as.value_or(asks_for_points(options) ? ModelAs::kPoints
+                                                              : ModelAs::kSurfaceOfMesh);
+  if (how.as == ModelAs::kSurface) {
+    if (how.spacing > 0 || how.vertices_only) {
+      throw UsageError(
+          "a surface is searched as it is: --model-spacing and --model-vertices are of points",
+          Remedy::kModelPoints);
+    }
+    check_surface(options.query, options.search);
+  }
+  return with_spacing(how, options.query.radius);
+}
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);

@@ -4,18 +4,22 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
+#include "core/geometry/triangle_box.hpp"
 
 namespace clearway {
-ModelTree::ModelTree(std::span<const Vec3> model, int threads)
-    : points_(model.begin(), model.end()) {
-  if (points_.empty()) return;
-  box_ = box_of(points_);
+template <typename Element>
+ModelTreeOf<Element>::ModelTreeOf(std::span<const Element> model, int threads)
+    : elements_(model.begin(), model.end()) {
+  if (elements_.empty()) return;
+  box_ = box_of(std::span<const Element>(elements_));
   build(threads);
-  // A leaf's 4 to 8 points of a surface cover a square of some 2.5 spacings.
+  // A leaf's 4 to 8 points of a surface cover a square of some 2.5 spacings. Of triangles it is
+  // taken alike.
   spacing_ = median_leaf_diagonal() / 3.5;
 }
 
-double ModelTree::median_leaf_diagonal() const {
+template <typename Element>
+double ModelTreeOf<Element>::median_leaf_diagonal() const {
   std::vector<double> diagonals;
   for (std::size_t node = 0; node < boxes_.size(); ++node) {
     const bool leaf = 2 * node + 1 >= boxes_.size();
@@ -30,7 +34,8 @@ double ModelTree::median_leaf_diagonal() const {
 }
 
 /// Level by level: the nodes of one are parts of their own.
-void ModelTree::build(int threads) {
+template <typename Element>
+void ModelTreeOf<Element>::build(int threads) {
   boxes_.resize(last_node(size()) + 1);
   std::vector<Part> level{{0, size(), 0}}, next;
   while (!level.empty()) {
@@ -38,7 +43,7 @@ void ModelTree::build(int threads) {
     for (const Part& part : level) divide(part);
     next.clear();
     for (const Part& part : level) {
-      if (part.end - part.begin <= kLeafPoints) continue;
+      if (part.end - part.begin <= kLeafElements) continue;
       next.push_back({part.begin, part.middle(), 2 * part.node + 1});
       next.push_back({part.middle(), part.end, 2 * part.node + 2});
     }
@@ -47,29 +52,36 @@ void ModelTree::build(int threads) {
 }
 
 /// The right half is never the smaller one.
-std::size_t ModelTree::last_node(std::uint32_t points) {
+template <typename Element>
+std::size_t ModelTreeOf<Element>::last_node(std::uint32_t elements) {
   std::size_t node = 0;
-  for (; points > kLeafPoints; points -= points / 2) node = 2 * node + 2;
+  for (; elements > kLeafElements; elements -= elements / 2) node = 2 * node + 2;
   return node;
 }
 
-void ModelTree::divide(const Part& part) {
-  const auto begin = points_.begin();
-  const Box box = box_of(std::span(points_).subspan(part.begin, part.end - part.begin));
+template <typename Element>
+void ModelTreeOf<Element>::divide(const Part& part) {
+  const auto begin = elements_.begin();
+  const Box box =
+      box_of(std::span<const Element>(elements_).subspan(part.begin, part.end - part.begin));
   boxes_[part.node] = box;
-  if (part.end - part.begin <= kLeafPoints) return;
+  if (part.end - part.begin <= kLeafElements) return;
   const int axis = longest_side(box);
   std::nth_element(begin + part.begin, begin + part.middle(), begin + part.end,
-                   [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+                   [axis](const Element& a, const Element& b) {
+                     return place_along(a, axis) < place_along(b, axis);
+                   });
 }
 
-bool ModelTree::within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
-                       double squared_radius, std::size_t most, std::vector<Vec3>& out) const {
+template <typename Element>
+bool ModelTreeOf<Element>::within(std::uint32_t begin, std::uint32_t end, std::size_t node,
+                                  const Box& box, double squared_radius, std::size_t most,
+                                  std::vector<Element>& out) const {
   if (begin == end || least_squared_distance(boxes_[node], box) > squared_radius) return true;
-  if (end - begin <= kLeafPoints) {
+  if (end - begin <= kLeafElements) {
     for (std::uint32_t i = begin; i < end; ++i) {
-      const bool outside = least_squared_distance(box, points_[i]) > squared_radius;
-      if (!outside) out.push_back(points_[i]);
+      const bool outside = least_squared_distance(box, elements_[i]) > squared_radius;
+      if (!outside) out.push_back(elements_[i]);
     }
     return out.size() <= most;
   }
@@ -77,5 +89,8 @@ bool ModelTree::within(std::uint32_t begin, std::uint32_t end, std::size_t node,
   return within(begin, middle, 2 * node + 1, box, squared_radius, most, out) &&
          within(middle, end, 2 * node + 2, box, squared_radius, most, out);
 }
+
+template class ModelTreeOf<Vec3>;
+template class ModelTreeOf<Triangle>;
 
 }  // namespace clearway

@@ -8,45 +8,48 @@
 
 namespace clearway {
 
-/// A balanced k-d tree over the model's points, for nearest neighbours and balls in the model's own
-/// frame. Source: Bentley 1975; Friedman, Bentley, Finkel 1977.
-class ModelTree {
+/// A balanced tree over the model's points or triangles, for nearest neighbours and balls in the
+/// model's own frame. Source: Bentley 1975; Friedman, Bentley, Finkel 1977.
+template <typename Element>
+class ModelTreeOf {
  public:
-  using Nearest = ModelTreeRef::Nearest;
+  using Ref = ModelTreeRefOf<Element>;
+  using Nearest = typename Ref::Nearest;
 
-  explicit ModelTree(std::span<const Vec3> model, int threads = 1);
+  explicit ModelTreeOf(std::span<const Element> model, int threads = 1);
 
-  std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
-  const Vec3& point(std::uint32_t index) const { return points_[index]; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(elements_.size()); }
+  const Element& element(std::uint32_t index) const { return elements_[index]; }
   const Box& box() const { return box_; }
 
-  /// An estimate of the distance between neighbouring points, metres: for choosing sizes, never for
-  /// answers.
+  /// An estimate of the distance between neighbouring elements, metres: for choosing sizes, never
+  /// for answers.
   double spacing() const { return spacing_; }
 
   /// Valid while the tree lives.
-  ModelTreeRef ref() const {
-    return {points_.data(), boxes_.data(), size(), static_cast<std::uint32_t>(boxes_.size())};
+  Ref ref() const {
+    return {elements_.data(), boxes_.data(), size(), static_cast<std::uint32_t>(boxes_.size())};
   }
 
   Nearest nearest(const Vec3& x, std::uint32_t guess = 0) const { return ref().nearest(x, guess); }
 
-  /// The points with a computed squared distance to the box of at most `squared_radius` (which is a
-  /// number), into `out`, replaced; false, and some of them, where they are more than `most`.
+  /// The elements with a computed squared distance to the box, of triangles of their own boxes, of
+  /// at most `squared_radius` (which is a number), into `out`, replaced; false, and some of them,
+  /// where they are more than `most`.
   bool within(const Box& box, double squared_radius, std::size_t most,
-              std::vector<Vec3>& out) const {
+              std::vector<Element>& out) const {
     out.clear();
     return within(0, size(), 0, box, squared_radius, most, out);
   }
 
   std::uint64_t allocated_bytes() const {
-    return points_.capacity() * sizeof(Vec3) + boxes_.capacity() * sizeof(Box);
+    return elements_.capacity() * sizeof(Element) + boxes_.capacity() * sizeof(Box);
   }
 
  private:
-  static constexpr std::uint32_t kLeafPoints = ModelTreeRef::kLeafPoints;
+  static constexpr std::uint32_t kLeafElements = Ref::kLeafElements;
 
-  /// A node with its points.
+  /// A node with its elements.
   struct Part {
     std::uint32_t begin, end;
     std::size_t node;
@@ -55,15 +58,21 @@ class ModelTree {
 
   void build(int threads);
   void divide(const Part& part);
-  static std::size_t last_node(std::uint32_t points);
+  static std::size_t last_node(std::uint32_t elements);
   double median_leaf_diagonal() const;
   bool within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
-              double squared_radius, std::size_t most, std::vector<Vec3>& out) const;
+              double squared_radius, std::size_t most, std::vector<Element>& out) const;
 
-  std::vector<Vec3> points_;
+  std::vector<Element> elements_;
   std::vector<Box> boxes_;  // of node i; children 2 i + 1 and 2 i + 2
   Box box_{};
   double spacing_ = 0;
 };
+
+using ModelTree = ModelTreeOf<Vec3>;
+using TriangleTree = ModelTreeOf<Triangle>;
+
+extern template class ModelTreeOf<Vec3>;
+extern template class ModelTreeOf<Triangle>;
 
 }  // namespace clearway

@@ -3,28 +3,33 @@
 #include <cstdint>
 
 #include "core/geometry/box.hpp"
+#include "core/geometry/model_element.hpp"
 
 namespace clearway {
 
-/// A ModelTree's points and boxes where they lie, on the host or on a device. Does not own them.
-struct ModelTreeRef {
-  static constexpr std::uint32_t kLeafPoints = 8;
-  static constexpr int kMostParts = 40;  ///< open parts of a descent; 2^32 points are 30 levels
+/// What a descent of a model's tree does with a box.
+enum class ModelStep { kSkip, kEnter, kTake };
 
-  enum class Step { kSkip, kEnter, kTake };
+/// A ModelTree's elements and boxes where they lie, on the host or on a device. Does not own them.
+template <typename Element>
+struct ModelTreeRefOf {
+  static constexpr std::uint32_t kLeafElements = kIsTriangle<Element> ? 4 : 8;
+  static constexpr int kMostParts = 40;  ///< open parts of a descent; 2^32 elements are 31 levels
+
+  using Step = ModelStep;
 
   struct Nearest {
-    std::uint32_t point;  ///< in the order of the tree
+    std::uint32_t element;  ///< in the order of the tree
     double squared_distance;
   };
 
-  const Vec3* points;
+  const Element* elements;
   const Box* boxes;  ///< of node i; children 2 i + 1 and 2 i + 2
   std::uint32_t size;
   std::uint32_t box_count;
 
-  /// Goes down the tree: step(box) tells whether to leave out the points of the box, to look
-  /// closer, or to answer true. Whether any box was taken or visit(point) was true; stops at the
+  /// Goes down the tree: step(box) tells whether to leave out the elements of the box, to look
+  /// closer, or to answer true. Whether any box was taken or visit(element) was true; stops at the
   /// first.
   template <typename StepInto, typename Visit>
   CLEARWAY_HD bool any(StepInto step, Visit visit) const {
@@ -37,9 +42,9 @@ struct ModelTreeRef {
       const Step next = step(boxes[part.node]);
       if (next == Step::kTake) return true;
       if (next == Step::kSkip) continue;
-      if (part.end - part.begin <= kLeafPoints) {
+      if (part.end - part.begin <= kLeafElements) {
         for (std::uint32_t i = part.begin; i < part.end; ++i) {
-          if (visit(points[i])) return true;
+          if (visit(elements[i])) return true;
         }
         continue;
       }
@@ -49,21 +54,21 @@ struct ModelTreeRef {
     return false;
   }
 
-  /// Whether visit(point) is true for any point with a computed squared distance to x of at most
-  /// `squared_radius`, and some others; stops at the first. A radius that is not a number visits
-  /// all.
+  /// Whether visit(element) is true for any element with a computed squared distance to x of at
+  /// most `squared_radius`, and some others; stops at the first. A radius that is not a number
+  /// visits all.
   template <typename Visit>
   CLEARWAY_HD bool any_within(const Vec3& x, double squared_radius, Visit visit) const {
     return any(
         [&](const Box& box) {
           return least_squared_distance(box, x) > squared_radius ? Step::kSkip : Step::kEnter;
         },
-        [&](const Vec3& m) { return !(squared_distance(m, x) > squared_radius) && visit(m); });
+        [&](const Element& m) { return !(squared_distance(x, m) > squared_radius) && visit(m); });
   }
 
-  /// The nearest point to x of a model that is not empty. `guess`: any point, better a near one.
+  /// The nearest element to x of a model that is not empty. `guess`: any, better a near one.
   CLEARWAY_HD Nearest nearest(const Vec3& x, std::uint32_t guess) const {
-    Nearest best{guess, squared_distance(points[guess], x)};
+    Nearest best{guess, squared_distance(x, elements[guess])};
     Part open[kMostParts];
     double squared[kMostParts];  // to the boxes of the open parts
     int count = 0;
@@ -72,9 +77,9 @@ struct ModelTreeRef {
     while (count > 0) {
       const Part part = open[--count];
       if (!(squared[count] < best.squared_distance)) continue;
-      if (part.end - part.begin <= kLeafPoints) {
+      if (part.end - part.begin <= kLeafElements) {
         for (std::uint32_t i = part.begin; i < part.end; ++i) {
-          const double here = squared_distance(points[i], x);
+          const double here = squared_distance(x, elements[i]);
           if (here < best.squared_distance) best = {i, here};
         }
         continue;
@@ -103,5 +108,7 @@ struct ModelTreeRef {
     return {2 * part.node + 2, part.begin + (part.end - part.begin) / 2, part.end};
   }
 };
+
+using ModelTreeRef = ModelTreeRefOf<Vec3>;
 
 }  // namespace clearway

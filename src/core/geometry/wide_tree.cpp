@@ -41,7 +41,7 @@ void WideTreeRef::to_boxes_in_vectors(const Node& node, const Target& from, floa
 WideTree::WideTree(const ModelTree& model) {
   const ModelTreeRef tree = model.ref();
   if (tree.size == 0) return;
-  const std::span<const Vec3> points(tree.points, tree.size);
+  const std::span<const Vec3> points(tree.elements, tree.size);
   int depth = 0;
   while ((std::uint64_t{PointPacket::kMost} << depth) < tree.size) ++depth;
   origin_ = centre_of(model.box());

@@ -7,27 +7,33 @@
 
 namespace clearway {
 
-ClearanceSearch::ClearanceSearch(const SweepFilter& filter)
+template <typename Element>
+ClearanceSearchOf<Element>::ClearanceSearchOf(const SweepFilterOf<Element>& filter)
     : sweep_(filter.ref()),
       limit_(rounded_product(sweep_.clearance, sweep_.clearance)),
-      guess_(filter.model().point(0)) {}
+      guess_(filter.model().element(0)) {}
 
-Clearance ClearanceSearch::nearest(const Vec3& e, std::span<const std::uint32_t> nodes,
-                                   SweepStatistics& statistics) {
+template <typename Element>
+Clearance ClearanceSearchOf<Element>::nearest(const Vec3& e, std::span<const std::uint32_t> nodes,
+                                              SweepStatistics& statistics) {
   ++statistics.points_tested;
   if (nodes.empty()) return Clearance{};
   // Pose 0, so that a tie with the limit is no improvement.
-  PointClearance search(sweep_, e, {limit_, 0}, statistics);
+  PointClearance<Element> search(sweep_, e, {limit_, 0}, statistics);
   search.offer(guess_pose_, guess_);
   while (!nodes.empty()) {
-    const auto part = nodes.first(std::min<std::size_t>(nodes.size(), PointClearance::kMostNodes));
+    const auto part =
+        nodes.first(std::min<std::size_t>(nodes.size(), PointClearance<Element>::kMostNodes));
     search.search(part.data(), static_cast<std::uint32_t>(part.size()));
     nodes = nodes.subspan(part.size());
   }
   if (!(search.best().squared < limit_)) return Clearance{};
   guess_pose_ = search.best().pose;
-  guess_ = search.model_point();
+  guess_ = search.element();
   return search.best();
 }
+
+template class ClearanceSearchOf<Vec3>;
+template class ClearanceSearchOf<Triangle>;
 
 }  // namespace clearway

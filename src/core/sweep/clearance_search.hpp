@@ -11,10 +11,11 @@ namespace clearway {
 
 /// The exact clearance of one environment point after the other. Points that are neighbours should
 /// follow each other: the answer for one is tried first for the next.
-class ClearanceSearch {
+template <typename Element>
+class ClearanceSearchOf {
  public:
   /// The filter, whose query asks for clearances, outlives it.
-  explicit ClearanceSearch(const SweepFilter& filter);
+  explicit ClearanceSearchOf(const SweepFilterOf<Element>& filter);
 
   /// Over the poses of `nodes`; not found where there is no d2 below the squared clearance asked
   /// for.
@@ -22,10 +23,13 @@ class ClearanceSearch {
                     SweepStatistics& statistics);
 
  private:
-  const SweepRef& sweep_;
+  const SweepRefOf<Element>& sweep_;
   const double limit_;  ///< the square of the clearance asked for
   std::uint32_t guess_pose_ = 0;
-  Vec3 guess_;  ///< the model point of the last answer
+  Element guess_;  ///< of the model, of the last answer
 };
+
+extern template class ClearanceSearchOf<Vec3>;
+extern template class ClearanceSearchOf<Triangle>;
 
 }  // namespace clearway

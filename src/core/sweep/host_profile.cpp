@@ -5,11 +5,10 @@
 #include <utility>
 
 namespace clearway {
-ProfileBestValues::ProfileBestValues(const SweepRef& sweep)
-    : limit_(rounded_product(sweep.profile, sweep.profile)),
-      of_pose_(sweep.motion.pose_count, limit_),
-      of_node_(sweep.motion.pose_count == 0 ? 0 : 2 * std::size_t{sweep.motion.pose_count} - 1,
-               std::sqrt(limit_) * kRoundedUp + sweep.rounding) {}
+ProfileBestValues::ProfileBestValues(double profile, double rounding, std::size_t poses)
+    : limit_(rounded_product(profile, profile)),
+      of_pose_(poses, limit_),
+      of_node_(poses == 0 ? 0 : 2 * poses - 1, std::sqrt(limit_) * kRoundedUp + rounding) {}
 
 void SmallestSource::add(std::uint32_t first, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1) {
@@ -21,9 +20,10 @@ void SmallestSource::add(std::uint32_t first, std::uint32_t bits) {
   }
 }
 
-void HostProfile::search(const PageRef& page, const ProfileBests& bests,
-                         std::vector<ProfileFact>& found) {
-  Search::Shared shared;
+template <typename Element>
+void HostProfileOf<Element>::search(const PageRef& page, const ProfileBests& bests,
+                                    std::vector<ProfileFact>& found) {
+  typename Search::Shared shared;
   const Quantisation& quantisation = cloud_.quantisation();
   Search search(sweep_, page, quantisation, bests, SmallestSource(cloud_, found), shared,
                 statistics_);
@@ -39,8 +39,9 @@ void HostProfile::search(const PageRef& page, const ProfileBests& bests,
   }
 }
 
-void HostProfile::keep_least(const PageRef& page, bool one_each,
-                             std::vector<ProfileFact>& facts) const {
+template <typename Element>
+void HostProfileOf<Element>::keep_least(const PageRef& page, bool one_each,
+                                        std::vector<ProfileFact>& facts) const {
   std::sort(facts.begin(), facts.end(), [](const ProfileFact& a, const ProfileFact& b) {
     return std::tie(a.pose, a.squared, a.point) < std::tie(b.pose, b.squared, b.point);
   });
@@ -62,9 +63,10 @@ void HostProfile::keep_least(const PageRef& page, bool one_each,
   facts.resize(kept);
 }
 
-void HostProfile::resolve(const PageRef& page, double limit, ProfileFact& fact) {
+template <typename Element>
+void HostProfileOf<Element>::resolve(const PageRef& page, double limit, ProfileFact& fact) {
   const ProfileBests bests{limit, nullptr, nullptr};
-  Search::Shared shared;
+  typename Search::Shared shared;
   std::vector<ProfileFact> found;
   const Quantisation& quantisation = cloud_.quantisation();
   Search search(sweep_, page, quantisation, bests, SmallestSource(cloud_, found), shared,
@@ -76,15 +78,8 @@ void HostProfile::resolve(const PageRef& page, double limit, ProfileFact& fact) 
   if (!found.empty()) fact = found.front();
 }
 
-void HostProfile::complete(const PageRef& page, std::uint32_t found,
-                           std::vector<ProfileFact>& facts) {
-  if (found > facts.size()) {
-    facts.clear();
-    ProfileBestValues bests(sweep_);
-    search(page, bests.ref(), facts);
-    return;
-  }
-  facts.resize(found);
+template <typename Element>
+void HostProfileOf<Element>::complete(const PageRef& page, std::vector<ProfileFact>& facts) {
   keep_least(page, false, facts);
   const double limit = rounded_product(sweep_.profile, sweep_.profile);
   for (ProfileFact& fact : facts) {
@@ -92,17 +87,22 @@ void HostProfile::complete(const PageRef& page, std::uint32_t found,
   }
 }
 
-SweepStatistics HostProfile::take_statistics() {
+template <typename Element>
+SweepStatistics HostProfileOf<Element>::take_statistics() {
   SweepStatistics sum;
   for (SweepStatistics& of_lane : statistics_.values) sum.add(std::exchange(of_lane, {}));
   return sum;
 }
 
-std::uint64_t HostProfile::most_facts(const PackedCloud& cloud, std::uint64_t poses,
-                                      std::uint64_t cells, std::uint64_t poses_of_cell) {
+template <typename Element>
+std::uint64_t HostProfileOf<Element>::most_facts(const PackedCloud& cloud, std::uint64_t poses,
+                                                 std::uint64_t cells, std::uint64_t poses_of_cell) {
   const std::uint64_t of_cell =
       Search::parts_of_cell(cloud.blocks_per_cell()) * poses_of_cell;  // one a pose and part
   return std::min(cells * of_cell, poses + of_cell);
 }
+
+template class HostProfileOf<Vec3>;
+template class HostProfileOf<Triangle>;
 
 }  // namespace clearway

@@ -12,13 +12,17 @@ namespace clearway {
 /// The values that ProfileBests refers to, as they are at the begin of a search.
 class ProfileBestValues {
  public:
-  explicit ProfileBestValues(const SweepRef& sweep);
+  template <typename Element>
+  explicit ProfileBestValues(const SweepRefOf<Element>& sweep)
+      : ProfileBestValues(sweep.profile, sweep.rounding, sweep.motion.pose_count) {}
 
   ProfileBests ref() { return {limit_, of_pose_.data(), of_node_.data()}; }
 
   static std::uint64_t size_bytes(std::uint64_t poses) { return 3 * poses * sizeof(double); }
 
  private:
+  ProfileBestValues(double profile, double rounding, std::size_t poses);
+
   double limit_;
   std::vector<double> of_pose_, of_node_;
 };
@@ -46,10 +50,12 @@ class SmallestSource {
 };
 
 /// The profile's search on the host, with the lanes of a warp as a loop.
-class HostProfile {
+template <typename Element>
+class HostProfileOf {
  public:
   /// All outlive it.
-  HostProfile(const PackedCloud& cloud, const SweepRef& sweep) : cloud_(cloud), sweep_(sweep) {}
+  HostProfileOf(const PackedCloud& cloud, const SweepRefOf<Element>& sweep)
+      : cloud_(cloud), sweep_(sweep) {}
 
   /// Appends to `found` what the cells of a page have that no other point known is better than.
   void search(const PageRef& page, const ProfileBests& bests, std::vector<ProfileFact>& found);
@@ -57,10 +63,9 @@ class HostProfile {
   /// Finds the point with the smallest source among those of the fact's cell with the same d2.
   void resolve(const PageRef& page, double limit, ProfileFact& fact);
 
-  /// What a device found in a page: resolves ties, and searches the page where the device's list
-  /// of `facts` was too short for the `found` that it asked room for. A point that is far from the
-  /// best may be replaced by none.
-  void complete(const PageRef& page, std::uint32_t found, std::vector<ProfileFact>& facts);
+  /// Of what a device listed of a page keeps the best and resolves ties. A point that is far from
+  /// the best may be replaced by none.
+  void complete(const PageRef& page, std::vector<ProfileFact>& facts);
 
   SweepStatistics take_statistics();
 
@@ -69,15 +74,20 @@ class HostProfile {
                                   std::uint64_t cells, std::uint64_t poses_of_cell);
 
  private:
-  using Search = ProfileSearch<HostWarp, SmallestSource>;
+  using Search = ProfileSearch<HostWarp, SmallestSource, Element>;
 
   /// Of each pose those facts that no other betters; one_each: of several the one with the smallest
   /// source.
   void keep_least(const PageRef& page, bool one_each, std::vector<ProfileFact>& facts) const;
 
   const PackedCloud& cloud_;
-  const SweepRef& sweep_;
+  const SweepRefOf<Element>& sweep_;
   HostWarp::PerLane<SweepStatistics> statistics_;
 };
+
+using HostProfile = HostProfileOf<Vec3>;
+
+extern template class HostProfileOf<Vec3>;
+extern template class HostProfileOf<Triangle>;
 
 }  // namespace clearway

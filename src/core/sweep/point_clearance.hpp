@@ -13,10 +13,11 @@ namespace clearway {
 /// The exact clearance of one environment point: branch and bound over motion tree and model. What
 /// is given up is proven to have only computed d2 above the best so far, so that ties reach the
 /// lowest pose (docs/design/numerics.md, "Clearance").
+template <typename Element>
 class PointClearance {
  public:
   /// best: known so far, of the point or the limit that clearances are below.
-  CLEARWAY_HD PointClearance(const SweepRef& sweep, const Vec3& e, const Clearance& best,
+  CLEARWAY_HD PointClearance(const SweepRefOf<Element>& sweep, const Vec3& e, const Clearance& best,
                              SweepStatistics& statistics)
       : sweep_(sweep), statistics_(statistics), e_(e) {
     set_best(best.squared, best.pose);
@@ -24,9 +25,9 @@ class PointClearance {
 
   CLEARWAY_HD const Clearance& best() const { return best_; }
   /// That the best was found with.
-  CLEARWAY_HD const Vec3& model_point() const { return near_; }
+  CLEARWAY_HD const Element& element() const { return near_; }
 
-  CLEARWAY_HD void offer(std::uint32_t pose, const Vec3& m) {
+  CLEARWAY_HD void offer(std::uint32_t pose, const Element& m) {
     const double squared = squared_distance(e_, transform(sweep_.motion.poses[pose], m));
     if (!(squared < best_.squared || (squared == best_.squared && pose < best_.pose))) return;
     near_ = m;
@@ -68,7 +69,7 @@ class PointClearance {
     const InversePose& back = sweep_.motion.inverse_poses[node.mid];
     const ModelFieldRef::Bounds bounds = sweep_.field.bounds(back.apply(e_));
     if (bounds.near != ModelFieldRef::kNone && !farther(back.least, bounds.squared_lower, reach_)) {
-      offer(node.mid, sweep_.model.points[bounds.near]);
+      offer(node.mid, sweep_.model.elements[bounds.near]);
     }
     return bounds.squared_lower;
   }
@@ -108,9 +109,22 @@ class PointClearance {
     double error = one_place ? 0 : static_cast<double>(smooth.error);
     if (!one_place && !is_close_enough(error)) return false;
     const auto least = static_cast<double>(smooth.least);
-    const PointCurve curve(sweep_.motion, node, e_, ball(least, error));
-    error += curve.beside();
-    if (!one_place && !is_close_enough(error)) return false;
+    if constexpr (kIsTriangle<Element>) {
+      const CurveBall places(sweep_.motion, node, e_);
+      if (!one_place) error += places.radius;
+      if (!one_place && !is_close_enough(error)) return false;
+      search_triangles(node, places.centre, one_place, least, error);
+    } else {
+      const PointCurve curve(sweep_.motion, node, e_, ball(least, error));
+      error += curve.beside();
+      if (!one_place && !is_close_enough(error)) return false;
+      search_points(node, curve, one_place, least, error);
+    }
+    return true;
+  }
+
+  CLEARWAY_HD void search_points(const MotionNode& node, const PointCurve& curve, bool one_place,
+                                 double least, double error) {
     ++statistics_.exact_tests;
     double squared = squared_ball(least, error);
     sweep_.wide.visit_nearest_first(
@@ -126,7 +140,24 @@ class PointClearance {
           }
           squared = squared_ball(least, error);
         });
-    return true;
+  }
+
+  /// x: none of the places of the poses is farther from it than the error.
+  CLEARWAY_HD void search_triangles(const MotionNode& node, const Vec3& x, bool one_place,
+                                    double least, double error) {
+    ++statistics_.exact_tests;
+    const std::uint32_t end = node.first + (one_place ? 1 : node.count);
+    double squared = squared_ball(least, error);
+    sweep_.model.any(
+        [&](const Box& box) {
+          return least_squared_distance(box, x) > squared ? ModelStep::kSkip : ModelStep::kEnter;
+        },
+        [&](const Element& t) {
+          if (squared_distance(x, t) > squared) return false;
+          for (std::uint32_t pose = node.first; pose < end; ++pose) offer(pose, t);
+          squared = squared_ball(least, error);
+          return false;
+        });
   }
 
   CLEARWAY_HD double squared_ball(double least, double error) const {
@@ -158,12 +189,12 @@ class PointClearance {
     reach_ = std::sqrt(squared) * kRoundedUp + sweep_.rounding;
   }
 
-  const SweepRef& sweep_;
+  const SweepRefOf<Element>& sweep_;
   SweepStatistics& statistics_;
   Vec3 e_;
   Clearance best_{};
   double reach_ = 0;  ///< a pose at which no model point is nearer than this has only larger d2
-  Vec3 near_{};
+  Element near_{};
 };
 
 }  // namespace clearway

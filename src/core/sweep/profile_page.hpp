@@ -8,16 +8,17 @@ namespace clearway {
 
 /// The profile of a page on a device, divided into tasks of about the same size, by one warp: one
 /// of a few parts of a planned motion node, against a part of its cell.
-template <typename Warp>
+template <typename Warp, typename Element = Vec3>
 class ProfileTask {
  public:
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
-  using Search = ProfileSearch<Warp, UnresolvedTies>;
+  using Search = ProfileSearch<Warp, UnresolvedTies, Element>;
   using Shared = typename Search::Shared;
 
-  CLEARWAY_HD ProfileTask(const SweepPage& job, const ProfileBests& bests, const ProfileList& list,
-                          Shared& shared, PerLane<SweepStatistics>& statistics)
+  CLEARWAY_HD ProfileTask(const SweepPageOf<Element>& job, const ProfileBests& bests,
+                          const ProfileList& list, Shared& shared,
+                          PerLane<SweepStatistics>& statistics)
       : page_(job.page),
         motion_(job.sweep.motion),
         search_(job.sweep, job.page, job.quantisation, bests, UnresolvedTies(list), shared,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 #include "core/sweep/profile_blocks.hpp"
 #include "core/sweep/sweep_profile.hpp"
@@ -13,20 +12,21 @@ namespace clearway {
 /// are given up only where a bound proves every computed d2 to be above the best of each pose, so
 /// that ties stay (docs/design/numerics.md, "Profile").
 /// Ties: what becomes of points with the same d2 (UnresolvedTies, or SmallestSource).
-template <typename Warp, typename Ties>
+template <typename Warp, typename Ties, typename Element>
 class ProfileSearch {
  public:
-  using Blocks = ProfileBlocks<Warp>;
+  using Blocks = ProfileBlocks<Warp, Element>;
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
   /// What the lanes share.
   struct Shared {
     typename Blocks::Shared blocks;
-    Vec3 point, model_point;  ///< the last ones found
+    Vec3 point;       ///< the last one found
+    Element element;  ///< likewise
   };
 
-  CLEARWAY_HD ProfileSearch(const SweepRef& sweep, const PageRef& page,
+  CLEARWAY_HD ProfileSearch(const SweepRefOf<Element>& sweep, const PageRef& page,
                             const Quantisation& quantisation, const ProfileBests& bests,
                             const Ties& ties, Shared& shared, PerLane<SweepStatistics>& statistics)
       : sweep_(sweep),
@@ -45,10 +45,11 @@ class ProfileSearch {
   /// From here on a part of a cell of the page is searched. Whether it has points.
   CLEARWAY_HD bool enter(std::uint32_t cell, std::uint32_t part) {
     cell_ = &page_.cell(cell);
+    index_ = cell;
     first_point_ = part * Blocks::kPartBlocks * kBlockPoints;
     first_slot_ = cell * page_.shape.blocks_per_cell * kBlockPoints + first_point_;
     has_guess_ = was_found_ = false;
-    last_pose_ = SweepPage::kNever;
+    last_pose_ = kSweepNever;
     ties_.enter_cell(cell, *cell_);
     return blocks_.enter(cell, part);
   }
@@ -137,14 +138,14 @@ class ProfileSearch {
   /// A single pose, whose open blocks are those of the level.
   CLEARWAY_HD void search_single(std::uint32_t pose, std::uint32_t level) {
     bound_ = Warp::once([&] { return load_shared(bests_.of_pose + pose); });
-    if (last_pose_ != SweepPage::kNever && last_pose_ + 1 == pose &&
+    if (last_pose_ != kSweepNever && last_pose_ + 1 == pose &&
         sweep_.motion.poses[pose] == sweep_.motion.poses[last_pose_]) {
       last_pose_ = pose;  // a stop: what was found is the same
       if (was_found_ && found_ <= bound_) keep(pose);
       return;
     }
-    last_pose_ = SweepPage::kNever;
-    if (has_guess_) lower_bound(squared_at(pose, shared_.point, shared_.model_point));
+    last_pose_ = kSweepNever;
+    if (has_guess_) lower_bound(squared_at(pose, shared_.point, shared_.element));
     if (!blocks_.look(0, pose, level, reach_of(bound_))) return;
     search_blocks(pose, level + 1);
     last_pose_ = pose;
@@ -182,21 +183,20 @@ class ProfileSearch {
 
   /// 32 points of a block, a lane a point: first what the field names as near, then what is open.
   CLEARWAY_HD void search_points(std::uint32_t pose, std::uint32_t begin) {
-    PerLane<Vec3> e, m;
+    PerLane<Vec3> e;
+    PerLane<Element> m;
     PerLane<ModelFieldRef::Bounds> bounds;
     PerLane<double> least;
     std::uint32_t open = Warp::ballot([&](std::uint32_t lane) {
       least[lane] = kInfinity;
       const std::uint32_t index = first_point_ + begin + lane;
-      if (index >= cell_->count) return false;
+      if (!page_.is_searched(index_, index)) return false;
       ++statistics_[lane].point_tests;
-      e[lane] =
-          position(quantisation_, page_.value(cell_->chunks[0], index),
-                   page_.value(cell_->chunks[1], index), page_.value(cell_->chunks[2], index));
+      e[lane] = page_.position(quantisation_, *cell_, index);
       bounds[lane] = sweep_.field.bounds(sweep_.motion.inverse_poses[pose].apply(e[lane]));
       if (!blocks_.matters(0, bounds[lane].squared_lower)) return false;
       if (bounds[lane].near != ModelFieldRef::kNone) {
-        offer(pose, e[lane], sweep_.model.points[bounds[lane].near], least[lane], m[lane]);
+        offer(pose, e[lane], sweep_.model.elements[bounds[lane].near], least[lane], m[lane]);
       }
       return true;
     });
@@ -219,12 +219,12 @@ class ProfileSearch {
     blocks_.lower_reach(reach_of(bound_));
   }
 
-  CLEARWAY_HD double squared_at(std::uint32_t pose, const Vec3& e, const Vec3& m) const {
+  CLEARWAY_HD double squared_at(std::uint32_t pose, const Vec3& e, const Element& m) const {
     return squared_distance(e, transform(sweep_.motion.poses[pose], m));
   }
 
-  CLEARWAY_HD bool offer(std::uint32_t pose, const Vec3& e, const Vec3& m, double& least,
-                         Vec3& near) const {
+  CLEARWAY_HD bool offer(std::uint32_t pose, const Vec3& e, const Element& m, double& least,
+                         Element& near) const {
     const double squared = squared_at(pose, e, m);
     if (!(squared < least)) return false;
     least = squared;
@@ -234,17 +234,16 @@ class ProfileSearch {
 
   /// Offers every model point that may have a d2 of at most the best.
   CLEARWAY_HD void search_point(std::uint32_t pose, const Vec3& e, double& least,
-                                Vec3& near) const {
+                                Element& near) const {
     const InversePose& back = sweep_.motion.inverse_poses[pose];
     const Vec3 x = back.apply(e);
     double ball = squared_ball(back, least);
     sweep_.model.any(
         [&](const Box& box) {
-          return least_squared_distance(box, x) > ball ? ModelTreeRef::Step::kSkip
-                                                       : ModelTreeRef::Step::kEnter;
+          return least_squared_distance(box, x) > ball ? ModelStep::kSkip : ModelStep::kEnter;
         },
-        [&](const Vec3& m) {
-          if (!(squared_distance(m, x) > ball) && offer(pose, e, m, least, near)) {
+        [&](const Element& m) {
+          if (!(squared_distance(x, m) > ball) && offer(pose, e, m, least, near)) {
             ball = squared_ball(back, least);
           }
           return false;
@@ -259,7 +258,7 @@ class ProfileSearch {
 
   /// The least of the lanes' d2, where nothing known is better.
   CLEARWAY_HD void take(std::uint32_t begin, PerLane<double>& least, PerLane<Vec3>& e,
-                        PerLane<Vec3>& m) {
+                        PerLane<Element>& m) {
     const double squared = Warp::least(least);
     if (!(squared <= bound_ && squared < bests_.limit)) return;
     lower_bound(squared);
@@ -273,12 +272,12 @@ class ProfileSearch {
     Warp::each([&](std::uint32_t lane) {
       if (lane != lowest_bit(lanes)) return;
       shared_.point = e[lane];
-      shared_.model_point = m[lane];
+      shared_.element = m[lane];
     });
     has_guess_ = true;
   }
 
-  const SweepRef& sweep_;
+  const SweepRefOf<Element>& sweep_;
   const PageRef& page_;
   const Quantisation& quantisation_;
   const ProfileBests& bests_;
@@ -288,11 +287,12 @@ class ProfileSearch {
   Blocks blocks_;
 
   const PageCell* cell_ = nullptr;
-  std::uint32_t first_point_ = 0;                ///< of the part, in its cell
-  std::uint32_t first_slot_ = 0;                 ///< likewise, in the page
-  double bound_ = 0;                             ///< d2 above it do not matter at this pose
-  double found_ = kInfinity;                     ///< the least d2 found at the last pose
-  std::uint32_t last_pose_ = SweepPage::kNever;  ///< that was searched, with what was found
+  std::uint32_t index_ = 0;                ///< of it, in the page
+  std::uint32_t first_point_ = 0;          ///< of the part, in its cell
+  std::uint32_t first_slot_ = 0;           ///< likewise, in the page
+  double bound_ = 0;                       ///< d2 above it do not matter at this pose
+  double found_ = kInfinity;               ///< the least d2 found at the last pose
+  std::uint32_t last_pose_ = kSweepNever;  ///< that was searched, with what was found
   bool was_found_ = false;
   bool has_guess_ = false;
 };

@@ -14,7 +14,7 @@ namespace clearway {
 /// planned motion nodes, a lane a node, and puts those that may touch the block on the page's list
 /// of entries, or where that is full the block as a whole. With clearances the points are
 /// searched at once, because only one warp may improve theirs.
-template <typename Warp, bool kClearance>
+template <typename Warp, bool kClearance, typename Element = Vec3>
 class SweepBlock {
  public:
   template <typename Value>
@@ -30,7 +30,7 @@ class SweepBlock {
     std::uint32_t joined;         ///< of them, for clearances
   };
 
-  CLEARWAY_HD SweepBlock(const SweepPage& job, std::uint32_t block, Shared& shared,
+  CLEARWAY_HD SweepBlock(const SweepPageOf<Element>& job, std::uint32_t block, Shared& shared,
                          PerLane<SweepStatistics>& statistics)
       : job_(job),
         block_(block),
@@ -40,7 +40,7 @@ class SweepBlock {
 
   CLEARWAY_HD void search() {
     clear_result();
-    if (job_.first_point(block_) >= cell_.count) return;
+    if (job_.searched(block_) == 0) return;
     const std::uint32_t per_cell = job_.page.shape.blocks_per_cell;
     const BlockBox& code = job_.page.blocks(block_ / per_cell)[block_ % per_cell];
     const Box box = position_box(job_.quantisation, decode_block_box(cell_.box, code));
@@ -53,8 +53,8 @@ class SweepBlock {
       if (lane == 0) job_.hits[block_] = 0;
       for (std::uint32_t i = lane; i < kBlockPoints; i += kWarpLanes) {
         const std::uint32_t slot = block_ * kBlockPoints + i;
-        if (job_.first_poses != nullptr) job_.first_poses[slot] = SweepPage::kNever;
-        if (kClearance) job_.clearances[slot] = Clearance{kInfinity, SweepPage::kNever};
+        if (job_.first_poses != nullptr) job_.first_poses[slot] = kSweepNever;
+        if (kClearance) job_.clearances[slot] = Clearance{kInfinity, kSweepNever};
       }
     });
   }
@@ -89,24 +89,23 @@ class SweepBlock {
     open_ -= count;
     const bool has_room = open_ + 2 * count <= kOpen;
     PerLane<std::uint32_t> at;
-    PerLane<SweepRef::BoxClass> fate;
+    PerLane<SweepBoxClass> fate;
     Warp::each([&](std::uint32_t lane) {
-      fate[lane] = SweepRef::BoxClass::kDismissed;
+      fate[lane] = SweepBoxClass::kDismissed;
       if (lane >= count) return;
       ++statistics_[lane].node_tests;
       at[lane] = shared_.open[open_ + lane];
       const MotionNode& node = job_.sweep.motion.nodes[at[lane]];
       fate[lane] = job_.sweep.classify_box(node, points, limit, job_.sweep.accepts_boxes());
-      if (fate[lane] == SweepRef::BoxClass::kSplit && !has_room)
-        fate[lane] = SweepRef::BoxClass::kKept;
+      if (fate[lane] == SweepBoxClass::kSplit && !has_room) fate[lane] = SweepBoxClass::kKept;
     });
-    const std::uint32_t accepted = Warp::ballot(
-        [&](std::uint32_t lane) { return fate[lane] == SweepRef::BoxClass::kAccepted; });
+    const std::uint32_t accepted =
+        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepBoxClass::kAccepted; });
     if (accepted != 0) return true;
     const std::uint32_t keep =
-        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepRef::BoxClass::kKept; });
+        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepBoxClass::kKept; });
     const std::uint32_t split =
-        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepRef::BoxClass::kSplit; });
+        Warp::ballot([&](std::uint32_t lane) { return fate[lane] == SweepBoxClass::kSplit; });
     Warp::each([&](std::uint32_t lane) {
       const std::uint32_t before = (1U << lane) - 1;
       if ((keep >> lane & 1) != 0) shared_.queue[queued_ + count_of(keep & before)] = at[lane];
@@ -121,10 +120,8 @@ class SweepBlock {
   }
 
   CLEARWAY_HD void mark_all() {
-    const std::uint32_t left = cell_.count - job_.first_point(block_);
-    const std::uint32_t none = left < kBlockPoints ? kBlockPoints - left : 0;
     Warp::each([&](std::uint32_t lane) {
-      if (lane == 0) job_.hits[block_] = ~std::uint64_t{0} >> none;
+      if (lane == 0) job_.hits[block_] = job_.searched(block_);
     });
   }
 
@@ -142,7 +139,7 @@ class SweepBlock {
   }
 
   CLEARWAY_HD std::uint32_t halves() const {
-    return job_.first_point(block_) + kWarpLanes < cell_.count ? 2 : 1;
+    return job_.searched(block_) >> kWarpLanes != 0 ? 2 : 1;
   }
 
   CLEARWAY_HD void empty_queue() {
@@ -159,13 +156,15 @@ class SweepBlock {
     const std::uint32_t first = SweepWork::kHalves * block_;
     for (std::uint32_t i = 0; i < halves(); ++i) {
       if (job_.sweep.hits_follow_from_clearance()) break;
-      SweepHits<Warp>(job_, statistics_).search_half(first + i, {shared_.queue, queued_}, false);
+      SweepHits<Warp, Element>(job_, statistics_)
+          .search_half(first + i, {shared_.queue, queued_}, false);
     }
     Warp::each([&](std::uint32_t lane) {
       if (lane == 0) shared_.joined = job_.sweep.motion.join_smooth(shared_.queue, queued_);
     });
     for (std::uint32_t i = 0; i < halves(); ++i) {
-      SweepClearances<Warp>(job_, first + i, statistics_).search({shared_.queue, shared_.joined});
+      SweepClearances<Warp, Element>(job_, first + i, statistics_)
+          .search({shared_.queue, shared_.joined});
     }
   }
 
@@ -198,7 +197,7 @@ class SweepBlock {
     });
   }
 
-  const SweepPage& job_;
+  const SweepPageOf<Element>& job_;
   std::uint32_t block_;
   const PageCell& cell_;
   Shared& shared_;

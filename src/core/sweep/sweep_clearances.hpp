@@ -10,13 +10,13 @@ namespace clearway {
 
 /// The clearances of the 32 points of a half block over the poses of some subtrees: improves those
 /// in the answer of the page. A lane a point; no other warp works on the same points.
-template <typename Warp>
+template <typename Warp, typename Element>
 class SweepClearances {
  public:
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  CLEARWAY_HD SweepClearances(const SweepPage& job, std::uint32_t half,
+  CLEARWAY_HD SweepClearances(const SweepPageOf<Element>& job, std::uint32_t half,
                               PerLane<SweepStatistics>& statistics)
       : job_(job),
         block_(half / SweepWork::kHalves),
@@ -29,12 +29,13 @@ class SweepClearances {
     const double limit = rounded_product(job_.sweep.clearance, job_.sweep.clearance);
     const double touching = rounded_product(job_.sweep.radius, job_.sweep.radius);
     const std::uint32_t closer = Warp::ballot([&](std::uint32_t lane) {
-      if (begin + lane >= cell_.count) return false;
+      if (!job_.is_searched(block_, first_ + lane)) return false;
       ++statistics_[lane].points_tested;
       Clearance& answer = job_.clearances[block_ * kBlockPoints + first_ + lane];
       // Pose 0, so that a tie with the limit is no improvement.
       const Clearance best = answer.squared < limit ? answer : Clearance{limit, 0};
-      PointClearance search(job_.sweep, job_.point(cell_, begin + lane), best, statistics_[lane]);
+      PointClearance<Element> search(job_.sweep, job_.point(cell_, begin + lane), best,
+                                     statistics_[lane]);
       search.search(subtrees.nodes, subtrees.count);
       if (!(search.best().squared < limit)) return false;
       answer = search.best();
@@ -47,7 +48,7 @@ class SweepClearances {
   }
 
  private:
-  const SweepPage& job_;
+  const SweepPageOf<Element>& job_;
   std::uint32_t block_;
   std::uint32_t first_;  ///< point of the block
   const PageCell& cell_;

@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-using Verdict = SweepRef::Verdict;
+using Verdict = SweepVerdict;
 
 double rounding_of(const Query& query, const MotionTree& motion, const ModelField& field,
                    const PackedCloud& cloud) {
@@ -27,8 +27,10 @@ constexpr double kOpenArea = 1;
 
 }  // namespace
 
-SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
-                         const ModelField& field, const PackedCloud& cloud, int threads)
+template <typename Element>
+SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& motion,
+                                      const ModelTreeOf<Element>& model, const ModelField& field,
+                                      const PackedCloud& cloud, int threads)
     : query_(query),
       motion_(motion),
       model_(model),
@@ -48,28 +50,34 @@ SweepFilter::SweepFilter(const Query& query, const MotionTree& motion, const Mod
     curves_ = MotionCurves(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
                            model.spacing(), threads);
     ref_.motion.curves = curves_.data();
-    wide_ = WideTree(model);
-    ref_.wide = wide_.ref();
+    if constexpr (!kIsTriangle<Element>) {
+      wide_ = WideTree(model);
+      ref_.wide = wide_.ref();
+    }
   }
   for_plan_ = ref_;
   for_plan_.field = field.ref_as_made();
 }
 
-bool SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
-                         std::vector<std::uint32_t>& out, SweepStatistics& statistics) const {
+template <typename Element>
+bool SweepFilterOf<Element>::narrow(const Box& box, std::span<const std::uint32_t> nodes,
+                                    std::vector<std::uint32_t>& out,
+                                    SweepStatistics& statistics) const {
   return narrow(ref_, box, nodes, {0, ref_.accepts_boxes()}, out, statistics);
 }
 
-void SweepFilter::narrow(const Box& box, std::span<const std::uint32_t> nodes,
-                         std::vector<std::uint32_t>& out) const {
+template <typename Element>
+void SweepFilterOf<Element>::narrow(const Box& box, std::span<const std::uint32_t> nodes,
+                                    std::vector<std::uint32_t>& out) const {
   SweepStatistics not_counted;
   narrow(for_plan_, box, nodes, {ref_.profile * kRoundedUp, false}, out, not_counted);
 }
 
 /// limits.distance: one within which every pose matters at least.
-bool SweepFilter::narrow(const SweepRef& ref, const Box& box, std::span<const std::uint32_t> nodes,
-                         Limits limits, std::vector<std::uint32_t>& out,
-                         SweepStatistics& statistics) {
+template <typename Element>
+bool SweepFilterOf<Element>::narrow(const SweepRefOf<Element>& ref, const Box& box,
+                                    std::span<const std::uint32_t> nodes, Limits limits,
+                                    std::vector<std::uint32_t>& out, SweepStatistics& statistics) {
   out.clear();
   const PointBox points(box);
   limits.distance = std::max(
@@ -82,28 +90,31 @@ bool SweepFilter::narrow(const SweepRef& ref, const Box& box, std::span<const st
   });
 }
 
-bool SweepFilter::narrow_node(const SweepRef& ref, const PointBox& points, const Limits& limits,
-                              std::uint32_t index, std::vector<std::uint32_t>& out,
-                              SweepStatistics& statistics) {
+template <typename Element>
+bool SweepFilterOf<Element>::narrow_node(const SweepRefOf<Element>& ref, const PointBox& points,
+                                         const Limits& limits, std::uint32_t index,
+                                         std::vector<std::uint32_t>& out,
+                                         SweepStatistics& statistics) {
   ++statistics.node_tests;
   const MotionNode& node = ref.motion.nodes[index];
   switch (ref.classify_box(node, points, limits.distance, limits.accept)) {
-    case SweepRef::BoxClass::kDismissed:
+    case SweepBoxClass::kDismissed:
       return false;
-    case SweepRef::BoxClass::kAccepted:
+    case SweepBoxClass::kAccepted:
       return true;
-    case SweepRef::BoxClass::kKept:
+    case SweepBoxClass::kKept:
       out.push_back(index);
       return false;
-    case SweepRef::BoxClass::kSplit:
+    case SweepBoxClass::kSplit:
       break;
   }
   return narrow_node(ref, points, limits, index + 1, out, statistics) ||
          narrow_node(ref, points, limits, node.later, out, statistics);
 }
 
-Verdict SweepFilter::test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
-                          double& squared_lower) const {
+template <typename Element>
+Verdict SweepFilterOf<Element>::test(const Vec3& e, const MotionNode& node,
+                                     SweepStatistics& statistics, double& squared_lower) const {
   const Verdict verdict = ref_.look(e, node, statistics, squared_lower);
   if (verdict != Verdict::kOpen || node.count > 1) return verdict;
   ++statistics.exact_tests;
@@ -112,8 +123,9 @@ Verdict SweepFilter::test(const Vec3& e, const MotionNode& node, SweepStatistics
 
 /// First the middle poses of all nodes, far apart ones first: most points that collide do so at one
 /// of them. Then what stayed open, in halves.
-bool SweepFilter::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
-                          SweepStatistics& statistics) const {
+template <typename Element>
+bool SweepFilterOf<Element>::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
+                                     SweepStatistics& statistics) const {
   ++statistics.points_tested;
   double squared_lower = 0;
   while (!nodes.empty()) {
@@ -138,8 +150,9 @@ bool SweepFilter::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
 }
 
 /// Tests both halves of an open node, then goes into the nearer one first.
-bool SweepFilter::touches_below(const Vec3& e, std::uint32_t index,
-                                SweepStatistics& statistics) const {
+template <typename Element>
+bool SweepFilterOf<Element>::touches_below(const Vec3& e, std::uint32_t index,
+                                           SweepStatistics& statistics) const {
   const MotionNode* nodes = motion_.nodes().data();
   std::uint32_t half[2] = {index + 1, nodes[index].later};
   double squared[2];
@@ -154,8 +167,10 @@ bool SweepFilter::touches_below(const Vec3& e, std::uint32_t index,
          (open[1 - nearer] && touches_below(e, half[1 - nearer], statistics));
 }
 
-std::uint32_t SweepFilter::first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
-                                      SweepStatistics& statistics) const {
+template <typename Element>
+std::uint32_t SweepFilterOf<Element>::first_pose(const Vec3& e,
+                                                 std::span<const std::uint32_t> nodes,
+                                                 SweepStatistics& statistics) const {
   ++statistics.points_tested;
   std::uint32_t best = HitSet::kNever;
   for (const std::uint32_t node : nodes) {
@@ -166,8 +181,10 @@ std::uint32_t SweepFilter::first_pose(const Vec3& e, std::span<const std::uint32
 }
 
 /// Lowers `best` to the least pose of the node whose way touches e, where that is less.
-void SweepFilter::first_pose_below(const Vec3& e, std::uint32_t index, std::uint32_t& best,
-                                   SweepStatistics& statistics) const {
+template <typename Element>
+void SweepFilterOf<Element>::first_pose_below(const Vec3& e, std::uint32_t index,
+                                              std::uint32_t& best,
+                                              SweepStatistics& statistics) const {
   const MotionNode& node = motion_.nodes()[index];
   if (node.first >= best) return;
   const Verdict verdict = ref_.look(e, node, statistics);
@@ -181,5 +198,8 @@ void SweepFilter::first_pose_below(const Vec3& e, std::uint32_t index, std::uint
     if (ref_.collides_at(e, node)) best = node.first;
   }
 }
+
+template class SweepFilterOf<Vec3>;
+template class SweepFilterOf<Triangle>;
 
 }  // namespace clearway

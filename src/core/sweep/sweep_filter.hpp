@@ -18,17 +18,18 @@ namespace clearway {
 
 /// The inverse query, answered for ranges of poses and boxes of environment points at once by
 /// going down the motion tree with the tests of SweepRef.
-class SweepFilter final : public PoseReach {
+template <typename Element>
+class SweepFilterOf final : public PoseReach {
  public:
   /// All arguments outlive it. cloud: for the largest coordinates, which the rounding bound needs.
   /// threads: to build with.
-  SweepFilter(const Query& query, const MotionTree& motion, const ModelTree& model,
-              const ModelField& field, const PackedCloud& cloud, int threads = 1);
+  SweepFilterOf(const Query& query, const MotionTree& motion, const ModelTreeOf<Element>& model,
+                const ModelField& field, const PackedCloud& cloud, int threads = 1);
 
   const Query& query() const { return query_; }
-  const SweepRef& ref() const { return ref_; }
+  const SweepRefOf<Element>& ref() const { return ref_; }
   const MotionTree& motion() const override { return motion_; }
-  const ModelTree& model() const { return model_; }
+  const ModelTreeOf<Element>& model() const { return model_; }
   std::uint64_t allocated_bytes() const {
     return curves_.allocated_bytes() + wide_.allocated_bytes();
   }
@@ -60,24 +61,30 @@ class SweepFilter final : public PoseReach {
     bool accept;      ///< boxes as a whole
   };
 
-  static bool narrow(const SweepRef& ref, const Box& box, std::span<const std::uint32_t> nodes,
-                     Limits limits, std::vector<std::uint32_t>& out, SweepStatistics& statistics);
-  static bool narrow_node(const SweepRef& ref, const PointBox& points, const Limits& limits,
-                          std::uint32_t node, std::vector<std::uint32_t>& out,
+  static bool narrow(const SweepRefOf<Element>& ref, const Box& box,
+                     std::span<const std::uint32_t> nodes, Limits limits,
+                     std::vector<std::uint32_t>& out, SweepStatistics& statistics);
+  static bool narrow_node(const SweepRefOf<Element>& ref, const PointBox& points,
+                          const Limits& limits, std::uint32_t node, std::vector<std::uint32_t>& out,
                           SweepStatistics& statistics);
-  SweepRef::Verdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
-                         double& squared_lower) const;
+  SweepVerdict test(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
+                    double& squared_lower) const;
   bool touches_below(const Vec3& e, std::uint32_t node, SweepStatistics& statistics) const;
   void first_pose_below(const Vec3& e, std::uint32_t node, std::uint32_t& best,
                         SweepStatistics& statistics) const;
 
   const Query& query_;
   const MotionTree& motion_;
-  const ModelTree& model_;
-  SweepRef ref_;
-  MotionCurves curves_;  ///< with a clearance
-  WideTree wide_;        ///< likewise
-  SweepRef for_plan_;    ///< makes no bricks: cells are too large to need them
+  const ModelTreeOf<Element>& model_;
+  SweepRefOf<Element> ref_;
+  MotionCurves curves_;           ///< with a clearance
+  WideTree wide_;                 ///< likewise, of points
+  SweepRefOf<Element> for_plan_;  ///< makes no bricks: cells are too large to need them
 };
+
+using SweepFilter = SweepFilterOf<Vec3>;
+
+extern template class SweepFilterOf<Vec3>;
+extern template class SweepFilterOf<Triangle>;
 
 }  // namespace clearway

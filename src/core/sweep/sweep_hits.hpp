@@ -10,13 +10,13 @@ namespace clearway {
 
 /// Which points collide at the poses of some subtrees: marks them in the answer of the page. A lane
 /// a point. Other warps may work on the same points at the same time.
-template <typename Warp>
+template <typename Warp, typename Element>
 class SweepHits {
  public:
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  CLEARWAY_HD SweepHits(const SweepPage& job, PerLane<SweepStatistics>& statistics)
+  CLEARWAY_HD SweepHits(const SweepPageOf<Element>& job, PerLane<SweepStatistics>& statistics)
       : job_(job), statistics_(statistics) {}
 
   /// The 32 points of a half block against the same subtrees: a first look at their tops, then what
@@ -24,17 +24,15 @@ class SweepHits {
   CLEARWAY_HD void search_half(std::uint32_t half, const SweepSubtrees& subtrees, bool defer) {
     defer_ = defer;
     const std::uint32_t first = half * kWarpLanes;
-    if (job_.first_point(first / kBlockPoints) + first % kBlockPoints >=
-        job_.cell_of_block(first / kBlockPoints).count) {
-      return;
-    }
+    const std::uint64_t points = job_.searched(first / kBlockPoints) >> (first % kBlockPoints);
+    if (static_cast<std::uint32_t>(points) == 0) return;
     Warp::each([&](std::uint32_t lane) { load(lane, first + lane); });
     look_at_tops<Warp>(
         subtrees, ways_, [&](std::uint32_t lane) { return wanted_[lane]; },
         [&](std::uint32_t lane, std::uint32_t at) { return look_at_top(lane, at); });
     if (!defer || !put_walks_on_list(subtrees)) walk_on(subtrees);
     const std::uint32_t hits = Warp::ballot([&](std::uint32_t lane) {
-      if (best_[lane] == SweepPage::kNever) return false;
+      if (best_[lane] == kSweepNever) return false;
       if (job_.sweep.first_pose) lower_to(job_.first_poses + slot_[lane], best_[lane]);
       return true;
     });
@@ -55,7 +53,7 @@ class SweepHits {
     });
     walk_on({nullptr, 0});
     Warp::each([&](std::uint32_t lane) {
-      if (best_[lane] == SweepPage::kNever) return;
+      if (best_[lane] == kSweepNever) return;
       if (job_.sweep.first_pose) lower_to(job_.first_poses + slot_[lane], best_[lane]);
       or_into(job_.hits + slot_[lane] / kBlockPoints,
               std::uint64_t{1} << (slot_[lane] % kBlockPoints));
@@ -66,13 +64,11 @@ class SweepHits {
   /// The point in a slot of the page, unless nothing is left to find there.
   CLEARWAY_HD void load(std::uint32_t lane, std::uint32_t slot) {
     slot_[lane] = slot;
-    best_[lane] = SweepPage::kNever;
+    best_[lane] = kSweepNever;
     wanted_[lane] = false;
     if (slot == SweepWork::kNone) return;
     const std::uint32_t block = slot / kBlockPoints;
-    const std::uint32_t index = job_.first_point(block) + slot % kBlockPoints;
-    const PageCell& cell = job_.cell_of_block(block);
-    if (index >= cell.count) return;
+    if (!job_.is_searched(block, slot % kBlockPoints)) return;
     if (job_.sweep.first_pose) {
       best_[lane] = job_.first_poses[slot];
     } else if ((job_.hits[block] >> (slot % kBlockPoints) & 1) != 0) {
@@ -80,7 +76,8 @@ class SweepHits {
     }
     wanted_[lane] = true;
     ++statistics_[lane].points_tested;
-    points_[lane] = job_.point(cell, index);
+    points_[lane] =
+        job_.point(job_.cell_of_block(block), job_.first_point(block) + slot % kBlockPoints);
   }
 
   CLEARWAY_HD void hit(std::uint32_t lane, std::uint32_t pose) {
@@ -94,9 +91,9 @@ class SweepHits {
   CLEARWAY_HD bool look_at_top(std::uint32_t lane, std::uint32_t at) {
     const MotionNode& node = job_.sweep.motion.nodes[at];
     if (node.first >= best_[lane]) return false;
-    const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node, statistics_[lane]);
-    if (verdict == SweepRef::Verdict::kDismissed) return false;
-    if (verdict == SweepRef::Verdict::kOpen) return true;
+    const SweepVerdict verdict = job_.sweep.look(points_[lane], node, statistics_[lane]);
+    if (verdict == SweepVerdict::kDismissed) return false;
+    if (verdict == SweepVerdict::kOpen) return true;
     hit(lane, job_.sweep.first_pose_of_hit(node.mid));
     return job_.sweep.first_pose && node.first < best_[lane];
   }
@@ -120,13 +117,13 @@ class SweepHits {
       way.at += size;
       return;
     }
-    const SweepRef::Verdict verdict = job_.sweep.look(points_[lane], node, statistics_[lane]);
-    if (verdict == SweepRef::Verdict::kOpen && node.count == 1) {
+    const SweepVerdict verdict = job_.sweep.look(points_[lane], node, statistics_[lane]);
+    if (verdict == SweepVerdict::kOpen && node.count == 1) {
       way.waits = true;
       return;
     }
-    way.at += verdict == SweepRef::Verdict::kDismissed ? size : 1;
-    if (verdict == SweepRef::Verdict::kHitAtMid) {
+    way.at += verdict == SweepVerdict::kDismissed ? size : 1;
+    if (verdict == SweepVerdict::kHitAtMid) {
       hit(lane, job_.sweep.first_pose_of_hit(node.mid));
     }
   }
@@ -168,7 +165,7 @@ class SweepHits {
     return room.fits();
   }
 
-  const SweepPage& job_;
+  const SweepPageOf<Element>& job_;
   PerLane<SweepStatistics>& statistics_;
   PerLane<SweepWay> ways_;
   PerLane<Vec3> points_;
@@ -179,8 +176,8 @@ class SweepHits {
 };
 
 /// The second step: puts the points of a half block to the runs of poses of an entry.
-template <typename Warp>
-CLEARWAY_HD void search_entry(const SweepPage& job, const SweepWork::Entry& entry,
+template <typename Warp, typename Element>
+CLEARWAY_HD void search_entry(const SweepPageOf<Element>& job, const SweepWork::Entry& entry,
                               typename Warp::template PerLane<SweepStatistics>& statistics) {
   if (entry.half == SweepWork::kNone) return;
   const PageCell& cell = job.cell_of_block(entry.half / SweepWork::kHalves);
@@ -189,15 +186,16 @@ CLEARWAY_HD void search_entry(const SweepPage& job, const SweepWork::Entry& entr
   std::uint32_t left = whole ? cell.node_count : entry.node_count;
   while (left > 0) {
     const std::uint32_t count = left < SweepSubtrees::kMost ? left : SweepSubtrees::kMost;
-    SweepHits<Warp>(job, statistics).search_half(entry.half, {nodes, count}, true);
+    SweepHits<Warp, Element>(job, statistics).search_half(entry.half, {nodes, count}, true);
     nodes += count;
     left -= count;
   }
 }
 
 /// The last step, after the walks: searches the model for a point and a single pose.
-CLEARWAY_HD inline void search_item(const SweepPage& job, const SweepWork::Item& item,
-                                    SweepStatistics& statistics) {
+template <typename Element>
+CLEARWAY_HD void search_item(const SweepPageOf<Element>& job, const SweepWork::Item& item,
+                             SweepStatistics& statistics) {
   if (item.point == SweepWork::kNone) return;
   const std::uint32_t block = item.point / kBlockPoints;
   const std::uint32_t bit = item.point % kBlockPoints;

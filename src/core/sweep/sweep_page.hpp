@@ -74,10 +74,13 @@ struct SweepWork {
   }
 };
 
+inline constexpr std::uint32_t kSweepNever = 0xffffffff;  ///< a first pose: there is none
+
 /// A page under search: the query, the points, and where answers and open work go, cell after
 /// cell of the page; null for what is not asked for.
-struct SweepPage {
-  SweepRef sweep;
+template <typename Element>
+struct SweepPageOf {
+  SweepRefOf<Element> sweep;
   PageRef page;
   Quantisation quantisation;
   std::uint64_t* hits;         ///< a word a block
@@ -85,7 +88,7 @@ struct SweepPage {
   Clearance* clearances;       ///< likewise
   SweepWork work;
 
-  static constexpr std::uint32_t kNever = 0xffffffff;
+  static constexpr std::uint32_t kNever = kSweepNever;
 
   CLEARWAY_HD std::uint32_t block_count() const {
     return page.shape.cells * page.shape.blocks_per_cell;
@@ -97,10 +100,20 @@ struct SweepPage {
   CLEARWAY_HD std::uint32_t first_point(std::uint32_t block) const {
     return block % page.shape.blocks_per_cell * kBlockPoints;
   }
+  /// Of a block's points those to be searched, as bits.
+  CLEARWAY_HD std::uint64_t searched(std::uint32_t block) const {
+    const std::uint32_t per_cell = page.shape.blocks_per_cell;
+    return page.searched(block / per_cell, block % per_cell);
+  }
+  CLEARWAY_HD bool is_searched(std::uint32_t block, std::uint32_t bit) const {
+    const std::uint32_t per_cell = page.shape.blocks_per_cell;
+    return page.is_searched(block / per_cell, block % per_cell * kBlockPoints + bit);
+  }
   CLEARWAY_HD Vec3 point(const PageCell& cell, std::uint32_t index) const {
-    return position(quantisation, page.value(cell.chunks[0], index),
-                    page.value(cell.chunks[1], index), page.value(cell.chunks[2], index));
+    return page.position(quantisation, cell, index);
   }
 };
+
+using SweepPage = SweepPageOf<Vec3>;
 
 }  // namespace clearway

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/geometry/model_element.hpp"
 #include "core/geometry/model_tree_ref.hpp"
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/geometry/wide_tree_ref.hpp"
@@ -38,18 +39,35 @@ struct PointBox {
       : box(of), centre(centre_of(of)), rho(half_diagonal(of)) {}
 };
 
+/// What becomes of a motion node for the points of a box.
+enum class SweepBoxClass {
+  kDismissed,  ///< no pose of the node matters
+  kAccepted,   ///< its middle pose touches every point of the box
+  kSplit,      ///< to be looked at in halves
+  kKept,       ///< fine enough for a box of this size
+};
+
+/// And for a point.
+enum class SweepVerdict {
+  kDismissed,  ///< no pose of the node touches the point, or need not
+  kHitAtMid,   ///< its middle pose does
+  kOpen,       ///< to be looked at in halves, or of a single pose: collides_at decides
+};
+
 /// The tests of the sweep on data where it lies, on the host or on a device: the inverse query
 /// at one node of the motion tree. e collides with pose i exactly when the model is closer than the
-/// radius to e pulled back by pose i. Bounds: docs/design/numerics.md ("Sweep").
-struct SweepRef {
+/// radius to e pulled back by pose i. Bounds: docs/design/numerics.md ("Sweep"). Element: what the
+/// model consists of.
+template <typename Element>
+struct SweepRefOf {
   /// A node of the motion tree is split for a box while it moves more than this many times the
   /// box's half diagonal.
   static constexpr double kMotionPerBox = 1.0;
 
   MotionTreeRef motion;
-  ModelTreeRef model;
+  ModelTreeRefOf<Element> model;
   ModelFieldRef field;
-  WideTreeRef wide;  ///< the model's points again, with a clearance
+  WideTreeRef wide;  ///< the model's points again, with a clearance; not of triangles
   double radius;     ///< whatever is closer is a hit; with a tolerance search_radius()
   double
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
@@ -64,6 +82,7 @@ struct SweepRef {
   CLEARWAY_HD bool hits_follow_from_clearance() const { return clearance >= radius && !first_pose; }
 
   CLEARWAY_HD bool moves_on(const MotionNode& node) const {
+    if constexpr (kIsTriangle<Element>) return false;
     return between_poses && node.count == 1 && node.first + 1 < motion.pose_count;
   }
 
@@ -79,12 +98,7 @@ struct SweepRef {
     return !first_pose && !(clearance > 0) && !(resolved_from < radius);
   }
 
-  enum class BoxClass {
-    kDismissed,  ///< no pose of the node matters
-    kAccepted,   ///< its middle pose touches every point of the box
-    kSplit,      ///< to be looked at in halves
-    kKept,       ///< fine enough for a box of this size
-  };
+  using BoxClass = SweepBoxClass;
 
   /// What becomes of a node for the points of a box, to which nothing beyond `limit` matters.
   /// accept: whether kAccepted is of use.
@@ -97,18 +111,21 @@ struct SweepRef {
     const ModelFieldRef::Bounds bounds = field.bounds(back.apply(centre));
     if (farther(back.least, bounds.squared_lower, reach)) return BoxClass::kDismissed;
     if (accept && rho < radius && bounds.near != ModelFieldRef::kNone &&
-        greatest_squared_distance(points.box,
-                                  transform(motion.poses[node.mid], model.points[bounds.near])) <
-            rounded_product(radius, radius)) {
+        collides_with_all(points.box,
+                          transform(motion.poses[node.mid], model.elements[bounds.near]), radius,
+                          rounding)) {
       return BoxClass::kAccepted;
     }
     const bool fine = node.delta <= kMotionPerBox * rho;
     if (node.count > 1) return fine ? BoxClass::kKept : BoxClass::kSplit;
-    const bool long_step = moves_on(node) && !fine;
-    return long_step &&
-                   !SweptStep(motion, model, node.first, radius, rounding).may_touch(centre, rho)
-               ? BoxClass::kDismissed
-               : BoxClass::kKept;
+    if constexpr (!kIsTriangle<Element>) {
+      const bool long_step = moves_on(node) && !fine;
+      if (long_step &&
+          !SweptStep(motion, model, node.first, radius, rounding).may_touch(centre, rho)) {
+        return BoxClass::kDismissed;
+      }
+    }
+    return BoxClass::kKept;
   }
 
   /// A distance beyond which nothing matters to any point within rho of `centre`: the clearance
@@ -123,7 +140,7 @@ struct SweepRef {
       const std::uint32_t near = field.bounds(motion.inverse_poses[mid].apply(centre)).near;
       if (near == ModelFieldRef::kNone) continue;
       const double here =
-          squared_distance(centre, transform(motion.poses[mid], model.points[near]));
+          squared_distance(centre, transform(motion.poses[mid], model.elements[near]));
       if (here < squared) squared = here;
     }
     const double upper = std::sqrt(squared) * kRoundedUp + rho + rounding;
@@ -132,11 +149,7 @@ struct SweepRef {
     return hits_follow_from_clearance() ? limit : greater_of(limit, radius);
   }
 
-  enum class Verdict {
-    kDismissed,  ///< no pose of the node touches e, or need not
-    kHitAtMid,   ///< its middle pose does
-    kOpen,       ///< to be looked at in halves, or of a single pose: collides_at decides
-  };
+  using Verdict = SweepVerdict;
 
   /// Looks at a node for the point e without a search of the model. squared_lower: of the field at
   /// the middle pose.
@@ -150,7 +163,7 @@ struct SweepRef {
       return Verdict::kDismissed;
     }
     if (bounds.near != ModelFieldRef::kNone &&
-        collides(e, transform(motion.poses[node.mid], model.points[bounds.near]), radius)) {
+        collides(e, transform(motion.poses[node.mid], model.elements[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
     // Not earlier, and only at single poses: the answer must not depend on the nodes looked at.
@@ -170,15 +183,20 @@ struct SweepRef {
 
   /// Whether e collides at a single pose that look() left open, or on the way from it to the next.
   CLEARWAY_HD bool collides_at(const Vec3& e, const MotionNode& node) const {
-    if (moves_on(node)) {
-      return SweptStep(motion, model, node.first, radius, rounding).touches(e);
+    if constexpr (!kIsTriangle<Element>) {
+      if (moves_on(node)) {
+        return SweptStep(motion, model, node.first, radius, rounding).touches(e);
+      }
     }
     const InversePose& back = motion.inverse_poses[node.mid];
     const Pose& pose = motion.poses[node.mid];
     const double ball = (resolved_from + rounding) / back.least * kRoundedUp;
-    return model.any_within(back.apply(e), ball * ball * kRoundedUp,
-                            [&](const Vec3& m) { return collides(e, transform(pose, m), radius); });
+    return model.any_within(back.apply(e), ball * ball * kRoundedUp, [&](const Element& m) {
+      return collides(e, transform(pose, m), radius);
+    });
   }
 };
+
+using SweepRef = SweepRefOf<Vec3>;
 
 }  // namespace clearway

@@ -13,8 +13,14 @@ namespace {
 
 /// How much larger than without thinning a distance may be, less what roundings of the predicate
 /// need. Below 0 for a tolerance smaller than these.
-double thinning_budget(const Query& query) {
-  return query.tolerance - 16 * kUnitRoundoff * query.radius - 1e-150;
+double thinning_budget(const Query& query, const Box& model) {
+  double errors = 16 * kUnitRoundoff * query.radius + 1e-150;
+  if (query.is_surface()) {  // twice that of a triangle (docs/design/numerics.md, "Triangles")
+    double stretch = 0;
+    for (const Pose& pose : query.poses) stretch = std::max(stretch, greatest_stretch_bound(pose));
+    errors += kUnitRoundoff * (16 * query.radius + 322 * stretch * 2 * half_diagonal(model));
+  }
+  return query.tolerance - errors;
 }
 
 /// How far from each other two model points may be so that no pose moves them farther apart than
@@ -178,8 +184,13 @@ std::vector<std::uint32_t> kept_points(std::span<const Vec3> model, double cover
 
 ThinnedQuery::ThinnedQuery(const Query& query) : query_({}, {}, query) {
   const Box box = box_of(query.model);
-  const double half = thinning_budget(query) / 2;
+  const double half = thinning_budget(query, box) / 2;
   query_.poses = parts_of(query.poses, kept_poses(query.poses, box, half));
+  if (query.is_surface()) {  // whose triangles are few
+    query_.model = query.model;
+    query_.triangles = query.triangles;
+    return;
+  }
   const double cover = cover_of(half, query_.poses, reach_of(box));
   query_.model = parts_of(query.model, kept_points(query.model, cover));
 }

@@ -26,7 +26,9 @@ BodySweepEngine::BodySweepEngine(const PackedCloud& cloud, const Query& query,
       pool_(cloud, query, layout),
       results_(layout.slots) {
   if (!(query.profile > 0)) return;
-  for (const SweptBody& body : bodies_) bests_.emplace_back(body.filter->ref());
+  for (const SweptBody& body : bodies_) {
+    std::visit([this](const auto* filter) { bests_.emplace_back(filter->ref()); }, body.filter);
+  }
   facts_.resize(layout.slots);
 }
 
@@ -85,48 +87,56 @@ void BodySweepEngine::select_body(std::uint32_t slot, const PageShape& shape,
 
 void BodySweepEngine::search_body(std::uint32_t slot, const PageRef& page, std::size_t body,
                                   Worker& worker) {
-  const std::size_t blocks = cloud_.blocks_per_cell(), slots = cloud_.cell_entries();
   for (std::uint32_t i = 0; i < page.shape.cells; ++i) {
     if (page.cell(i).node_count == 0) continue;
-    worker.searches[body].run(page, i, {worker.hits, worker.first_poses, worker.clearances});
-    merge(
-        body, worker,
-        {part_of_cell(pool_.hits(slot), i, blocks), part_of_cell(pool_.first_poses(slot), i, slots),
-         part_of_cell(pool_.clearances(slot), i, slots)});
+    std::visit(
+        [&](auto& search) {
+          search.run(page, i, {worker.hits, worker.first_poses, worker.clearances});
+        },
+        worker.searches[body]);
+    merge(body, worker, slot, i);
   }
 }
 
-void BodySweepEngine::merge(std::size_t body, const Worker& worker,
-                            const CellSearch::Output& output) const {
+void BodySweepEngine::merge(std::size_t body, const Worker& worker, std::uint32_t slot,
+                            std::uint32_t cell) {
+  const std::size_t blocks = cloud_.blocks_per_cell(), entries = cloud_.cell_entries();
+  const auto hits = part_of_cell(pool_.hits(slot), cell, blocks);
+  const auto first_poses = part_of_cell(pool_.first_poses(slot), cell, entries);
+  const auto clearances = part_of_cell(pool_.clearances(slot), cell, entries);
   const auto number_of = [&](std::uint32_t pose) {
     return numbers_.number(bodies_[body].path_pose[pose], static_cast<std::uint32_t>(body));
   };
-  for (std::size_t i = 0; i < output.hits.size(); ++i) output.hits[i] |= worker.hits[i];
-  for (std::size_t i = 0; i < output.first_poses.size(); ++i) {
+  for (std::size_t i = 0; i < hits.size(); ++i) hits[i] |= worker.hits[i];
+  for (std::size_t i = 0; i < first_poses.size(); ++i) {
     const std::uint32_t pose = worker.first_poses[i];
     if (pose == HitSet::kNever) continue;
-    output.first_poses[i] = std::min(output.first_poses[i], number_of(pose));
+    first_poses[i] = std::min(first_poses[i], number_of(pose));
   }
-  for (std::size_t i = 0; i < output.clearances.size(); ++i) {
+  for (std::size_t i = 0; i < clearances.size(); ++i) {
     Clearance found = worker.clearances[i];
     if (!found.found()) continue;
     found.pose = number_of(found.pose);
-    Clearance& least = output.clearances[i];
+    Clearance& least = clearances[i];
     const bool nearer = found.squared < least.squared;
     if (nearer || (found.squared == least.squared && found.pose < least.pose)) least = found;
   }
 }
 
 void BodySweepEngine::search_profile(std::uint32_t slot, const PageRef& page, std::size_t body) {
-  HostProfile search(cloud_, bodies_[body].filter->ref());
   std::vector<ProfileFact> found;
-  search.search(page, bests_[body].ref(), found);
+  const auto search_all = [&](const auto* filter) {
+    HostProfileOf search(cloud_, filter->ref());
+    search.search(page, bests_[body].ref(), found);
+    return search.take_statistics();
+  };
+  const SweepStatistics statistics = std::visit(search_all, bodies_[body].filter);
   for (ProfileFact& fact : found) {
     fact.pose = bodies_[body].path_pose[fact.pose];
     facts_[slot].push_back(fact);
   }
   const std::lock_guard lock(mutex_);
-  statistics_.add(search.take_statistics());
+  statistics_.add(statistics);
 }
 
 std::uint64_t BodySweepEngine::worker_bytes(const PackedCloud& cloud, const Query& query,
@@ -135,7 +145,9 @@ std::uint64_t BodySweepEngine::worker_bytes(const PackedCloud& cloud, const Quer
                                  (query.clearance > 0 ? sizeof(Clearance) : 0);
   return sizeof(Worker) + cloud.blocks_per_cell() * sizeof(std::uint64_t) +
          cloud.cell_entries() * an_entry +
-         query.bodies.size() * CellSearch::most_bytes(cloud, query, most_poses);
+         query.bodies.size() *
+             std::max(CellSearchOf<Vec3>::most_bytes(cloud, query, most_poses),
+                      CellSearchOf<Triangle>::most_bytes(cloud, query, most_poses));
 }
 
 /// Facts of one body, of all bodies, and twice these while their list grows.
@@ -144,8 +156,9 @@ std::uint64_t BodySweepEngine::profile_bytes(const PackedCloud& cloud, const Que
   if (!(query.profile > 0)) return 0;
   std::uint64_t bests = 0;
   for (const Body& body : query.bodies) bests += ProfileBestValues::size_bytes(body.poses.size());
+  // The same of points and of triangles.
   const std::uint64_t of_body =
-      HostProfile::most_facts(cloud, query.poses.size(), layout.cells, most_poses);
+      HostProfileOf<Vec3>::most_facts(cloud, query.poses.size(), layout.cells, most_poses);
   return bests + layout.slots * 2 * (query.bodies.size() + 1) * of_body * sizeof(ProfileFact);
 }
 
@@ -157,7 +170,13 @@ std::unique_ptr<BodySweepEngine::Worker> BodySweepEngine::take_worker() {
     return worker;
   }
   auto worker = std::make_unique<Worker>();
-  for (const SweptBody& body : bodies_) worker->searches.emplace_back(cloud_, *body.filter);
+  for (const SweptBody& body : bodies_) {
+    std::visit(
+        [&]<typename Element>(const SweepFilterOf<Element>* filter) {
+          worker->searches.emplace_back(std::in_place_type<CellSearchOf<Element>>, cloud_, *filter);
+        },
+        body.filter);
+  }
   worker->hits.resize(cloud_.blocks_per_cell());
   worker->first_poses.resize(query_.first_pose ? cloud_.cell_entries() : 0);
   worker->clearances.resize(query_.clearance > 0 ? cloud_.cell_entries() : 0);
@@ -166,7 +185,9 @@ std::unique_ptr<BodySweepEngine::Worker> BodySweepEngine::take_worker() {
 
 void BodySweepEngine::give_back(std::unique_ptr<Worker> worker) {
   const std::lock_guard lock(mutex_);
-  for (CellSearch& search : worker->searches) statistics_.add(search.take_statistics());
+  for (auto& any : worker->searches) {
+    std::visit([this](auto& search) { statistics_.add(search.take_statistics()); }, any);
+  }
   idle_.push_back(std::move(worker));
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "core/page/page_engine.hpp"
@@ -14,9 +15,12 @@
 
 namespace clearway {
 
+/// Of a body's model and its poses, by what the model consists of.
+using BodyFilter = std::variant<const SweepFilterOf<Vec3>*, const SweepFilterOf<Triangle>*>;
+
 /// A body as the engine searches it.
 struct SweptBody {
-  const SweepFilter* filter;                 ///< of the body's model and its poses
+  BodyFilter filter;
   std::span<const std::uint32_t> path_pose;  ///< of each of them
   std::uint32_t first_node;  ///< motion nodes of a page are numbered over all bodies, from here on
 };
@@ -47,7 +51,7 @@ class BodySweepEngine final : public PageEngine {
  private:
   /// What one thread searches with: a search a body, and the answer of one cell for one body.
   struct Worker {
-    std::vector<CellSearch> searches;
+    std::vector<std::variant<CellSearchOf<Vec3>, CellSearchOf<Triangle>>> searches;
     std::vector<std::uint64_t> hits;
     std::vector<std::uint32_t> first_poses;
     std::vector<Clearance> clearances;
@@ -59,7 +63,7 @@ class BodySweepEngine final : public PageEngine {
   void select_body(std::uint32_t slot, const PageShape& shape, const NodeRanges& ranges,
                    std::size_t body);
   void search_body(std::uint32_t slot, const PageRef& page, std::size_t body, Worker& worker);
-  void merge(std::size_t body, const Worker& worker, const CellSearch::Output& output) const;
+  void merge(std::size_t body, const Worker& worker, std::uint32_t slot, std::uint32_t cell);
   void search_profile(std::uint32_t slot, const PageRef& page, std::size_t body);
   std::unique_ptr<Worker> take_worker();
   void give_back(std::unique_ptr<Worker> worker);

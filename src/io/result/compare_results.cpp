@@ -2,6 +2,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
+#include "core/query/ignored_text.hpp"
 #include "io/result/result_cursor.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/xxh64.hpp"
@@ -43,6 +44,18 @@ std::string bodies_text(const ResultHeader& header) {
   std::string text;
   for (const std::string& body : header.bodies) text += (text.empty() ? "" : ", ") + body;
   return text.empty() ? "one model" : text;
+}
+
+std::string ignored_lists_text(const ResultHeader& header) {
+  if (!header.ignores_points()) return "none";
+  std::string text;
+  if (!header.ignore_classes.empty()) {
+    QueryParameters classes;
+    classes.ignore_classes = header.ignore_classes;
+    text = ignored_text(classes) + " of classes with hash " + hash_text(header.classes_hash);
+  }
+  if (header.ignore_boxes.empty()) return text;
+  return text + (text.empty() ? "" : ", ") + "boxes " + boxes_text(header.ignore_boxes);
 }
 
 class Merge {
@@ -148,8 +161,11 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
   const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
     if (text_a != text_b) out.push_back({std::move(what), std::move(text_a), std::move(text_b)});
   };
-  differ("model", content_text(a.model_points, "points", a.model_hash),
-         content_text(b.model_points, "points", b.model_hash));
+  const auto model_text = [](const ResultHeader& of) {
+    return of.model_triangles > 0 ? content_text(of.model_triangles, "triangles", of.model_hash)
+                                  : content_text(of.model_points, "points", of.model_hash);
+  };
+  differ("model", model_text(a), model_text(b));
   differ("bodies", bodies_text(a), bodies_text(b));
   differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
          content_text(b.poses, "poses", b.trajectory_hash));
@@ -161,6 +177,7 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
          b.between_poses ? "between poses" : "at poses only");
   differ("tolerance", tolerance_text(a), tolerance_text(b));
   differ("precision", a.float_precision ? "float" : "exact", b.float_precision ? "float" : "exact");
+  differ("ignored points", ignored_lists_text(a), ignored_lists_text(b));
   differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
   differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
   return out;

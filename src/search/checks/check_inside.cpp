@@ -75,7 +75,7 @@ void check_inside(const Question& question, MessageLog& log) {
   // A rough ground that reaches into the model touches it too, and so is in the result.
   if (count < kFewInside || count < in_box.size() - untouched(question, in_box)) return;
   log.warn("inside-model",
-           "at pose 0 about " + format_count(count) +
+           "at pose " + std::to_string(question.number_of(0)) + " about " + format_count(count) +
                " scanned points lie inside the model and do not touch it: only its surface is "
                "tested. Does it stand on an obstacle there? Let the path begin outside of it, or "
                "give a model that is filled with points",

@@ -36,21 +36,21 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
                       MessageLog& log) {
   const double share =
       static_cast<double>(cover.outside()) / static_cast<double>(cover.looked_at());
+  const std::uint32_t first = question.number_of(cover.first_outside());
+  const std::uint32_t last = question.number_of(cover.last_outside());
   std::string text = "nothing was scanned within " + length_text(cover.reach(), question.unit) +
                      " of the model at " + share_text(share) + " of the poses, between pose " +
-                     std::to_string(cover.first_outside()) + " and pose " +
-                     std::to_string(cover.last_outside()) + ": there the result says nothing. ";
+                     std::to_string(first) + " and pose " + std::to_string(last) +
+                     ": there the result says nothing. ";
   constexpr double kWrongFrame = 0.5;
   if (share >= kWrongFrame) {
     text += boxes_text(question, swept) + ". " + likely_remedy(question, cover);
   } else {
     text += "Scan the rest of the way, or leave these poses out";
   }
-  log.warn("leaves-scan", text,
-           {{"share", share},
-            {"reach", cover.reach()},
-            {"first_pose", cover.first_outside()},
-            {"last_pose", cover.last_outside()}});
+  log.warn(
+      "leaves-scan", text,
+      {{"share", share}, {"reach", cover.reach()}, {"first_pose", first}, {"last_pose", last}});
 }
 
 }  // namespace

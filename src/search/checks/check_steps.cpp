@@ -32,8 +32,11 @@ void check_steps(const Question& question, MessageLog& log) {
   const double reach = std::sqrt(squared_length(far.x, far.y, far.z));
   std::uint64_t large = 0;
   double largest = 0;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i + 1 < query.poses.size(); ++i) {
+  std::uint64_t steps = 0;
+  std::uint32_t at = 0;
+  for (std::uint32_t i = 0; i + 1 < query.poses.size(); ++i) {
+    if (question.number_of(i + 1) != question.number_of(i) + 1) continue;  // it is not there
+    ++steps;
     const Pose &a = query.poses[i], &b = query.poses[i + 1];
     if (coarse_bound(a, b, reach) <= query.radius) continue;
     const double step = displacement_bound(question.model, a, b);
@@ -41,11 +44,10 @@ void check_steps(const Question& question, MessageLog& log) {
     ++large;
     if (step > largest) {
       largest = step;
-      at = i;
+      at = question.number_of(i);
     }
   }
   if (large == 0) return;
-  const std::uint64_t steps = query.poses.size() - 1;
   log.warn("large-steps",
            "at " + format_count(large) + " of " + format_count(steps) +
                " steps the model moves farther than the radius of " +

@@ -1,5 +1,9 @@
 #include "search/checks/query_warnings.hpp"
 
+#include <algorithm>
+
+#include "io/model/sample_mesh.hpp"
+#include "search/checks/body_messages.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/words.hpp"
 
@@ -40,44 +44,63 @@ void note_sizes(const Question& question, MessageLog& log) {
            length_text(question.query.radius, question.unit));
 }
 
-/// What can be said of one body, whatever the others are. Whether the ground is below it, or the
-/// scan beside it, would have to be asked of the vehicle as a whole.
-void warn_of_body(const StoreReader& store, const Query& query, LengthUnit unit, MessageLog& log) {
-  const Question question(store, unit, query);
+/// What a model is for the checks that look at it from outside.
+enum class ModelForm { kPoints, kSurface, kCoarseSurface };
+
+/// Points of the surface, as close as the radius asks for where these are not too many.
+Query sampled(const Query& query, ModelForm& view) {
+  constexpr double kMostSamples = 1e5;
+  const TriangleMesh mesh{query.model, query.triangles};
+  const double spacing = std::max(spacing_for(mesh, kMostSamples), query.radius);
+  view = spacing > query.radius ? ModelForm::kCoarseSurface : ModelForm::kSurface;
+  return {sample_mesh(mesh, spacing, "the model"), query.poses, query};
+}
+
+void check_model_itself(const Question& question, ModelForm view, MessageLog& log) {
+  const bool close = view != ModelForm::kCoarseSurface;  // else gaps are those of the samples
+  if (close) check_inside(question, log);
+  check_model(question, log);
+  if (close) check_open_model(question, log);
+  if (view == ModelForm::kPoints) check_model_spacing(question, log);
+}
+
+/// What can be said of one body. Whether that matters depends on the others.
+void warn_of_body(const StoreReader& store, const Body& body, const Query& query, MessageLog& log) {
+  if (body.poses.empty()) {
+    log.warn("no-poses", "has no poses: it cannot collide");
+    return;
+  }
+  ModelForm form = ModelForm::kPoints;
+  Query own(body.model, body.poses, query);
+  own.triangles = body.triangles;
+  if (own.is_surface()) own = sampled(own, form);
+  const Question question(store, store.metadata().unit, own, body.path_pose);
   note_sizes(question, log);
   const PathCover cover(question);
   check_reach(question, cover, log);
-  check_model(question, log);
-  check_model_spacing(question, log);
+  check_height(question, log);
+  check_surroundings(question, cover, false, log);
+  check_model_itself(question, form, log);
   check_radius(question, log);
   check_steps(question, log);
+  check_heading(question, log);
 }
 
-void warn_of_bodies(const StoreReader& store, const Query& query, LengthUnit unit,
-                    MessageLog& log) {
+void warn_of_bodies(const StoreReader& store, const Query& query, MessageLog& log) {
+  std::vector<BodyMessages> told;
   for (const Body& body : query.bodies) {
-    if (body.poses.empty()) {
-      log.warn("no-poses", "body " + body.name + " has no poses: it cannot collide");
-      continue;
-    }
-    const std::string name = "body " + body.name + ": ";
-    std::vector<Message> none;
-    const MessageCallback named = [&](Message message) {
-      message.text = name + message.text;
-      if (message.severity == Message::Severity::kNote) {
-        log.note(std::move(message.text));
-      } else {
-        log.add(std::move(message));
-      }
+    told.push_back({body.name, {}});
+    const MessageCallback keep = [&](const Message& message) {
+      told.back().messages.push_back(message);
     };
-    MessageLog body_log(named, none);
-    warn_of_body(store, Query(body.model, body.poses, query), unit, body_log);
+    std::vector<Message> unused;
+    MessageLog own(keep, unused);
+    warn_of_body(store, body, query, own);
   }
+  tell_of_bodies(told, log);
 }
 
-}  // namespace
-
-void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
+void warn_of_points(const StoreReader& store, const Query& query, ModelForm view, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;
   if (query.poses.empty()) {
     log.warn("no-poses", "the trajectory has no poses: nothing can collide");
@@ -92,7 +115,9 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
     log.note("the trajectory has one pose: the model is checked at that place alone");
   }
   if (!query.bodies.empty()) {
-    warn_of_bodies(store, query, unit, log);
+    const Query path({Vec3{}}, query.poses, query);
+    warn_of_flat_scan(Question(store, unit, path), log);
+    warn_of_bodies(store, query, log);
     return;
   }
   const Question question(store, unit, query);
@@ -102,13 +127,19 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
   check_reach(question, cover, log);
   const bool floats = check_height(question, log);
   check_surroundings(question, cover, floats, log);
-  check_inside(question, log);
-  check_model(question, log);
-  check_open_model(question, log);
-  check_model_spacing(question, log);
+  check_model_itself(question, view, log);
   check_radius(question, log);
   check_steps(question, log);
   check_heading(question, log);
+}
+
+}  // namespace
+
+void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
+  if (!query.is_surface()) return warn_of_points(store, query, ModelForm::kPoints, log);
+  ModelForm view{};
+  const Query points = sampled(query, view);
+  warn_of_points(store, points, view, log);
 }
 
 }  // namespace clearway

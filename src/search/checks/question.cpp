@@ -14,10 +14,11 @@ constexpr double kFoot = 0.3048;
 }  // namespace
 
 Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
-                   const Query& asked)
+                   const Query& asked, std::span<const std::uint32_t> numbers)
     : cloud(environment_points),
       unit(length_unit),
       query(asked),
+      path_pose(numbers),
       environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
       model(box_of(query.model)),
       metre(unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? 1 / kFoot : 1) {}

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/box.hpp"
@@ -11,11 +14,19 @@ namespace clearway {
 /// What the checks of a query look at. Owns nothing.
 struct Question {
   /// The environment has a point, the model too, the trajectory a pose.
-  Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked);
+  /// path_pose: of a body, as Body has it.
+  Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked,
+           std::span<const std::uint32_t> path_pose = {});
+
+  /// What users know a pose as.
+  std::uint32_t number_of(std::uint32_t pose) const {
+    return path_pose.empty() ? pose : path_pose[pose];
+  }
 
   const PackedCloud& cloud;
   LengthUnit unit;
   const Query& query;
+  std::span<const std::uint32_t> path_pose;
   Box environment;  ///< of all points
   Box model;        ///< in its own frame
   double metre;     ///< in the environment's unit

@@ -4,9 +4,18 @@
 
 #include "core/util/format.hpp"
 #include "cpu/bodies/body_sweep_engine.hpp"
-#include "search/body_queries.hpp"
+#include "search/bodies/body_queries.hpp"
 
 namespace clearway {
+namespace {
+
+/// What cpu_sweep_kind()'s index is.
+BodyFilter filter_of(const PoseReach& reach, const Query& body) {
+  if (body.is_surface()) return &dynamic_cast<const SweepFilterOf<Triangle>&>(reach);
+  return &dynamic_cast<const SweepFilterOf<Vec3>&>(reach);
+}
+
+}  // namespace
 
 CpuBodyKind::CpuBodyKind(const StoreReader& store, const Query& query, const SearchOptions& options)
     : PageEngineKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
@@ -16,7 +25,7 @@ CpuBodyKind::CpuBodyKind(const StoreReader& store, const Query& query, const Sea
       options_(options),
       queries_(body_queries(query)) {
   for (const Query& body : queries_) {
-    sweeps_.push_back(std::make_unique<CpuSweepKind>(store_, body, options_));
+    sweeps_.push_back(cpu_sweep_kind(store_, body, options_));
     if (sweeps_.size() == 1) continue;
     trees_.push_back(std::make_unique<QueryTrees>(body, options_.threads));
   }
@@ -33,17 +42,16 @@ std::vector<PageEngineKind::IndexSize> CpuBodyKind::index_sizes() const {
 }
 
 const PoseReach& CpuBodyKind::build_index(const QueryTrees& trees, std::uint64_t most_bytes) {
-  filters_.clear();
+  reaches_.clear();
   first_nodes_.clear();
   std::uint32_t nodes = 0;
   for (std::size_t body = 0; body < sweeps_.size(); ++body) {
     const QueryTrees& its = body == 0 ? trees : *trees_[body - 1];
-    const PoseReach& reach = sweeps_[body]->build_index(its, most_bytes / sweeps_.size());
-    filters_.push_back(&dynamic_cast<const SweepFilter&>(reach));
+    reaches_.push_back(&sweeps_[body]->build_index(its, most_bytes / sweeps_.size()));
     first_nodes_.push_back(nodes);
     nodes += static_cast<std::uint32_t>(its.motion.nodes().size());
   }
-  return *filters_.front();
+  return *reaches_.front();
 }
 
 /// The cells of all bodies, each with the nodes of one body after the other, in the order in which
@@ -54,11 +62,11 @@ std::vector<PlannedCell> CpuBodyKind::plan_cells(const PackedCloud& cloud, const
     std::uint32_t first_pose = ~std::uint32_t{0};
   };
   std::vector<Reached> reached(cloud.cells().size());
-  for (std::size_t body = 0; body < filters_.size(); ++body) {
-    for (const PlannedCell& planned : plan(cloud, *filters_[body])) {
+  for (std::size_t body = 0; body < reaches_.size(); ++body) {
+    for (const PlannedCell& planned : plan(cloud, *reaches_[body])) {
       Reached& of = reached[planned.cell];
       of.cell.cell = planned.cell;
-      const std::uint32_t pose = filters_[body]->motion().nodes()[planned.nodes.front()].first;
+      const std::uint32_t pose = reaches_[body]->motion().nodes()[planned.nodes.front()].first;
       of.first_pose = std::min(of.first_pose, query_.bodies[body].path_pose[pose]);
       of.cell.nodes.reserve(of.cell.nodes.size() + planned.nodes.size());
       for (const std::uint32_t node : planned.nodes) {
@@ -81,7 +89,7 @@ std::uint64_t CpuBodyKind::most_poses(const MotionTree&, std::span<const Planned
     for (const std::uint32_t node : cell.nodes) {
       const auto after = std::ranges::upper_bound(first_nodes_, node);
       const auto body = static_cast<std::size_t>(after - first_nodes_.begin()) - 1;
-      poses += filters_[body]->motion().nodes()[node - first_nodes_[body]].count;
+      poses += reaches_[body]->motion().nodes()[node - first_nodes_[body]].count;
     }
     most = std::max(most, poses);
   }
@@ -113,8 +121,9 @@ void CpuBodyKind::report_index(SearchReport& report, const MessageLog& log) cons
 
 PageEngines CpuBodyKind::make(const SlotLayout& layout) {
   std::vector<SweptBody> bodies;
-  for (std::size_t body = 0; body < filters_.size(); ++body) {
-    bodies.push_back({filters_[body], query_.bodies[body].path_pose, first_nodes_[body]});
+  for (std::size_t body = 0; body < reaches_.size(); ++body) {
+    bodies.push_back({filter_of(*reaches_[body], queries_[body]), query_.bodies[body].path_pose,
+                      first_nodes_[body]});
   }
   PageEngines engines;
   engines.push_back(std::make_unique<BodySweepEngine>(store_, query_, std::move(bodies), layout));
@@ -123,7 +132,7 @@ PageEngines CpuBodyKind::make(const SlotLayout& layout) {
 
 void CpuBodyKind::report_search(const PageEngines& engines, SearchReport& report,
                                 const MessageLog& log) const {
-  CpuSweepKind::report_statistics(
+  SweepKindOf<Vec3>::report_statistics(
       dynamic_cast<const BodySweepEngine&>(*engines.front()).statistics(), report, log);
 }
 

@@ -33,11 +33,11 @@ class CpuBodyKind final : public PageEngineKind {
   const StoreReader& store_;
   const Query& query_;
   const SearchOptions& options_;
-  std::vector<Query> queries_;                         ///< by body
-  std::vector<std::unique_ptr<QueryTrees>> trees_;     ///< of all bodies but the first
-  std::vector<std::unique_ptr<CpuSweepKind>> sweeps_;  ///< by body
-  std::vector<const SweepFilter*> filters_;            ///< likewise, once there is an index
-  std::vector<std::uint32_t> first_nodes_;             ///< of each body's motion nodes
+  std::vector<Query> queries_;                           ///< by body
+  std::vector<std::unique_ptr<QueryTrees>> trees_;       ///< of all bodies but the first
+  std::vector<std::unique_ptr<PageEngineKind>> sweeps_;  ///< by body
+  std::vector<const PoseReach*> reaches_;                ///< likewise, once there is an index
+  std::vector<std::uint32_t> first_nodes_;               ///< of each body's motion nodes
 };
 
 }  // namespace clearway

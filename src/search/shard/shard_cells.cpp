@@ -5,7 +5,7 @@
 #include <span>
 
 #include "io/system/xxh64.hpp"
-#include "search/body_queries.hpp"
+#include "search/bodies/body_queries.hpp"
 #include "search/memory_budget.hpp"
 #include "search/query_trees.hpp"
 #include "search/shard/cell_work.hpp"
@@ -52,7 +52,7 @@ ShardCells::ShardCells(const StoreReader& store, const Query& query, const Shard
     if (own_[cell]) own += static_cast<double>(work[cell]);
   }
   if (all > 0) share_ = own * shard.count / all;
-  part_ = {shard, division_of(store, parts), to_string(store.metadata().unit)};
+  part_ = {shard, division_of(store, parts), store.fingerprint(), to_string(store.metadata().unit)};
 }
 
 }  // namespace clearway

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstring>
-#include <list>
-#include <optional>
 #include <utility>
 
 #include "core/query/search_result.hpp"
-#include "core/sweep/tolerance.hpp"
 #include "cpu/brute_force.hpp"
 #include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
-#include "stream/plan.hpp"
-#include "stream/run_pages.hpp"
 #include "support/engines/check_profile.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/engines/host_sweep.hpp"
@@ -28,19 +22,22 @@ SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads) {
 
 SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads) {
   return run_sweep(cloud, query, threads,
-                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
-                     return std::make_unique<SweepEngine>(of, filter, layout);
+                   []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
+                                        const SlotLayout& layout) {
+                     return std::make_unique<SweepEngineOf<Element>>(of, filter, layout);
                    });
 }
 
 /// The bodies of the CUDA engine as loops, with lists of open work from ample to none.
 SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
   return run_sweep(cloud, query, threads,
-                   [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
+                   []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
+                                        const SlotLayout& layout) {
                      const std::uint32_t entries = layout.slots % 3 == 0   ? 0
                                                    : layout.slots % 3 == 1 ? 50
                                                                            : 100'000;
-                     return std::make_unique<HostSweep>(of, filter.ref(), layout, entries);
+                     return std::make_unique<HostSweepOf<Element>>(of, filter.ref(), layout,
+                                                                   entries);
                    });
 }
 
@@ -48,10 +45,10 @@ SearchResult grid(const PackedCloud& cloud, const Query& query, int threads) {
   return {run_grid(cloud, query, {.threads = threads}), ClearanceSet()};
 }
 
-std::vector<Engine> under_test{{"kdtree", kdtree, true, false, false},
-                               {"sweep", sweep, true, true, true},
-                               {"sweep as on CUDA", sweep_as_on_cuda, true, true, true},
-                               {"grid", grid, false, false, false}};
+std::vector<Engine> under_test{{"kdtree", kdtree, true, false, false, false},
+                               {"sweep", sweep, true, true, true, true},
+                               {"sweep as on CUDA", sweep_as_on_cuda, true, true, true, true},
+                               {"grid", grid, false, false, false, false}};
 
 /// Three for every fifth run, else one: in scenes this small, threads mostly wait for each other.
 /// The runs of a scene are no multiple of five, so every engine and kind of query has its turn.
@@ -60,56 +57,12 @@ int next_threads() {
   return ++runs % 5 == 0 ? 3 : 1;
 }
 
-/// A model with its tree and field, which many runs of a scene share.
-class PreparedModel {
- public:
-  PreparedModel(const Query& query, int threads, bool whole)
-      : points_(query.model),
-        radius_(search_radius(query)),
-        reach_(reach_of(query)),
-        threads_(threads),
-        tree_(points_),
-        whole_(whole),
-        field_(tree_, radius_, {.reach = reach_, .by_need = !whole}, threads) {}
-  PreparedModel(const PreparedModel&) = delete;
-  PreparedModel& operator=(const PreparedModel&) = delete;
-
-  bool is_for(const Query& query, int threads, bool whole) const {
-    return whole_ == whole && radius_ == search_radius(query) && reach_ == reach_of(query) &&
-           threads_ == threads && std::ranges::equal(points_, query.model, same_bits);
-  }
-  const ModelTree& tree() const { return tree_; }
-  const ModelField& field() const { return field_; }
-
- private:
-  static double reach_of(const Query& query) { return std::max(query.clearance, query.profile); }
-
-  /// A field is the same only for the very same numbers, the sign of a zero included.
-  static bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-  std::vector<Vec3> points_;
-  double radius_, reach_;
-  int threads_;
-  ModelTree tree_;
-  bool whole_;
-  ModelField field_;
-};
-
-/// That of an earlier run, where one of the last four had the same. Valid until the next call.
-const PreparedModel& prepared_model(const Query& query, int threads, bool whole) {
-  static std::list<PreparedModel> last;
-  for (const PreparedModel& model : last) {
-    if (model.is_for(query, threads, whole)) return model;
-  }
-  if (last.size() == 4) last.pop_back();
-  return last.emplace_front(query, threads, whole);
-}
-
 /// First poses by brute force, at poses and between them.
 struct Expected {
   Expected(const std::vector<Vec3>& positions, Query query) {
     query.between_poses = false;
     at_poses = brute_force_first_poses(positions, query);
+    if (query.is_surface()) return;
     query.between_poses = true;
     between_poses = brute_force_first_poses(positions, query);
   }
@@ -123,6 +76,7 @@ std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uin
   for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
   for (const Engine& engine : engines()) {
     if (query.between_poses && !engine.between_poses) continue;
+    if (query.is_surface() && !engine.surfaces) continue;
     for (const bool first_pose : {false, true}) {
       query.first_pose = first_pose;
       const int threads = next_threads();
@@ -191,42 +145,51 @@ Query with_clearance(Query query, double clearance, bool first_pose) {
 }
 
 std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Query query) {
-  query.between_poses = true;
-  const std::uint64_t swept = check_results(cloud, expected.between_poses, query);
   query.between_poses = false;
   const std::uint64_t colliding = check_results(cloud, expected.at_poses, query);
-  CHECK(swept >= colliding);
+  if (query.is_surface()) return colliding;
+  query.between_poses = true;
+  CHECK(check_results(cloud, expected.between_poses, query) >= colliding);
   return colliding;
+}
+
+/// Which points a query ignores, by its own words.
+std::vector<bool> ignored_by(const Query& query, const std::vector<Vec3>& positions,
+                             std::span<const std::uint8_t> classes) {
+  std::vector<bool> ignored;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3& p = positions[i];
+    const bool by_class = std::ranges::count(query.ignore_classes, classes[i]) > 0;
+    const bool by_box = std::ranges::any_of(query.ignore_boxes, [&p](const Box& box) {
+      return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y &&
+             p.z >= box.lo.z && p.z <= box.hi.z;
+    });
+    ignored.push_back(by_class || by_box);
+  }
+  return ignored;
+}
+
+/// By brute force, as if the ignored points were not there.
+std::vector<NearestPoint> nearest_of_searched(const std::vector<Vec3>& positions,
+                                              const std::vector<bool>& ignored,
+                                              const Query& query) {
+  std::vector<Vec3> searched;
+  std::vector<std::uint64_t> sources;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (ignored[i]) continue;
+    searched.push_back(positions[i]);
+    sources.push_back(i);
+  }
+  std::vector<NearestPoint> nearest = nearest_points(searched, query);
+  for (NearestPoint& point : nearest) {
+    if (point.source < sources.size()) point.source = sources[point.source];
+  }
+  return nearest;
 }
 
 }  // namespace
 
 std::span<const Engine> engines() { return under_test; }
-
-SearchResult run_sweep(const PackedCloud& cloud, const Query& asked, int threads,
-                       const MakeSweep& make, bool whole_field) {
-  NoProgress progress;
-  std::optional<ThinnedQuery> thinned;
-  if (asked.tolerance > 0) thinned.emplace(asked);
-  const Query& query = thinned ? thinned->query() : asked;
-  if (query.model.empty()) {
-    return {HitSet(cloud.entry_count(), query.first_pose), ClearanceSet(cloud.entry_count())};
-  }
-  const PreparedModel& prepared = prepared_model(query, threads, whole_field);
-  const ModelTree& model = prepared.tree();
-  const ModelField& field = prepared.field();
-  const MotionTree motion(query.poses, model.box(), query.between_poses);
-  const SweepFilter filter(query, motion, model, field, cloud);
-  const std::vector<PlannedCell> cells = plan(cloud, filter);
-  const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
-                          .page_bytes = 2 * smallest_page_bytes(cloud, cells),
-                          .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
-  const std::unique_ptr<PageEngine> engine = make(filter, cloud, layout);
-  PageEngine* const engines[] = {engine.get()};
-  StageTimes times;
-  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), engines,
-                   query, threads, progress, times);
-}
 
 void test_only(std::vector<Engine> engines) { under_test = std::move(engines); }
 
@@ -251,10 +214,21 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
 
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query) {
+  return check_engines(points, std::vector<std::uint8_t>(points.size()), quantisation, query);
+}
+
+std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
+                            const Quantisation& quantisation, const Query& query) {
   const auto environment = positions_of(points, quantisation);
-  const Expected expected(environment, query);
-  const Oracle least = brute_force_clearances(environment, query);
-  const std::vector<NearestPoint> nearest = nearest_points(environment, query);
+  const std::vector<bool> ignored = ignored_by(query, environment, classes);
+  Expected expected(environment, query);
+  Oracle least = brute_force_clearances(environment, query);
+  for (std::size_t i = 0; i < ignored.size(); ++i) {
+    if (!ignored[i]) continue;
+    expected.at_poses[i] = expected.between_poses[i] = HitSet::kNever;
+    least[i] = {};
+  }
+  const std::vector<NearestPoint> nearest = nearest_of_searched(environment, ignored, query);
   std::uint64_t colliding = 0;
   double of_radius = 0.4;
   bool first_pose = false;
@@ -262,7 +236,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
   for (const MemoryCloudOptions& packing :
        {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
         MemoryCloudOptions{128, 500}}) {
-    const MemoryCloud cloud(points, quantisation, packing);
+    const MemoryCloud cloud(points, classes, quantisation, packing);
     colliding = check_packed(cloud, expected, query);
     check_clearances(cloud, least, expected.at_poses,
                      with_clearance(query, of_radius * query.radius, first_pose));

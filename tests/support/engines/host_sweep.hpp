@@ -14,11 +14,12 @@
 namespace clearway {
 
 /// The CUDA sweep engine's bodies in the order of its kernels, with the lanes of a warp as a loop.
-class HostSweep final : public PageEngine {
+template <typename Element>
+class HostSweepOf final : public PageEngine {
  public:
   /// entries: room on each list of open work.
-  HostSweep(const PackedCloud& cloud, const SweepRef& sweep, const SlotLayout& layout,
-            std::uint32_t entries)
+  HostSweepOf(const PackedCloud& cloud, const SweepRefOf<Element>& sweep, const SlotLayout& layout,
+              std::uint32_t entries)
       : sweep_(sweep),
         quantisation_(cloud.quantisation()),
         pool_(cloud, query_of(sweep), layout),
@@ -33,13 +34,13 @@ class HostSweep final : public PageEngine {
   PageResult finish(std::uint32_t slot) override { return results_[slot]; }
 
   void start(std::uint32_t slot, const PageShape& shape) override {
-    SweepPage job{.sweep = sweep_,
-                  .page = {pool_.page(slot).data(), shape},
-                  .quantisation = quantisation_,
-                  .hits = pool_.hits(slot).data(),
-                  .first_poses = pool_.first_poses(slot).data(),
-                  .clearances = pool_.clearances(slot).data(),
-                  .work = {}};
+    SweepPageOf<Element> job{.sweep = sweep_,
+                             .page = {pool_.page(slot).data(), shape},
+                             .quantisation = quantisation_,
+                             .hits = pool_.hits(slot).data(),
+                             .first_poses = pool_.first_poses(slot).data(),
+                             .clearances = pool_.clearances(slot).data(),
+                             .work = {}};
     const std::uint32_t blocks = job.block_count();
     std::vector<std::uint32_t> nodes(2 * std::size_t{entries_});
     std::vector<SweepWork::Entry> entries(entries_ + 2 * blocks);
@@ -54,56 +55,63 @@ class HostSweep final : public PageEngine {
 
  private:
   /// As on a device, whose list may be too short.
-  void search_profile(std::uint32_t slot, const SweepPage& job) {
+  void search_profile(std::uint32_t slot, const SweepPageOf<Element>& job) {
     std::vector<ProfileFact>& facts = facts_[slot];
     facts.assign(entries_, {});
     ProfileCounts counts{};
     const ProfileList list{facts.data(), &counts, entries_};
     HostWarp::PerLane<SweepStatistics> statistics;
-    ProfileTask<HostWarp>::Shared shared;
-    for (std::uint32_t task = 0; task < ProfileTask<HostWarp>::count(job.page.shape); ++task) {
-      ProfileTask<HostWarp>(job, bests_.ref(), list, shared, statistics).search(task);
+    typename ProfileTask<HostWarp, Element>::Shared shared;
+    for (std::uint32_t task = 0; task < ProfileTask<HostWarp, Element>::count(job.page.shape);
+         ++task) {
+      ProfileTask<HostWarp, Element>(job, bests_.ref(), list, shared, statistics).search(task);
     }
     const std::lock_guard lock(mutex_);
-    profile_.complete(job.page, counts.facts, facts);
+    if (counts.facts > entries_) {
+      facts.clear();
+      profile_.search(job.page, bests_.ref(), facts);
+    } else {
+      facts.resize(counts.facts);
+      profile_.complete(job.page, facts);
+    }
     results_[slot].profile = facts;
   }
 
-  static Query query_of(const SweepRef& sweep) {
+  static Query query_of(const SweepRefOf<Element>& sweep) {
     Query query;
     query.first_pose = sweep.first_pose;
     query.clearance = sweep.clearance;
     return query;
   }
 
-  static void run(const SweepPage& job) {
+  static void run(const SweepPageOf<Element>& job) {
     HostWarp::PerLane<SweepStatistics> statistics;
     for (std::uint32_t block = 0; block < job.block_count(); ++block) {
       if (job.clearances != nullptr) {
-        SweepBlock<HostWarp, true>::Shared shared;
-        SweepBlock<HostWarp, true>(job, block, shared, statistics).search();
+        typename SweepBlock<HostWarp, true, Element>::Shared shared;
+        SweepBlock<HostWarp, true, Element>(job, block, shared, statistics).search();
       } else {
-        SweepBlock<HostWarp, false>::Shared shared;
-        SweepBlock<HostWarp, false>(job, block, shared, statistics).search();
+        typename SweepBlock<HostWarp, false, Element>::Shared shared;
+        SweepBlock<HostWarp, false, Element>(job, block, shared, statistics).search();
       }
     }
     for (std::uint32_t i = 0; i < job.work.entry_count(); ++i) {
       search_entry<HostWarp>(job, job.work.entry(i), statistics);
     }
     for (std::uint32_t i = 0; i < job.work.walk_count(); i += kWarpLanes) {
-      SweepHits<HostWarp>(job, statistics).search_walks(i, job.work.walk_count());
+      SweepHits<HostWarp, Element>(job, statistics).search_walks(i, job.work.walk_count());
     }
     for (std::uint32_t i = 0; i < job.work.item_count(); ++i) {
       search_item(job, job.work.items[i], statistics[0]);
     }
   }
 
-  SweepRef sweep_;
+  SweepRefOf<Element> sweep_;
   Quantisation quantisation_;
   PagePool pool_;
   std::vector<PageResult> results_;
   std::uint32_t entries_;
-  HostProfile profile_;
+  HostProfileOf<Element> profile_;
   ProfileBestValues bests_;
   std::vector<std::vector<ProfileFact>> facts_;  ///< by slot
   std::mutex mutex_;

@@ -44,8 +44,10 @@ class VehicleReader {
     Body body{.name = entry.name, .model = {}, .poses = {}, .path_pose = {}};
     ModelOptions how = model_;
     if (entry.model_unit > 0) how.unit = entry.model_unit;
-    body.model =
-        named(entry.at.at("model"), [&] { return read_model(entry.model, how, &warnings_); });
+    ModelShape model =
+        named(entry.at.at("model"), [&] { return read_model_shape(entry.model, how, &warnings_); });
+    body.model = std::move(model.points);
+    body.triangles = std::move(model.triangles);
     const auto* station = std::get_if<BodyStation>(&entry.mount);
     if (!entry.trajectory.empty()) {
       read_own(entry, body);
@@ -131,17 +133,16 @@ std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& f
   return others;
 }
 
-void check_vehicle_search(SearchOptions& options) {
-  if (options.device == Device::kCuda || !options.gpus.empty()) {
-    throw UsageError(
-        "--vehicle: a vehicle of several bodies is searched on the CPU alone; give --device cpu");
+void check_vehicle_search(const SearchOptions& options) {
+  if (options.device == Device::kCuda || !options.gpus.empty() || options.device_memory_bytes > 0) {
+    throw UsageError("--vehicle: a vehicle of several bodies is searched on the CPU alone",
+                     Remedy::kCpuDevice);
   }
   if (options.engine == Engine::kGrid || options.engine == Engine::kKdtree) {
     throw UsageError(std::string("--vehicle: engine ") + clearway::name_of(options.engine) +
                          " searches one model, and no vehicle of several bodies",
                      Remedy::kSweepEngine);
   }
-  options.device = Device::kCpu;
 }
 
 }  // namespace clearway::tool

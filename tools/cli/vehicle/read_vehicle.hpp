@@ -22,8 +22,7 @@ std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vec
 std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& file,
                                                   std::vector<std::filesystem::path> others);
 
-/// Chooses the device that searches vehicles. Throws UsageError, before large inputs are read, for
-/// what the library would refuse after that.
-void check_vehicle_search(SearchOptions& options);
+/// Throws UsageError, before large inputs are read, for what the library would refuse after that.
+void check_vehicle_search(const SearchOptions& options);
 
 }  // namespace clearway::tool

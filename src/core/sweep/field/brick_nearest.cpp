@@ -89,8 +89,8 @@ void BrickNearest::find_in(const Part& part, std::span<const Candidate> candidat
 
 /// From the tree; false where they are too many.
 bool BrickNearest::gather(const Place& place, std::span<const Candidate>& out) {
-  near_ = tree_.nearest(place.centre, near_).point;
-  const Rival rival(place.centre, place.half, tree_.point(near_));
+  near_ = tree_.nearest(place.centre, near_).element;
+  const Rival rival(place.centre, place.half, tree_.element(near_));
   std::array<Candidate, kMostGathered>& kept = kept_[0];
   std::size_t count = 0;
   const bool too_many = tree_.ref().any(
@@ -100,7 +100,7 @@ bool BrickNearest::gather(const Place& place, std::span<const Candidate>& out) {
       [&](const Vec3& point) {
         if (!rival.leaves(point)) return false;
         if (count == kept.size()) return true;
-        kept[count++] = {point, static_cast<std::uint32_t>(&point - &tree_.point(0))};
+        kept[count++] = {point, static_cast<std::uint32_t>(&point - &tree_.element(0))};
         return false;
       });
   out = std::span(kept).first(count);
@@ -153,8 +153,8 @@ void BrickNearest::find_in_tree(const Part& part) {
     for (std::uint32_t y = part.first[1]; y <= part.last[1]; ++y) {
       for (std::uint32_t x = part.first[0]; x <= part.last[0]; ++x) {
         const ModelTree::Nearest nearest = tree_.nearest(node(x, y, z), near_);
-        near_ = nearest.point;
-        keep(x, y, z, nearest.squared_distance, nearest.point);
+        near_ = nearest.element;
+        keep(x, y, z, nearest.squared_distance, nearest.element);
       }
     }
   }
@@ -176,6 +176,20 @@ void BrickNearest::keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, doubl
   const std::size_t at = (z * ModelFieldRef::kRow + y) * ModelFieldRef::kRow + x;
   squared_[at] = rounded_down(squared);
   nearest_[at] = nearest;
+}
+
+void find_nearest_triangles(const TriangleTree& tree, const Vec3& corner, double voxel,
+                            float* squared, std::uint32_t* nearest) {
+  std::uint32_t near = 0;
+  for (std::uint32_t at = 0; at < ModelFieldRef::kBrickNodes; ++at) {
+    constexpr std::uint32_t kRow = ModelFieldRef::kRow;
+    const Vec3 node{corner.x + at % kRow * voxel, corner.y + at / kRow % kRow * voxel,
+                    corner.z + at / kRow / kRow * voxel};
+    const TriangleTree::Nearest found = tree.nearest(node, near);
+    near = found.element;
+    squared[at] = rounded_down(found.squared_distance);
+    nearest[at] = near;
+  }
 }
 
 }  // namespace clearway

@@ -59,6 +59,10 @@ class BrickNearest {
   std::array<std::array<Candidate, kMostGathered>, kLevels> kept_;
 };
 
+/// For each node as of BrickNearest::find, a nearest triangle.
+void find_nearest_triangles(const TriangleTree& tree, const Vec3& corner, double voxel,
+                            float* squared, std::uint32_t* nearest);
+
 /// Not above the true square: one rounding to float and a few in double are taken off.
 float rounded_down(double squared);
 

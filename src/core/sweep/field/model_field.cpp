@@ -18,6 +18,8 @@ constexpr double kMarginSteps = 3;
 /// twice the radius.
 constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
+/// A node takes a search for the nearest triangle, of some microseconds: no more coarse ones.
+constexpr double kMostSurfaceNodes = 1 << 17;
 /// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
 /// the model's points are worth.
 constexpr double kCheapNodes = 1 << 17;
@@ -33,9 +35,18 @@ double length(const Vec3& v) { return std::sqrt(squared_length(v.x, v.y, v.z)); 
 
 ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options,
                        int threads)
-    : tree_(tree), by_need_(options.by_need) {
+    : ModelField(&tree, tree.box(), tree.spacing(), radius, options, threads) {}
+
+/// A surface has no spacing between points that would make a finer field useless.
+ModelField::ModelField(const TriangleTree& tree, double radius, const ModelFieldOptions& options,
+                       int threads)
+    : ModelField(&tree, tree.box(), 0, radius, options, threads) {}
+
+ModelField::ModelField(Tree tree, const Box& model, double spacing, double radius,
+                       const ModelFieldOptions& options, int threads)
+    : tree_(tree), model_(model), by_need_(options.by_need) {
   if (threads == 0) threads = omp_get_max_threads();
-  choose_voxel(radius, options);
+  choose_voxel(spacing, radius, options);
   for (;; voxel_ *= 2) {
     lay_out(margin_steps(options.reach));
     fill_coarse(options.reach > 0, threads);
@@ -48,10 +59,10 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
   if (!by_need_) make_all(threads);
 }
 
-void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
-  const Box& box = tree_.box();
+void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOptions& options) {
+  const Box& box = model_;
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
-  const double of_points = kVoxelSpacings * tree_.spacing();
+  const double of_points = kVoxelSpacings * spacing;
   double chosen = std::clamp(of_points, radius / 2, 2 * radius);
   const auto nodes_of = [&](double voxel) {
     const double around = 2 * radius + 4 * voxel;
@@ -71,7 +82,9 @@ void ModelField::choose_voxel(double radius, const ModelFieldOptions& options) {
     }
     return nodes * static_cast<double>(kCoarseNodeBytes);
   };
-  while (coarse_bytes() > static_cast<double>(options.most_bytes) / 4) voxel_ *= 2;
+  double most = static_cast<double>(options.most_bytes) / 4;
+  if (is_surface()) most = std::min(most, kMostSurfaceNodes * kCoarseNodeBytes);
+  while (coarse_bytes() > most) voxel_ *= 2;
 }
 
 /// How far from the model bricks are needed.
@@ -80,7 +93,7 @@ double ModelField::band(double radius, double reach) const {
 }
 
 double ModelField::margin_steps(double reach) const {
-  const Box& box = tree_.box();
+  const Box& box = model_;
   const double step = kBrick * voxel_;
   const auto nodes = [&](double margin) {
     double product = 1;
@@ -95,7 +108,7 @@ double ModelField::margin_steps(double reach) const {
 void ModelField::lay_out(double margin) {
   coarse_ = kBrick * voxel_;
   margin_ = (margin + 1) * coarse_;
-  const Box& box = tree_.box();
+  const Box& box = model_;
   for (int k = 0; k < 3; ++k) {
     origin_[k] = box.lo[k] - margin * coarse_;
     size_[k] =
@@ -108,6 +121,12 @@ Vec3 ModelField::coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t i
 }
 
 void ModelField::fill_coarse(bool with_nearest, int threads) {
+  std::visit([&](const auto* tree) { fill_coarse_from(*tree, with_nearest, threads); }, tree_);
+}
+
+template <typename Element>
+void ModelField::fill_coarse_from(const ModelTreeOf<Element>& tree, bool with_nearest,
+                                  int threads) {
   coarse_squared_.assign(std::size_t{size_[0]} * size_[1] * size_[2], 0);
   coarse_nearest_.assign(with_nearest ? coarse_squared_.size() : 0, 0);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
@@ -116,8 +135,8 @@ void ModelField::fill_coarse(bool with_nearest, int threads) {
     std::size_t at = std::size_t{iz} * size_[1] * size_[0];
     for (std::uint32_t iy = 0; iy < size_[1]; ++iy) {
       for (std::uint32_t ix = 0; ix < size_[0]; ++ix) {
-        const ModelTree::Nearest nearest = tree_.nearest(coarse_node(ix, iy, iz), near);
-        near = nearest.point;
+        const auto nearest = tree.nearest(coarse_node(ix, iy, iz), near);
+        near = nearest.element;
         if (with_nearest) coarse_nearest_[at] = near;
         coarse_squared_[at++] = rounded_down(nearest.squared_distance);
       }
@@ -127,8 +146,18 @@ void ModelField::fill_coarse(bool with_nearest, int threads) {
 
 /// Numbers the coarse cells in which a distance of at most `band` can occur.
 std::uint32_t ModelField::mark_bricks(double band, int threads) {
-  const double half_diagonal = coarse_ * std::sqrt(0.75) * (1 + 1e-9);
   brick_of_.assign(coarse_squared_.size(), kNoBrick);
+  std::visit([&](const auto* tree) { mark_bricks_from(*tree, band, threads); }, tree_);
+  std::uint32_t bricks = 0;
+  for (std::uint32_t& brick : brick_of_) {
+    if (brick == 0) brick = kToBeMade | bricks++;
+  }
+  return bricks;
+}
+
+template <typename Element>
+void ModelField::mark_bricks_from(const ModelTreeOf<Element>& tree, double band, int threads) {
+  const double half_diagonal = coarse_ * std::sqrt(0.75) * (1 + 1e-9);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (std::uint32_t iz = 0; iz < size_[2] - 1; ++iz) {
     std::uint32_t near = 0;
@@ -138,17 +167,12 @@ std::uint32_t ModelField::mark_bricks(double band, int threads) {
         if (std::sqrt(coarse_squared_[at]) > band + 2 * half_diagonal) continue;
         const Vec3 node = coarse_node(ix, iy, iz);
         const Vec3 centre{node.x + coarse_ / 2, node.y + coarse_ / 2, node.z + coarse_ / 2};
-        const ModelTree::Nearest nearest = tree_.nearest(centre, near);
-        near = nearest.point;
+        const auto nearest = tree.nearest(centre, near);
+        near = nearest.element;
         if (std::sqrt(nearest.squared_distance) <= band + half_diagonal) brick_of_[at] = 0;
       }
     }
   }
-  std::uint32_t bricks = 0;
-  for (std::uint32_t& brick : brick_of_) {
-    if (brick == 0) brick = kToBeMade | bricks++;
-  }
-  return bricks;
 }
 
 void ModelField::make_all(int threads) {
@@ -164,7 +188,13 @@ void ModelField::make_brick(std::size_t cell) const {
   const Vec3 corner = coarse_node(static_cast<std::uint32_t>(cell % size_[0]),
                                   static_cast<std::uint32_t>(cell / size_[0] % size_[1]),
                                   static_cast<std::uint32_t>(cell / size_[0] / size_[1]));
-  BrickNearest(tree_).find(corner, voxel_, distances_.get() + first, nearest_.get() + first);
+  float* const squared = distances_.get() + first;
+  std::uint32_t* const nearest = nearest_.get() + first;
+  if (const auto* points = std::get_if<const ModelTree*>(&tree_)) {
+    BrickNearest(**points).find(corner, voxel_, squared, nearest);
+  } else {
+    find_nearest_triangles(*std::get<const TriangleTree*>(tree_), corner, voxel_, squared, nearest);
+  }
   std::atomic_ref(brick_of_[cell]).store(brick, std::memory_order_release);
 }
 
@@ -186,11 +216,22 @@ std::uint32_t make_brick_of(const ModelField& field, std::size_t cell) {
   return field.made_brick(cell);
 }
 
+/// Of a node's position and of the root of its square (docs/design/numerics.md, "Model field").
+double ModelField::node_error() const {
+  const Vec3 extent{model_.hi.x - model_.lo.x, model_.hi.y - model_.lo.y,
+                    model_.hi.z - model_.lo.z};
+  const double of_place = 8 * (length(model_.hi) + length(model_.lo) + margin_);
+  const double of_surface = is_surface() ? 161 * length(extent) : 0;
+  return kUnitRoundoff * (of_place + of_surface);
+}
+
 ModelFieldRef ModelField::ref() const {
-  return {.model = tree_.box(),
+  return {.model = model_,
           .coarse = coarse_,
           .voxel = voxel_,
           .per_metre = 1 / coarse_,
+          .coarse_slack = 64 * kUnitRoundoff + node_error() / coarse_,
+          .fine_slack = 64 * kUnitRoundoff + node_error() / voxel_,
           .origin = origin_,
           .size = {size_[0], size_[1], size_[2]},
           .bricks = static_cast<std::uint32_t>(bricks()),

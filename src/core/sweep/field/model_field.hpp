@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <variant>
 #include <vector>
 
 #include "core/geometry/model_tree.hpp"
@@ -18,18 +19,21 @@ struct ModelFieldOptions {
   bool by_need = false;  ///< bricks are made when they are first asked for; on the host only
 };
 
-/// Bounds of d_M, the distance from any position in the model's frame to the nearest model point.
+/// Bounds of d_M, the distance from any position in the model's frame to the nearest point of the
+/// model or of its surface.
 /// Lattice nodes hold exact squared distances, rounded down to float: a coarse lattice around the
-/// whole model, and bricks of a fine one (kBrick times finer), with the nearest point too, wherever
-/// a distance within the band can occur. No memory for empty space but the coarse lattice. With a
-/// reach, coarse nodes keep their nearest point too, and every position has one near it. Between
-/// nodes: docs/design/numerics.md, "Model field". Source of the idea: the inverted trajectory with
-/// a distance field of the tool (Sullivan et al. 2012).
+/// whole model, and bricks of a fine one (kBrick times finer), with the nearest element too,
+/// wherever a distance within the band can occur. No memory for empty space but the coarse lattice.
+/// With a reach, coarse nodes keep their nearest element too, and every position has one near it.
+/// Between nodes: docs/design/numerics.md, "Model field". Source of the idea: the inverted
+/// trajectory with a distance field of the tool (Sullivan et al. 2012).
 class ModelField {
  public:
   /// Exact for lattice nodes by nearest-neighbour search in `tree`, which must outlive the field.
   /// radius: the band around the model in which the descent ends. Uses OpenMP with `threads`.
   ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options, int threads);
+  ModelField(const TriangleTree& tree, double radius, const ModelFieldOptions& options,
+             int threads);
 
   using Bounds = ModelFieldRef::Bounds;
   static constexpr std::uint32_t kNone = ModelFieldRef::kNone;
@@ -62,17 +66,29 @@ class ModelField {
   static constexpr std::uint32_t kBeingMade = kToBeMade >> 1;
   static constexpr std::uint32_t kBrickNumber = kBeingMade - 1;
 
-  void choose_voxel(double radius, const ModelFieldOptions& options);
+  using Tree = std::variant<const ModelTree*, const TriangleTree*>;
+
+  ModelField(Tree tree, const Box& model, double spacing, double radius,
+             const ModelFieldOptions& options, int threads);
+
+  bool is_surface() const { return std::holds_alternative<const TriangleTree*>(tree_); }
+  void choose_voxel(double spacing, double radius, const ModelFieldOptions& options);
   double band(double radius, double reach) const;
   double margin_steps(double reach) const;
   void lay_out(double margin);
   void fill_coarse(bool with_nearest, int threads);
+  template <typename Element>
+  void fill_coarse_from(const ModelTreeOf<Element>& tree, bool with_nearest, int threads);
   std::uint32_t mark_bricks(double band, int threads);
+  template <typename Element>
+  void mark_bricks_from(const ModelTreeOf<Element>& tree, double band, int threads);
+  double node_error() const;
   void make_all(int threads);
   void make_brick(std::size_t cell) const;
   Vec3 coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t iz) const;
 
-  const ModelTree& tree_;
+  const Tree tree_;
+  const Box model_;
   const bool by_need_;
   double voxel_ = 0;   // fine
   double coarse_ = 0;  // kBrick * voxel_

@@ -21,13 +21,15 @@ struct ModelFieldRef {
 
   struct Bounds {
     double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
-    std::uint32_t near;    ///< a model point near x, or kNone; never kNone with a reach
+    std::uint32_t near;    ///< a model element near x, or kNone; never kNone with a reach
   };
 
-  Box model;              ///< of all model points
+  Box model;              ///< of the whole model
   double coarse;          ///< step of the coarse lattice, metres
   double voxel;           ///< of the fine one: coarse / kBrick
   double per_metre;       ///< 1 / coarse
+  double coarse_slack;    ///< what concave_bound() takes off, as a share
+  double fine_slack;      ///< likewise
   Vec3 origin;            ///< of the coarse lattice
   std::uint32_t size[3];  ///< coarse nodes along each axis
   std::uint32_t bricks;
@@ -35,7 +37,7 @@ struct ModelFieldRef {
   const std::uint32_t* coarse_nearest;  ///< likewise, or null
   const std::uint32_t* brick_of;        ///< per coarse cell, [z][y][x]
   const float* distances;               ///< per brick [z][y][x]
-  const std::uint32_t* nearest;         ///< likewise, the nearest model point
+  const std::uint32_t* nearest;         ///< likewise, the nearest model element
   const ModelField* by_need;            ///< makes bricks that are asked for, on the host; or null
 
   CLEARWAY_HD std::size_t coarse_nodes() const { return std::size_t{size[0]} * size[1] * size[2]; }
@@ -73,11 +75,13 @@ CLEARWAY_HD inline void load_corners(const float* first, std::size_t row, std::s
 }
 
 /// d_M^2(x) - |x|^2 is a minimum of linear functions of x, hence concave: the interpolation of d^2
-/// exceeds d^2 by at most step^2 sum f (1 - f). The last term covers the rounding of all of it.
-CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3], double step) {
+/// exceeds d^2 by at most step^2 sum f (1 - f). The last term covers the rounding of all of it, and
+/// the errors of the nodes.
+CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3], double step,
+                                        double slack) {
   const double bend = f[0] * (1 - f[0]) + f[1] * (1 - f[1]) + f[2] * (1 - f[2]);
   const double excess = step * step * bend;
-  const double bound = mean - excess - (mean + excess) * (64 * kUnitRoundoff);
+  const double bound = mean - excess - (mean + step * step) * slack;
   return bound > 0 ? bound : 0;
 }
 
@@ -128,7 +132,8 @@ CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) co
   const std::uint32_t brick = brick_at(at);
   if (brick == kNoBrick) {
     load_corners(coarse_squared + at, size[0], std::size_t{size[0]} * size[1], corner);
-    return {concave_bound(interpolated(place, corner), place, coarse), near_coarse_node(whole)};
+    return {concave_bound(interpolated(place, corner), place, coarse, coarse_slack),
+            near_coarse_node(whole)};
   }
   std::uint32_t fine[3], round[3];
   for (int k = 0; k < 3; ++k) {
@@ -141,7 +146,7 @@ CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) co
   const std::size_t first = std::size_t{brick} * kBrickNodes;
   load_corners(distances + first + (fine[2] * kRow + fine[1]) * kRow + fine[0], kRow, kRow * kRow,
                corner);
-  return {concave_bound(interpolated(place, corner), place, voxel),
+  return {concave_bound(interpolated(place, corner), place, voxel, fine_slack),
           nearest[first + (round[2] * kRow + round[1]) * kRow + round[0]]};
 }
 

@@ -79,7 +79,7 @@ TEST_CASE("the nearest model point is the one that brute force finds") {
     const Vec3 x{unit(random), unit(random), unit(random)};
     const ModelTree::Nearest nearest = tree.nearest(x, static_cast<std::uint32_t>(i) % 3000);
     equal &= nearest.squared_distance == brute_squared(model, x) &&
-             squared_distance(tree.point(nearest.point), x) == nearest.squared_distance;
+             squared_distance(tree.element(nearest.element), x) == nearest.squared_distance;
     const double squared_radius = nearest.squared_distance;
     equal &= tree.ref().any_within(x, squared_radius, [](const Vec3&) { return true; });
     equal &= !tree.ref().any_within(x, std::nextafter(squared_radius, 0),
@@ -166,7 +166,7 @@ TEST_CASE("the nodes of a brick have the model points that the tree finds") {
                       corner.z + i / kRow / kRow * voxel};
       const double least = tree.nearest(node).squared_distance;
       differing += squared[i] != rounded_down(least) ||
-                   squared_distance(tree.point(point[i]), node) != least;
+                   squared_distance(tree.element(point[i]), node) != least;
     }
     CHECK(differing == 0);
   }

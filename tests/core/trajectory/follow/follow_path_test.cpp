@@ -109,7 +109,7 @@ TEST_CASE("the origin divides the chord as 0 divides the pivots") {
   }
 }
 
-TEST_CASE("a followed frame is a rotation; up is the mean made perpendicular to the chord") {
+TEST_CASE("a followed frame is a rotation whose up is the mean made perpendicular to the chord") {
   Random random(64);
   std::vector<Pose> poses;
   for (int i = 0; i < 60; ++i) {

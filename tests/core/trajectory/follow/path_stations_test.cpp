@@ -133,7 +133,7 @@ TEST_CASE("stations stand still at a stop and take the last of its poses") {
   CHECK(stations.direction_at(*stations.ahead_of(4, 0)).x > 0);
 }
 
-TEST_CASE("stations off the path have no place; rounding is not off") {
+TEST_CASE("stations off the path have no place but rounding is not off") {
   const std::vector<Pose> poses{translation({0, 0, 0}), translation({3, 4, 0})};
   const PathStations stations(poses, 1);
   CHECK_FALSE(stations.ahead_of(0, -1e-6));

@@ -10,7 +10,10 @@ namespace clearway {
 inline std::vector<Query> body_queries(const Query& query) {
   std::vector<Query> out;
   out.reserve(query.bodies.size());
-  for (const Body& body : query.bodies) out.emplace_back(body.model, body.poses, query);
+  for (const Body& body : query.bodies) {
+    out.emplace_back(body.model, body.poses, query);
+    out.back().triangles = body.triangles;
+  }
   return out;
 }
 

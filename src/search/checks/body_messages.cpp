@@ -1,0 +1,81 @@
+#include "search/checks/body_messages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace clearway {
+namespace {
+
+/// Of the vehicle, not of a body: a roof is above the ground, and a bogie has walls of its own side
+/// alone in a cutting.
+constexpr std::array<std::string_view, 4> kOfVehicle{"floats", "nothing-below", "nothing-beside",
+                                                     "one-side"};
+
+bool has(const BodyMessages& body, std::string_view code) {
+  return std::ranges::any_of(body.messages, [&](const Message& m) { return m.code == code; });
+}
+
+bool is_of_vehicle(const Message& message) {
+  return std::ranges::find(kOfVehicle, message.code) != kOfVehicle.end();
+}
+
+/// Whether all bodies near the scan are told so. Of a body that is nowhere near it, another warning
+/// says that.
+bool holds_for_vehicle(const std::vector<BodyMessages>& bodies, std::string_view code) {
+  return std::ranges::all_of(bodies, [&](const BodyMessages& body) {
+    return has(body, code) || has(body, "out-of-reach") || has(body, "no-poses");
+  });
+}
+
+/// Above the ground nothing needs to be beside it.
+bool matters(const std::vector<BodyMessages>& bodies, const Message& message) {
+  return holds_for_vehicle(bodies, message.code) &&
+         (message.code != "nothing-beside" || !holds_for_vehicle(bodies, "floats"));
+}
+
+void tell(Message message, const std::string& who, MessageLog& log) {
+  message.text = who + ": " + message.text;
+  if (message.severity == Message::Severity::kNote) {
+    log.note(std::move(message.text));
+  } else {
+    log.add(std::move(message));
+  }
+}
+
+/// Once for all bodies from `first` on that are told the same.
+void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, const Message& message,
+                MessageLog& log) {
+  const auto is_same = [&](const Message& m) {
+    return m.code == message.code && m.text == message.text;
+  };
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (std::ranges::none_of(bodies[i].messages, is_same)) continue;
+    if (i < first) return;  // told there
+    names += (count == 0 ? "" : ", ") + bodies[i].name;
+    ++count;
+  }
+  const bool all = count == bodies.size() && count > 1;
+  tell(message, all ? "each body" : (count > 1 ? "bodies " : "body ") + names, log);
+}
+
+}  // namespace
+
+void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
+  std::vector<std::string_view> told;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (const Message& message : bodies[i].messages) {
+      if (!is_of_vehicle(message)) {
+        tell_alike(bodies, i, message, log);
+      } else if (matters(bodies, message) && std::ranges::find(told, message.code) == told.end()) {
+        told.push_back(message.code);
+        tell(message, "the vehicle, as its body " + bodies[i].name, log);
+      }
+    }
+  }
+}
+
+}  // namespace clearway

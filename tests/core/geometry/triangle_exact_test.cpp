@@ -1,0 +1,63 @@
+// The predicate for triangles against exact arithmetic (CGAL), within the bound of
+// docs/design/numerics.md ("Triangles").
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/geometry/triangle.hpp"
+#include "support/random_triangles.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+using Exact = CGAL::Exact_rational;
+using Kernel = CGAL::Simple_cartesian<Exact>;
+
+Kernel::Point_3 exact(const Vec3& p) { return {p.x, p.y, p.z}; }
+
+Exact squared_exact(const Vec3& e, const Triangle& t) {
+  const Kernel::Point_3 a = exact(t.a), b = exact(t.b), c = exact(t.c), p = exact(e);
+  if (!CGAL::collinear(a, b, c)) {
+    return CGAL::squared_distance(p, Kernel::Triangle_3(a, b, c));
+  }
+  const auto edge = [&](const Kernel::Point_3& from, const Kernel::Point_3& to) {
+    return from == to ? CGAL::squared_distance(p, from)
+                      : CGAL::squared_distance(p, Kernel::Segment_3(from, to));
+  };
+  return std::min({edge(a, b), edge(b, c), edge(c, a)});
+}
+
+/// |root of d2 - exact distance| in units of the bound, about; above 1 only where it is violated.
+double share_of_bound(const Vec3& e, const Triangle& t) {
+  const Exact squared = squared_exact(e, t);
+  const double distance = std::sqrt(squared_distance(e, t));
+  const double root = std::sqrt(CGAL::to_double(squared));
+  const double bound = triangle_error(root, longest_edge(t));
+  const Exact d(distance), most(bound);
+  const bool holds =
+      (d <= most || (d - most) * (d - most) <= squared) && squared <= (d + most) * (d + most);
+  return holds ? std::min(1.0, std::abs(distance - root) / bound) : 2;
+}
+
+}  // namespace
+
+TEST_CASE("distances to triangles are within their bound of the exact ones") {
+  double worst = 0;
+  for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
+    Random random(seed);
+    const Triangle t = random_triangle(random);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 e = random_place_at(random, t);
+      const double share = share_of_bound(e, t);
+      CAPTURE(seed, i, share);
+      if (share > 1) FAIL_CHECK("beyond the bound");
+      worst = std::max(worst, share);
+    }
+  }
+  CHECK(worst > 0.1);  // the measure sees errors
+  CHECK(worst <= 1);
+}
