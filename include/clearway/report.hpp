@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
@@ -40,6 +41,8 @@ struct ReportOptions {
   PoseLabels labels = {};              ///< of the poses, where the trajectory has them
   std::vector<Message> warnings = {};  ///< of the inputs and the query: the page shows them
   bool overwrite = false;
+  /// Of a vehicle's result: its bodies; then the model is empty.
+  std::vector<Body> bodies = {};
 };
 
 struct ReportSummary {

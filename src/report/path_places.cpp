@@ -41,20 +41,25 @@ Vec3 box_centre_at(const Box& model, const Pose& pose) {
                           (model.lo.z + model.hi.z) / 2});
 }
 
-PathPlaces::PathPlaces(const Box& model, std::span<const Pose> poses)
-    : half_diagonal_(length(model.lo, model.hi) / 2),
-      reach_(half_diagonal_ +
-             std::clamp(2 * kDiagonalsInMargin * half_diagonal_, kLeastMargin, kMostMargin)),
-      dense_reach_(half_diagonal_ + kDenseMargin) {
+PathPlaces::PathPlaces(std::span<const DrawnBody> bodies) {
+  for (const DrawnBody& body : bodies) {
+    half_diagonal_ = std::max(half_diagonal_, length(body.box.lo, body.box.hi) / 2);
+  }
+  reach_ = half_diagonal_ +
+           std::clamp(2 * kDiagonalsInMargin * half_diagonal_, kLeastMargin, kMostMargin);
+  dense_reach_ = half_diagonal_ + kDenseMargin;
+  for (const DrawnBody& body : bodies) add(body);
+}
+
+void PathPlaces::add(const DrawnBody& body) {
   std::vector<Vec3> centres;
-  centres.reserve(poses.size());
-  for (const Pose& pose : poses) centres.push_back(box_centre_at(model, pose));
+  centres.reserve(body.poses.size());
+  for (const Pose& pose : body.poses) centres.push_back(box_centre_at(body.box, pose));
   const double step =
       std::max(reach_ / 12, path_length(centres) / static_cast<double>(kMostPlaces));
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (places_.empty() || i + 1 == poses.size() ||
-        length(places_.back().centre, centres[i]) >= step) {
-      places_.push_back({centres[i], top_at(model, poses[i])});
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    if (i == 0 || i + 1 == centres.size() || length(places_.back().centre, centres[i]) >= step) {
+      places_.push_back({centres[i], top_at(body.box, body.poses[i])});
     }
   }
 }

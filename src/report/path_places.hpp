@@ -7,23 +7,24 @@
 #include "clearway/box.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
+#include "report/drawn_bodies.hpp"
 
 namespace clearway {
 
-/// Where the middle of the model's box is along the path, at places some way apart: for what is
+/// Where the middles of the bodies' boxes are along the path, at places some way apart: for what is
 /// near the path. A picture's accuracy, not a search's.
 class PathPlaces {
  public:
   struct Place {
     Vec3 centre;
-    double top;  ///< greatest z of the model's box there
+    double top;  ///< greatest z of the box there
   };
 
-  /// poses: at least one.
-  PathPlaces(const Box& model, std::span<const Pose> poses);
+  /// One body at least.
+  explicit PathPlaces(std::span<const DrawnBody> bodies);
 
-  double half_diagonal() const { return half_diagonal_; }  ///< of the model's box
-  /// Points farther than this from the middle of the model are not on the page.
+  double half_diagonal() const { return half_diagonal_; }  ///< of the largest box
+  /// Points farther than this from the middle of every body are not on the page.
   double reach() const { return reach_; }
   /// Up to this distance all are worth the same, and less and less beyond.
   double dense_reach() const { return dense_reach_; }
@@ -36,7 +37,9 @@ class PathPlaces {
   const Place& nearest(const Vec3& point, std::span<const std::uint32_t> among) const;
 
  private:
-  double half_diagonal_, reach_, dense_reach_;
+  void add(const DrawnBody& body);
+
+  double half_diagonal_ = 0, reach_, dense_reach_;
   std::vector<Place> places_;
 };
 

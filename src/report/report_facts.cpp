@@ -26,6 +26,25 @@ void write_box(JsonText& json, const char* name, const Box& box) {
   json.key(name).begin('{').field("lo", box.lo).field("hi", box.hi).end('}');
 }
 
+void write_bodies(JsonText& json, const ReportFacts& facts) {
+  json.key("bodies").begin('[');
+  for (const DrawnBody& body : facts.bodies) {
+    json.begin('{').field("name", body.name).field("points", std::uint64_t{body.model.size()});
+    json.field("triangles", std::uint64_t{body.triangles.size()});
+    json.field("poses", std::uint64_t{body.poses.size()});
+    json.field("shown_points", std::uint64_t{body.shown_points});
+    write_box(json, "box", body.box);
+    json.end('}');
+  }
+  json.end(']');
+}
+
+/// Of a vehicle alone: the name of the body.
+void write_body(JsonText& json, const ReportFacts& facts,
+                const std::optional<std::uint32_t>& body) {
+  if (body) json.field("body", facts.bodies[*body].name);
+}
+
 void write_inputs(JsonText& json, const ReportFacts& facts) {
   const ReportOptions& options = facts.options;
   const ResultHeader& header = facts.result.reader().header();
@@ -41,7 +60,9 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.key("model").begin('{').field("name", options.model_name);
   json.field("points", header.model_points).field("hash", hash_text(header.model_hash));
   write_box(json, "box", facts.model_box);
-  json.field("above", options.model_above).field("left_out", options.model_left_out).end('}');
+  json.field("above", options.model_above).field("left_out", options.model_left_out);
+  if (!header.bodies.empty()) write_bodies(json, facts);
+  json.end('}');
   json.key("trajectory").begin('{').field("name", options.trajectory_name);
   json.field("poses", header.poses).field("hash", hash_text(header.trajectory_hash));
   json.field("chainage_start", facts.options.conflicts.chainage_start);
@@ -90,7 +111,7 @@ void write_classes(JsonText& json, const ReportFacts& facts) {
   json.end(']').field("points_without_place", facts.points.without_place);
 }
 
-void write_conflict(JsonText& json, const Conflict& conflict, const ShownPoints& points) {
+void write_conflict(JsonText& json, const Conflict& conflict, const ReportFacts& facts) {
   json.begin('{').field("id", std::uint64_t{conflict.id}).field("points", conflict.points);
   json.field("source", conflict.source).field("group", conflict.group);
   json.field("lo", conflict.box.lo).field("hi", conflict.box.hi);
@@ -102,15 +123,16 @@ void write_conflict(JsonText& json, const Conflict& conflict, const ShownPoints&
       .field("nearest_pose", conflict.nearest_pose);
   json.field("nearest_source", conflict.nearest_source)
       .field("encroachment", conflict.encroachment);
-  const auto place =
-      conflict.nearest_source ? points.places.find(*conflict.nearest_source) : points.places.end();
+  const auto place = conflict.nearest_source ? facts.points.places.find(*conflict.nearest_source)
+                                             : facts.points.places.end();
   json.key("nearest_point");
-  if (place == points.places.end()) {
+  if (place == facts.points.places.end()) {
     json.raw("null");
   } else {
     json.value(place->second);
   }
   json.field("side", name_of(conflict.side)).field("lateral", conflict.lateral);
+  write_body(json, facts, conflict.body);
   json.field("height", conflict.height).end('}');
 }
 
@@ -147,7 +169,7 @@ void write_conflicts(JsonText& json, const ReportFacts& facts) {
   }
   json.key("list").begin('[');
   for (const Conflict* conflict : listed_in_page(found)) {
-    write_conflict(json, *conflict, facts.points);
+    write_conflict(json, *conflict, facts);
   }
   json.end(']').end('}');
 }
@@ -162,6 +184,7 @@ void write_least(JsonText& json, const ReportFacts& facts) {
   json.field("pose", std::uint64_t{facts.least->pose}).field("chainage", facts.least_chainage);
   json.field("source", facts.least->source).field("point", facts.least->xyz);
   json.field("side", name_of(facts.least->side)).field("lateral", facts.least->lateral);
+  write_body(json, facts, facts.least->body);
   json.field("height", facts.least->height).field("of", facts.least_of).end('}');
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "clearway/report.hpp"
+#include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/path_places.hpp"
 #include "report/shown_points.hpp"
@@ -18,6 +20,7 @@ struct ReportFacts {
   const ReportOptions& options;
   std::string title;
   Box model_box{};
+  std::span<const DrawnBody> bodies;  ///< the model alone, where it is no vehicle
   std::vector<double> classes;
   double path_length = 0;
   const Conflicts* conflicts = nullptr;  ///< none where the result has no first poses

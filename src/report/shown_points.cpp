@@ -93,6 +93,7 @@ class PointReader {
   void note_least(const RowCursor& row, const ClearanceCursor& clearance, bool collides) {
     if (out_.least && out_.least->distance <= clearance.distance()) return;
     out_.least = {clearance.distance(), clearance.pose(), clearance.source(), {}, {}, {}, {}};
+    out_.least->body = clearance.body();
     if (collides) {
       out_.least->xyz = row.xyz();
     } else if (has_places_) {

@@ -21,6 +21,7 @@ struct LeastDistance {
   std::optional<Vec3> xyz;
   Side side = Side::kUnknown;  ///< of xyz at the pose, as of conflicts
   std::optional<double> lateral = {}, height = {};
+  std::optional<std::uint32_t> body = {};  ///< of a vehicle, that is so near
 };
 
 /// Points of the result for the page: colliding ones, and others closer than the last class.

@@ -78,10 +78,10 @@ std::string joined_names(std::span<const std::uint32_t> shown, const PoseLabels&
 }  // namespace
 
 std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
-                                        const std::vector<Conflict>& conflicts) {
+                                        const std::vector<Conflict>& conflicts, std::size_t most) {
   std::vector<std::uint32_t> shown;
   if (poses == 0) return shown;
-  const std::uint64_t stretches = std::min<std::uint64_t>(poses, kMostShownPoses);
+  const std::uint64_t stretches = std::min<std::uint64_t>(poses, most);
   for (std::uint64_t k = 0; k < stretches; ++k) {
     const std::uint64_t first = k * poses / stretches, end = (k + 1) * poses / stretches;
     std::uint64_t best = first;

@@ -14,11 +14,12 @@ namespace clearway {
 
 inline constexpr std::size_t kMostShownPoses = 20'000;
 
-/// Poses for the page, ascending: all, or of each of kMostShownPoses stretches of the list the
+/// Poses for the page, ascending: all, or of each of `most` stretches of the list the
 /// nearest to the environment (without a profile its first), and in any case the first, the last
 /// and those that conflicts name.
 std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
-                                        const std::vector<Conflict>& conflicts);
+                                        const std::vector<Conflict>& conflicts,
+                                        std::size_t most = kMostShownPoses);
 
 /// Columns pose.*: index, place, rotation, chainage, and where known distance, point, time, name.
 void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const Pose> poses,

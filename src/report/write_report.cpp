@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "clearway/error.hpp"
 #include "clearway/report.hpp"
@@ -11,12 +12,13 @@
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
 #include "findings/side.hpp"
-#include "io/model/sample_mesh.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/system/xxh64.hpp"
 #include "io/trajectory/content_hash.hpp"
+#include "report/check_inputs.hpp"
+#include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/page.hpp"
 #include "report/path_places.hpp"
@@ -29,30 +31,6 @@ namespace {
 
 constexpr std::size_t kMostModelPoints = 200'000;
 constexpr double kStep = 1e-3, kEnvironmentStep = 2e-3;  // metres, of the points on the page
-
-void check_hash(const Result& result, const char* what, std::uint64_t is, std::uint64_t searched,
-                Remedy remedy) {
-  if (is == searched) return;
-  throw InputError(result.reader().name() + ": is the result of another " + what + " (hash " +
-                       hash_text(searched) + ", given " + hash_text(is) + ")",
-                   remedy);
-}
-
-void check_inputs(const Result& result, const Store& store, const std::vector<Vec3>& model,
-                  const std::vector<Pose>& poses, const ReportOptions& options) {
-  const ResultHeader& header = result.reader().header();
-  check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,
-             Remedy::kSameEnvironment);
-  if (store.crs_wkt() != header.crs_wkt) {
-    throw InputError(
-        result.reader().name() + ": names another coordinate reference system than the store",
-        Remedy::kSameEnvironment);
-  }
-  check_hash(result, "model", hash_of_model(model, options.model_triangles), header.model_hash,
-             Remedy::kSameModel);
-  check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
-             Remedy::kSameTrajectory);
-}
 
 std::vector<double> classes_of(const Result& result, const std::vector<double>& asked) {
   const QueryParameters& query = result.parameters();
@@ -91,20 +69,6 @@ Box page_box(const PathPlaces& path) {
   return box;
 }
 
-/// Evenly along the curve.
-std::vector<PagePoint> model_points(const std::vector<Vec3>& model, const PageLattice& lattice) {
-  std::vector<PagePoint> all;
-  all.reserve(model.size());
-  for (const Vec3& m : model) all.push_back(page_point(lattice, m, 0));
-  sort_along_curve(all);
-  if (all.size() <= kMostModelPoints) return all;
-  std::vector<PagePoint> out;
-  for (std::size_t i = 0; i < kMostModelPoints; ++i) {
-    out.push_back(all[i * all.size() / kMostModelPoints]);
-  }
-  return out;
-}
-
 /// One call of write_report, step by step.
 class Report {
  public:
@@ -112,13 +76,13 @@ class Report {
          const std::vector<Pose>& poses, const ReportOptions& options)
       : result_(result),
         store_(store),
-        model_(model),
         poses_(poses),
         options_(options),
         progress_(options.conflicts.progress, options.conflicts.stop),
         classes_(classes_of(result, options.classes)),
-        model_box_(box_of(model)),
-        path_(model_box_, poses),
+        bodies_(drawn_bodies(model, poses, options)),
+        model_box_(box_around(bodies_)),
+        path_(bodies_),
         lattice_(lattice_for(page_box(path_), kStep)) {}
 
   ReportSummary write(const std::filesystem::path& path) {
@@ -148,6 +112,7 @@ class Report {
     std::vector<std::uint32_t> conflict_of;
     if (result_.parameters().first_pose) {
       conflicts = find_conflicts(result_, poses_, options_.conflicts, &conflict_of);
+      for (Conflict& conflict : conflicts.listed) place_conflict(conflict);
     }
     PointSelection selection{
         .classes = classes_, .conflicts = &conflicts, .conflict_of = &conflict_of, .wanted = {}};
@@ -174,26 +139,57 @@ class Report {
                 {},
                 {}};
       least_of_ = "profile";
+      if (is_vehicle()) find_nearest_body();
     }
     place_least();
   }
 
+  bool is_vehicle() const { return !options_.bodies.empty(); }
+
+  /// A profile does not say which body is so near.
+  void find_nearest_body() {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+      const double distance = bodies_[i].distance_to(*least_->xyz, least_->pose);
+      if (!(distance < least)) continue;
+      least = distance;
+      least_->body = i;
+    }
+  }
+
   /// Where the nearest point is, seen from the model.
   void place_least() {
-    if (!least_->xyz) return;
+    if (least_->xyz) place(*least_->xyz, least_->pose, *least_);
+  }
+
+  /// Seen from the body, where there are several: the path is elsewhere.
+  void place_conflict(Conflict& conflict) const {
+    if (!conflict.body) return;
+    conflict.side = Side::kUnknown;
+    conflict.lateral = conflict.height = std::nullopt;
+    place(conflict.nearest_point.value_or(conflict.centroid),
+          conflict.nearest_pose.value_or(conflict.first_pose), conflict);
+  }
+
+  /// Sets side, lateral and height of a conflict or a least distance.
+  template <typename Placed>
+  void place(const Vec3& xyz, std::uint32_t at, Placed& out) const {
     const ConflictOptions& how = options_.conflicts;
-    const Pose& pose = poses_[least_->pose];
-    const Vec3 there = ahead_left_up(*least_->xyz, pose, how.forward, how.up);
+    const DrawnBody& body = bodies_[out.body.value_or(0)];
+    const Pose* pose = body.pose_at(at);
+    if (pose == nullptr) return;
+    const Vec3 there = ahead_left_up(xyz, *pose, how.forward, how.up);
     if (!std::isfinite(there.y) || !std::isfinite(there.z)) return;
-    least_->side = side_of(*least_->xyz, pose, model_box_, how.forward, how.up);
-    least_->lateral = there.y;
-    least_->height = there.z;
+    out.side = side_of(xyz, *pose, body.box, how.forward, how.up);
+    out.lateral = there.y;
+    out.height = there.z;
   }
 
   std::vector<PageColumn> make_columns(const Conflicts& conflicts) {
     std::vector<PageColumn> columns;
     progress_.begin("page", 0, "");
-    shown_ = choose_poses(poses_.size(), profile_, conflicts.listed);
+    shown_ =
+        choose_poses(poses_.size(), profile_, conflicts.listed, most_shown_poses(bodies_.size()));
     if (least_) {
       shown_.push_back(least_->pose);
       std::ranges::sort(shown_);
@@ -202,12 +198,13 @@ class Report {
     model_lattice_ = lattice_for(model_box_, path_.half_diagonal() / 0x1p15);
     model_lattice_.origin = box_centre_at(model_box_, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}});
     const std::vector<PagePoint> model =
-        model_points(options_.model_triangles.empty() ? model_ : surface_points(), model_lattice_);
+        points_of_bodies(bodies_, model_lattice_, kMostModelPoints);
     shown_model_points_ = model.size();
     append_columns("environment", environment_.points, columns);
     append_columns("points", points_.points, columns);
     append_columns("model", model, columns);
     append_pose_columns(shown_, poses_, chainage_, profile_, options_.labels, lattice_, columns);
+    if (is_vehicle()) append_body_columns(bodies_, shown_, lattice_, columns);
     progress_.end();
     return columns;
   }
@@ -219,6 +216,7 @@ class Report {
          .options = options_,
          .title = title(),
          .model_box = model_box_,
+         .bodies = bodies_,
          .classes = classes_,
          .path_length = chainage_.empty() ? 0 : chainage_.back(),
          .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
@@ -238,17 +236,11 @@ class Report {
 
   const Result& result_;
   const Store& store_;
-  /// For the page to show.
-  std::vector<Vec3> surface_points() const {
-    const TriangleMesh mesh{model_, options_.model_triangles};
-    return sample_mesh(mesh, spacing_for(mesh, kMostModelPoints), "the model");
-  }
-
-  const std::vector<Vec3>& model_;
   const std::vector<Pose>& poses_;
   const ReportOptions& options_;
   CallbackProgress progress_;
   std::vector<double> classes_;
+  std::vector<DrawnBody> bodies_;
   Box model_box_;
   PathPlaces path_;
   PageLattice lattice_, environment_lattice_, model_lattice_;
@@ -267,7 +259,7 @@ class Report {
 ReportSummary write_report(const Result& result, const Store& store, const std::vector<Vec3>& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options) {
-  check_inputs(result, store, model, poses, options);
+  check_report_inputs(result, store, model, poses, options);
   PendingFile file(output, options.overwrite);
   const int threads = options.conflicts.threads;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);

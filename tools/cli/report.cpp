@@ -20,17 +20,19 @@
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "cli/vehicle/read_vehicle.hpp"
 #include "core/util/format.hpp"
 #include "core/util/message_log.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
 #include "search/checks/query_warnings.hpp"
+#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {
 
 struct ReportCommand : ConflictCommand {
-  std::filesystem::path result, environment, model, trajectory, output;
+  std::filesystem::path result, environment, model, vehicle, trajectory, output;
   ModelOptions model_options;
   ReportOptions report;
   std::vector<ParsedLength> classes;
@@ -50,7 +52,7 @@ std::string file_name(const std::filesystem::path& path) {
 void name_files(ReportCommand& options) {
   options.report.result_name = file_name(options.result);
   options.report.environment_name = file_name(options.environment);
-  options.report.model_name = file_name(options.model);
+  options.report.model_name = file_name(options.vehicle.empty() ? options.model : options.vehicle);
   options.report.trajectory_name = file_name(options.trajectory);
   if (options.report.date.empty()) options.report.date = now_in_utc();
 }
@@ -65,20 +67,33 @@ void note_left_out(ReportCommand& options, const std::vector<Message>& messages)
   }
 }
 
-Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {
+void read_model_again(ReportCommand& options, const Result& result, Query& query) {
   std::vector<Message>& warnings = options.report.warnings;
   ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
   how.as = model_kind_of(result);
-  ModelShape model = read_model_shape(options.model, how, &warnings);
+  if (options.vehicle.empty()) {
+    ModelShape model = read_model_shape(options.model, how, &warnings);
+    query.model = std::move(model.points);
+    query.triangles = std::move(model.triangles);
+    options.report.model_triangles = query.triangles;
+    return;
+  }
+  if (how.as == ModelAs::kSurface) how.as = ModelAs::kSurfaceOfMesh;  // others may be points
+  query.bodies = read_vehicle(options.vehicle, query.poses, how, options.trajectory_options,
+                              threads_or_all(options.find.threads), warnings);
+  options.report.bodies = query.bodies;
+}
+
+Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {
+  std::vector<Message>& warnings = options.report.warnings;
   options.trajectory_options.default_crs = store.crs_wkt();
-  std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options,
-                                            &warnings, &options.report.labels);
+  Query query({}, {}, result.parameters());
+  query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings,
+                                &options.report.labels);
+  read_model_again(options, result, query);
   note_left_out(options, warnings);
   std::erase_if(warnings,
                 [](const Message& told) { return told.severity == Message::Severity::kNote; });
-  Query query(std::move(model.points), std::move(poses), result.parameters());
-  query.triangles = std::move(model.triangles);
-  options.report.model_triangles = query.triangles;
   return query;
 }
 
@@ -91,21 +106,22 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary, con
   spdlog::info("open it in a browser: it is one file and needs no network");
 }
 
+void check_model_or_vehicle(const ReportCommand& options) {
+  if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
+  std::vector<std::filesystem::path> inputs{options.result, options.environment, options.model,
+                                            options.trajectory};
+  if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
+  refuse_overwriting(options.output, inputs);
+  if (options.vehicle.empty()) check_is_model(options.model);
+}
+
 void run_report(ReportCommand& options) {
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
-  refuse_overwriting(options.output,
-                     {options.result, options.environment, options.model, options.trajectory});
-  check_is_model(options.model);
+  check_model_or_vehicle(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
-  if (!result.bodies().empty()) {
-    throw InputError(
-        options.result.string() +
-        ": is of a vehicle of several bodies, and the report draws one model; expected "
-        "a result of run --model. clearway conflicts and export take this one");
-  }
   const Store store(options.environment);
   const double unit = metres_of_unit(store.length_unit()).value_or(1);
   options.lengths.convert(unit);
@@ -133,9 +149,13 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
   command.add_option("--env", options.environment, "The store that was searched")
       ->type_name("FILE")
       ->required();
-  command.add_option("--model", options.model, "The model that was moved")
+  CLI::Option* model =
+      command.add_option("--model", options.model, "The model that was moved")->type_name("FILE");
+  command
+      .add_option("--vehicle", options.vehicle,
+                  "In the place of --model: the vehicle of several bodies that was moved")
       ->type_name("FILE")
-      ->required();
+      ->excludes(model);
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();

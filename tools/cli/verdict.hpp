@@ -39,6 +39,10 @@ struct Verdict {
   bool is_clear() const { return !is_conflict() && !shard; }
   /// The least distance that is known.
   const std::optional<AnswerPlace>& nearest() const {
+    const bool names_body = least_clearance && least_clearance->body;  // a profile names none
+    if (names_body && (!least_profile || *least_clearance->distance <= *least_profile->distance)) {
+      return least_clearance;
+    }
     return least_profile ? least_profile : least_clearance;
   }
 };

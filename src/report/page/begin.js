@@ -8,6 +8,7 @@ const page = {
   points: null,
   model: null,
   poses: null,
+  bodyPoses: null,    // of a vehicle of several bodies, see columns.js
   pose: 0,            // which of the shown poses the model has
   conflict: null,     // the selected one
   listeners: {},

@@ -78,12 +78,33 @@ async function readPoses() {
   };
 }
 
+/** Of each body at each shown pose, body after body; null where there is but the model. */
+async function readBodyPoses() {
+  if (!page.facts.inputs.model.bodies) return null;
+  const read = async (name) => integersOf(await columnBytes("body." + name));
+  const [there, x, y, z] = await Promise.all(["there", "x", "y", "z"].map(read));
+  const rotation = await Promise.all([...Array(9).keys()].map((k) => read("r" + k)));
+  return { there, x, y, z, rotation };
+}
+
+/** Which of the model's points each body has: {first, count}. */
+function bodyRanges() {
+  let first = 0;
+  const bodies = page.facts.inputs.model.bodies ?? [{ shown_points: page.model.count }];
+  return bodies.map(({ shown_points: count }) => {
+    first += count;
+    return { first: first - count, count };
+  });
+}
+
 async function readAll() {
   const facts = page.facts.page;
-  [page.environment, page.points, page.model, page.poses] = await Promise.all([
+  [page.environment, page.points, page.model, page.poses, page.bodyPoses] = await Promise.all([
     readPoints("environment", facts.environment_lattice),
     readPoints("points", facts.lattice),
     readPoints("model", facts.model_lattice, facts.model_lattice.origin),
     readPoses(),
+    readBodyPoses(),
   ]);
+  page.model.ranges = bodyRanges();
 }

@@ -14,6 +14,7 @@ function conflictFacts(conflict) {
   const { query } = page.facts, words = classOf(conflict.least_distance);
   const rows = [
     ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideWords(conflict.side))}`],
+    conflict.body !== undefined && ["Body", conflict.body],
     ["Place", coordinates(conflict.nearest_point ?? conflict.centroid)],
     offsetWords(conflict) && ["Offset", offsetWords(conflict)],
   ].filter(Boolean);

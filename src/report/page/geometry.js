@@ -12,16 +12,43 @@ const clamp = (v, lo, hi) => Math.min(hi, Math.max(lo, v));
 const inPage = (xyz) => plus(xyz, page.facts.page.lattice.origin, -1);
 const inScan = (p) => plus(p, page.facts.page.lattice.origin);
 
-/** Shown pose i: rotation (rows) and place. */
-function poseAt(i) {
-  const poses = page.poses, facts = page.facts.page, step = facts.lattice.step;
+function poseOfColumns(poses, i) {
+  const facts = page.facts.page, step = facts.lattice.step;
   const r = poses.rotation.map((column) => column[i] * facts.rotation_step);
   return { r, t: [poses.x[i] * step, poses.y[i] * step, poses.z[i] * step] };
+}
+
+/** Shown pose i: rotation (rows) and place. */
+const poseAt = (i) => poseOfColumns(page.poses, i);
+
+/** Of that body; null where it has none. The model alone is body 0. */
+function bodyPoseAt(i, body) {
+  if (!page.bodyPoses) return poseAt(i);
+  const at = body * page.poses.count + i;
+  return page.bodyPoses.there[at] ? poseOfColumns(page.bodyPoses, at) : null;
+}
+
+/** What moves as one: the model, or each body of the vehicle. */
+const bodyFacts = () => page.facts.inputs.model.bodies ?? [page.facts.inputs.model];
+
+/** The number of the body with that name; undefined where there is but the model. */
+function bodyNumber(name) {
+  return name === undefined ? undefined : bodyFacts().findIndex((b) => b.name === name);
+}
+
+/** The bodies that are there at shown pose i: [{body, pose}]. */
+function bodiesAt(i) {
+  return bodyFacts().map((_, body) => ({ body, pose: bodyPoseAt(i, body) })).filter((b) => b.pose);
 }
 
 const turned = (pose, v) => [dot(pose.r.slice(0, 3), v), dot(pose.r.slice(3, 6), v),
                              dot(pose.r.slice(6, 9), v)];
 const moved = (pose, m) => plus(turned(pose, m), pose.t);
+/** Back into the pose's frame: its rotation's transpose is its inverse but for a non-rigid one. */
+function movedBack(pose, p) {
+  const r = pose.r, d = plus(p, pose.t, -1);
+  return [0, 1, 2].map((k) => r[k] * d[0] + r[3 + k] * d[1] + r[6 + k] * d[2]);
+}
 
 /** Of the pose with that index in the trajectory, or the next one that the page has. */
 function shownPose(index) {
@@ -52,19 +79,48 @@ function axisOf(number) {
   return axis;
 }
 
-/** The vehicle at shown pose i: its directions, its middle, and its size along them. */
-function vehicleAt(i) {
-  const facts = page.facts, pose = poseAt(i), box = facts.inputs.model.box;
+/** Around all bodies at shown pose i, in the frame of a pose. */
+function jointBox(i, pose) {
+  const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
+  for (const { body, pose: its } of bodiesAt(i)) {
+    const box = bodyFacts()[body].box;
+    for (let corner = 0; corner < 8; ++corner) {
+      const m = [0, 1, 2].map((k) => (corner >> k & 1 ? box.hi : box.lo)[k]);
+      movedBack(pose, moved(its, m)).forEach((v, k) => {
+        lo[k] = Math.min(lo[k], v);
+        hi[k] = Math.max(hi[k], v);
+      });
+    }
+  }
+  return lo[0] <= hi[0] ? { lo, hi } : { lo: [0, 0, 0], hi: [0, 0, 0] };
+}
+
+/**
+ * The vehicle at shown pose i: its directions, its middle, and its size along them. body: of that
+ * one alone, where it is there.
+ */
+function vehicleAt(i, body) {
+  const facts = page.facts, own = page.bodyPoses && body !== undefined ? bodyPoseAt(i, body) : null;
+  const pose = own ?? poseAt(i);
+  const box = own ? bodyFacts()[body].box : page.bodyPoses ? jointBox(i, pose) : facts.inputs.model.box;
   const forward = axisOf(facts.page.forward), up = axisOf(facts.page.up), left = cross(up, forward);
   const size = box.hi.map((h, k) => h - box.lo[k]);
   const middle = times(plus(box.lo, box.hi), 0.5);
   const extent = (axis) => Math.abs(dot(axis, size));
   return {
-    pose,
+    shown: i, pose,
     forward: unit(turned(pose, forward)), left: unit(turned(pose, left)),
     up: unit(turned(pose, up)), middle: moved(pose, middle),
     length: extent(forward), width: extent(left), height: extent(up),
   };
+}
+
+/** The diagonal of its box; of a vehicle with bodies the greatest at some of its poses. */
+function sizeOfVehicle() {
+  const diagonal = (box) => length(plus(box.hi, box.lo, -1)), n = page.poses.count;
+  if (!page.bodyPoses) return diagonal(page.facts.inputs.model.box);
+  const some = [...Array(Math.min(n, 50)).keys()].map((k) => Math.floor((k + 0.5) * n / Math.min(n, 50)));
+  return Math.max(0.1, ...some.map((i) => diagonal(jointBox(i, poseAt(i)))));
 }
 
 /** Where a conflict is looked at: the nearest point, or else the middle of its points. */
@@ -72,20 +128,21 @@ function placeOf(conflict) {
   return inPage(conflict.nearest_point ?? conflict.centroid);
 }
 
-/** The model point nearest to a place, at a pose: {point, distance}. */
-function nearestOfModel(pose, place) {
-  const xyz = page.model.xyz, r = pose.r;
-  const d = plus(place, pose.t, -1);
-  // In the model's frame: its rotation's transpose is its inverse but for a non-rigid one.
-  const e = [r[0] * d[0] + r[3] * d[1] + r[6] * d[2], r[1] * d[0] + r[4] * d[1] + r[7] * d[2],
-             r[2] * d[0] + r[5] * d[1] + r[8] * d[2]];
-  let best = Infinity, at = 0;
-  for (let i = 0; i < xyz.length; i += 3) {
-    const dx = xyz[i] - e[0], dy = xyz[i + 1] - e[1], dz = xyz[i + 2] - e[2];
-    const d2 = dx * dx + dy * dy + dz * dz;
-    if (d2 < best) { best = d2; at = i; }
+/** The model point nearest to a place, at shown pose i: {point, distance}. */
+function nearestOfModel(shown, place) {
+  const xyz = page.model.xyz;
+  let best = Infinity, point = place;
+  for (const { body, pose } of bodiesAt(shown)) {
+    const e = movedBack(pose, place), { first, count } = page.model.ranges[body];
+    let at = -1;
+    for (let i = 3 * first; i < 3 * (first + count); i += 3) {
+      const dx = xyz[i] - e[0], dy = xyz[i + 1] - e[1], dz = xyz[i + 2] - e[2];
+      const d2 = dx * dx + dy * dy + dz * dz;
+      if (d2 < best) { best = d2; at = i; }
+    }
+    if (at >= 0) point = moved(pose, [xyz[at], xyz[at + 1], xyz[at + 2]]);
   }
-  return { point: moved(pose, [xyz[at], xyz[at + 1], xyz[at + 2]]), distance: Math.sqrt(best) };
+  return { point, distance: Math.sqrt(best) };
 }
 
 /** Whether most of the path has something above it: a tunnel, a gallery, a hall. */

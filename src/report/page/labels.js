@@ -32,7 +32,7 @@ function drawScaleBar(context, perMetre, unitSize) {
 
 /** The line of the least distance, with its length. */
 function drawDistance(context, painter, conflict, vehicle, unitSize) {
-  const place = placeOf(conflict), near = nearestOfModel(vehicle.pose, place);
+  const place = placeOf(conflict), near = nearestOfModel(vehicle.shown, place);
   const a = painter.project(place), b = painter.project(near.point);
   context.strokeStyle = "#111827";
   context.lineWidth = 1.6 * unitSize;

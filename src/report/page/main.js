@@ -5,10 +5,9 @@ async function start() {
   }
   await readAll();
   page.path = [];
-  for (let i = 0; i < page.poses.count; ++i) page.path.push(vehicleAt(i).middle);
+  for (let i = 0; i < page.poses.count; ++i) page.path.push(page.bodyPoses ? poseAt(i).t : vehicleAt(i).middle);
   page.enclosed = isEnclosed();
-  const box = page.facts.inputs.model.box;
-  page.vehicleSize = length(plus(box.hi, box.lo, -1));
+  page.vehicleSize = sizeOfVehicle();
   for (const build of [buildVerdict, buildProfile, buildPlan, buildTable, buildDetails, buildView,
                        buildPrint]) {
     build();

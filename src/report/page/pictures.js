@@ -56,11 +56,14 @@ function drawMask(context, mask, width, height, fill, edge, dashed) {
   context.drawImage(holder, 0, 0);
 }
 
-/** Model points at a pose, in the page's coordinates. */
-function movedModel(pose) {
-  const { xyz, count } = page.model, out = new Array(count);
-  for (let i = 0; i < count; ++i) {
-    out[i] = moved(pose, [xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]]);
+/** Points of all bodies at shown pose i, in the page's coordinates. */
+function movedModel(shown) {
+  const { xyz, ranges } = page.model, out = [];
+  for (const { body, pose } of bodiesAt(shown)) {
+    const { first, count } = ranges[body];
+    for (let i = first; i < first + count; ++i) {
+      out.push(moved(pose, [xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]]));
+    }
   }
   return out;
 }
@@ -98,7 +101,8 @@ function viewOf(kind, conflict, vehicle, place, aspect) {
 /** Draws a picture of a conflict: kind is "front", "above" or "section". */
 function drawConflict(canvas, conflict, kind) {
   const { width, height } = canvas, context = canvas.getContext("2d");
-  const vehicle = vehicleAt(shownPose(poseOf(conflict))), place = placeOf(conflict);
+  const vehicle = vehicleAt(shownPose(poseOf(conflict)), bodyNumber(conflict.body));
+  const place = placeOf(conflict);
   const view = viewOf(kind, conflict, vehicle, place, width / height);
   const painter = new Painter(width, height, view.camera), unitSize = width / 480;
   context.fillStyle = kBackground;
@@ -113,7 +117,7 @@ function drawConflict(canvas, conflict, kind) {
   }
   if (kind !== "section") painter.shade();
   painter.show(context);
-  drawModel(context, painter, vehicle, kind, thickness);
+  drawModel(context, painter, conflict, vehicle, kind, thickness);
   const marks = new Painter(width, height, view.camera);
   const reach = kind === "section" ? { lo: -thickness, hi: thickness } : view;
   paintClasses(marks, { lo: reach.lo, hi: reach.hi, over: true, size: size + 2 });
@@ -121,11 +125,11 @@ function drawConflict(canvas, conflict, kind) {
   drawLabels(context, painter, conflict, vehicle, kind, unitSize, thickness);
 }
 
-function drawModel(context, painter, vehicle, kind, thickness) {
-  const { width, height } = painter, points = movedModel(vehicle.pose);
+function drawModel(context, painter, { body }, vehicle, kind, thickness) {
+  const { width, height } = painter, points = movedModel(vehicle.shown);
   const inSlab = kind === "section" ? (depth) => Math.abs(depth) <= thickness : undefined;
   const spacing = Math.sqrt(vehicle.length * (vehicle.width + vehicle.height) * 2 /
-      Math.max(page.model.count, 1)) * painter.perMetre;
+      Math.max(page.model.ranges[bodyNumber(body) ?? 0].count, 1)) * painter.perMetre;
   if (kind === "section") {
     const radius = page.facts.query.radius * painter.perMetre;
     drawMask(context, maskOf(painter, points, radius, inSlab), width, height,

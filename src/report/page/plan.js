@@ -104,7 +104,12 @@ function drawNumber(context, [x, y], conflict, full, unitSize) {
 
 function drawVehicleMark(context, painter, unitSize) {
   if (page.poses.count === 0) return;
-  const v = vehicleAt(page.pose);
+  for (const { body } of bodiesAt(page.pose)) {
+    drawBodyMark(context, painter, unitSize, vehicleAt(page.pose, body));
+  }
+}
+
+function drawBodyMark(context, painter, unitSize, v) {
   const corner = (a, b) => painter.project(plus(plus(v.middle, v.forward, a * v.length / 2), v.left,
                                                 b * v.width / 2));
   const corners = [corner(-1, -1), corner(-1, 1), corner(0.6, 1), corner(1, 0), corner(0.6, -1)];

@@ -19,6 +19,7 @@ function tableColumns() {
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
     ["Chainage", (c) => c.chainage_from, chainageCell],
+    list.some((c) => c.body !== undefined) && ["Body", (c) => c.body ?? "", (c) => c.body ?? ""],
     ["Side", (c) => c.side, (c) => kSides[c.side]],
     list.some((c) => c.lateral !== null) && ["Lateral", ...offset("lateral")],
     list.some((c) => c.height !== null) && ["Height", ...offset("height")],
@@ -31,7 +32,7 @@ function tableColumns() {
     ["Place x, y, z", (c) => (c.nearest_point ?? c.centroid)[0],
      (c) => coordinates(c.nearest_point ?? c.centroid)],
   ].filter(Boolean).map(([title, value, cell]) =>
-      ({ title, value, cell, number: !["Side", "Class"].includes(title) }));
+      ({ title, value, cell, number: !["Side", "Class", "Body"].includes(title) }));
 }
 
 /** From and to, or one of them where they are the same. */
@@ -69,7 +70,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Side", "Lateral", "Height", "Least distance", "Class", "Pose"].includes(title);
+  const numbers = !["No.", "Chainage", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;
@@ -223,8 +224,9 @@ function conflictsNote(found) {
   text += found.split > 0 ? `, cut every ${shortLength(found.split)} along the path.` : ".";
   if (found.list.some((c) => c.lateral !== null)) {
     const place = found.list.some((c) => c.nearest_point) ? "nearest point" : "centre of its points";
-    text += ` Lateral is how far left (+) or right (−) of the path the ${place} lies, height how ` +
-        "far above it, along the vehicle's own axes.";
+    const [from, whose] = page.bodyPoses ? ["the body's origin", "body"] : ["the path", "vehicle"];
+    text += ` Lateral is how far left (+) or right (−) of ${from} the ${place} lies, height how ` +
+        `far above it, along the ${whose}'s own axes.`;
   }
   if (found.small_groups > 0) {
     text += ` ${plural(found.small_groups, "group")} of fewer than ${count(found.min_points)} points ` +

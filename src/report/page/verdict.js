@@ -89,9 +89,10 @@ function verdictSentences() {
   if (!worst) return [first, leastSentence()];
   const worstText = worst.least_distance === null
       ? `Conflict ${worst.id} has the most points. It begins at chainage ` +
-        `${station(worst.chainage_from)}${after(sideWords(worst.side))}.`
+        `${station(worst.chainage_from)}${after(sideWords(worst.side))}${bodyWords(worst)}.`
       : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
-        `${after(sideWords(worst.side))}: ${nearnessText(worst.least_distance, radius)}.` +
+        `${after(sideWords(worst.side))}${bodyWords(worst)}: ` +
+        `${nearnessText(worst.least_distance, radius)}.` +
         nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" });
   const least = facts.least_distance;  // of a group that is too small for the list, perhaps
   const nearer = least && worst.least_distance !== null && least.distance < worst.least_distance;
@@ -139,14 +140,26 @@ function questionTable() {
     factRow("Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points ` +
             `of ${plural(inputs.environment.files, "file")}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
             `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
-    factRow("Vehicle (model)", `${inputs.model.name}: ${count(inputs.model.points)} points, ` +
-            `${size} ${unitSymbol}. `, hash(inputs.model.hash)),
+    inputs.model.bodies ? factRow("Vehicle (bodies)", bodyList(inputs.model), hash(inputs.model.hash))
+        : factRow("Vehicle (model)", `${inputs.model.name}: ${count(inputs.model.points)} points, ` +
+                  `${size} ${unitSymbol}. `, hash(inputs.model.hash)),
     inputs.model.above === null ? "" : factRow("Left out", leftOut(inputs.model), optionName("--model-above")),
     factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
     factRow("Asked for", askedFor(query)),
     page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored))));
+}
+
+/** Each with what it consists of, its size, and where it lacks poses. */
+function bodyList({ name, bodies }) {
+  const { poses } = page.facts.inputs.trajectory;
+  return make("div", {}, `${name}: ${plural(bodies.length, "body", "bodies")}`,
+              make("ul", { class: "bodies" }, bodies.map(({ box, ...body }) => make("li", {},
+      make("strong", {}, body.name), ": ",
+      body.triangles > 0 ? plural(body.triangles, "triangle") : plural(body.points, "point"), ", ",
+      box.hi.map((h, k) => (h - box.lo[k]).toFixed(2)).join(" × "), ` ${unitSymbol}`,
+      body.poses < poses ? `; it has ${count(body.poses)} of ${plural(poses, "pose")}` : ""))));
 }
 
 /** What --ignore-class and --ignore-box left out of the search. */

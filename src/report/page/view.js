@@ -44,8 +44,10 @@ function drawWebgl(canvas) {
                                                 [0, 0, 0], [0, 0, 0]],
                       size: 1.3 * spacing * perMetre, least: 1.2 * scale, most: 5 * scale,
                       cutAbove: view.cutAbove ? 128 + 2 : 1000, cutPlane: cutPlane(camera) }],
-    ["model", { palette: Array(5).fill(kModelRgb), matrix: matrixOf(poseAt(page.pose)),
-                size: 0.03 * perMetre, least: 1.5 * scale, most: 6 * scale }],
+    ...bodiesAt(page.pose).map(({ body, pose }) =>
+        ["model", { palette: Array(5).fill(bodyRgb(body)), matrix: matrixOf(pose),
+                    ...page.model.ranges[body],
+                    size: 0.03 * perMetre, least: 1.5 * scale, most: 6 * scale }]),
     ["path", { palette: black, mode: gl.LINE_STRIP, size: 1, least: 2, most: 2 }],
     ["path", { palette: black, size: 0.01 * perMetre, least: 2 * scale, most: 3 * scale }],
     ["points", { environment: 0, palette: classes, hidden: view.hidden, size: 0.03 * perMetre,
@@ -62,7 +64,7 @@ function drawWithoutWebgl(canvas) {
       !(view.cutAbove && tag[i] > 128 + 2) &&
       !(plane && plane[0] * xyz[3 * i] + plane[1] * xyz[3 * i + 1] + plane[2] * xyz[3 * i + 2] +
         plane[3] > 0) });
-  const model = { ...page.model, xyz: new Float32Array(movedModel(poseAt(page.pose)).flat()) };
+  const model = { ...page.model, xyz: new Float32Array(movedModel(page.pose).flat()) };
   model.chunks = chunksOf(model.xyz);
   painter.points(model, { stamp: stampOf("square", size + 1), colour: () => packed(kModelRgb) });
   paintClasses(painter, { size: size + 2, hidden: page.facts.classes.map((_, k) => view.hidden >> k & 1) });
@@ -130,7 +132,7 @@ function flyTo(goal) {
 function flyToConflict() {
   const conflict = page.conflict;
   if (!conflict) return scheduleView();
-  const v = vehicleAt(page.pose), place = placeOf(conflict);
+  const v = vehicleAt(page.pose, bodyNumber(conflict.body)), place = placeOf(conflict);
   const aside = dot(plus(place, v.middle, -1), v.left) > 0 ? -1 : 1;
   const ahead = dot(plus(place, v.middle, -1), v.forward) < -0.25 * v.length ? -1 : 1;
   const eye = plus(times(v.forward, 0.75 * ahead), v.left, 0.55 * aside);

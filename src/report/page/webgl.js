@@ -116,7 +116,8 @@ class WebglScene {
     this.points = makeProgram(gl, kPointShader, kPointColour);
     this.shade = makeProgram(gl, kShadeVertex, kShadeColour);
     this.sets = { environment: this.upload(page.environment), points: this.upload(page.points),
-                  model: this.upload(page.model), path: this.upload(pathSet()) };
+                  model: this.upload({ ...page.model, tag: new Uint8Array(page.model.count) }),
+                  path: this.upload(pathSet()) };
     this.empty = gl.createVertexArray();
     this.target = gl.createFramebuffer();
   }
@@ -169,7 +170,7 @@ class WebglScene {
     gl.uniform1i(uniforms.environment, how.environment ?? 2);
     gl.uniform1i(uniforms.hidden, how.hidden ?? 0);
     gl.bindVertexArray(set.array);
-    gl.drawArrays(how.mode ?? gl.POINTS, 0, set.count);
+    gl.drawArrays(how.mode ?? gl.POINTS, how.first ?? 0, how.count ?? set.count);
   }
 
   /** layers: [name, how] in order. */

@@ -7,6 +7,9 @@ const kClassWords = {
 };
 const kModelColour = "#00735c", kModelRgb = [0, 140, 110];
 
+/** Bodies next to each other differ a little. */
+const bodyRgb = (body) => body % 2 === 0 ? kModelRgb : [0, 108, 132];
+
 const count = (n) => Math.round(n).toLocaleString("en-US");
 const plural = (n, one, many = one + "s") => `${count(n)} ${n === 1 ? one : many}`;
 /** Digits after the point with which none of these lengths looks like nothing. */
@@ -36,15 +39,19 @@ function signed(v) {
   return sign + Math.abs(v).toFixed(2);
 }
 
-/** Where a place is, seen from the path; empty where that is not known. */
-function offsetWords({ lateral, height }) {
+/** Where a place is, seen from the path, or from the body; empty where that is not known. */
+function offsetWords({ lateral, height, body }) {
   if (lateral === null || height === null) return "";
-  return `${metres(Math.abs(lateral), 2)} ${lateral < 0 ? "right" : "left"} of the path and ` +
+  const from = body === undefined ? "the path" : "its origin";
+  return `${metres(Math.abs(lateral), 2)} ${lateral < 0 ? "right" : "left"} of ${from} and ` +
       `${metres(Math.abs(height), 2)} ${height < 0 ? "below" : "above"} it`;
 }
 
 /** ", text", or nothing. */
 const after = (text) => text ? `, ${text}` : "";
+
+/** ", body NAME", where there are several. */
+const bodyWords = ({ body }) => body === undefined ? "" : `, body "${body}"`;
 
 /** Where along the path a conflict is nearest, or else where it begins. */
 function stationOf(conflict) {
@@ -95,7 +102,8 @@ function leastSentence() {
   const { least_distance: least, query } = page.facts;
   if (least) {
     return `The least distance is ${metres(least.distance)}, at chainage ` +
-        `${station(least.chainage)} (pose ${count(least.pose)}).${nearestPointSentence(least)}`;
+        `${station(least.chainage)} (pose ${count(least.pose)}${bodyWords(least)}).` +
+        nearestPointSentence(least);
   }
   const looked = Math.max(query.clearance, query.profile);
   if (looked > 0) return `Nothing is closer than ${shortLength(looked)}.`;

@@ -1,0 +1,139 @@
+#include "report/drawn_bodies.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/point_box.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/geometry/triangle.hpp"
+#include "io/model/sample_mesh.hpp"
+#include "report/shown_poses.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr std::size_t kBodiesOfAllPoses = 8;  ///< of more bodies fewer poses are shown
+
+std::int32_t column_value(double value) {
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::clamp(std::round(value), -kMost, kMost));
+}
+
+/// Evenly along the curve.
+void append_points(std::span<const Vec3> model, std::size_t most, std::uint8_t tag,
+                   const PageLattice& lattice, std::vector<PagePoint>& out) {
+  std::vector<PagePoint> all;
+  all.reserve(model.size());
+  for (const Vec3& m : model) all.push_back(page_point(lattice, m, tag));
+  sort_along_curve(all);
+  const std::size_t kept = std::min(most, all.size());
+  for (std::size_t i = 0; i < kept; ++i) out.push_back(all[i * all.size() / kept]);
+}
+
+/// For the page to show.
+std::vector<Vec3> surface_points(const DrawnBody& body, std::size_t most) {
+  const TriangleMesh mesh{{body.model.begin(), body.model.end()},
+                          {body.triangles.begin(), body.triangles.end()}};
+  return sample_mesh(mesh, spacing_for(mesh, static_cast<double>(most)), "the model");
+}
+
+}  // namespace
+
+const Pose* DrawnBody::pose_at(std::uint32_t pose) const {
+  if (path_pose.empty()) return pose < poses.size() ? &poses[pose] : nullptr;
+  const auto at = std::ranges::lower_bound(path_pose, pose);
+  if (at == path_pose.end() || *at != pose) return nullptr;
+  return &poses[static_cast<std::size_t>(at - path_pose.begin())];
+}
+
+double DrawnBody::distance_to(const Vec3& place, std::uint32_t pose) const {
+  double least = std::numeric_limits<double>::infinity();
+  const Pose* there = pose_at(pose);
+  if (there == nullptr) return least;
+  for (const auto& corners : triangles) {
+    const Triangle triangle{model[corners[0]], model[corners[1]], model[corners[2]]};
+    least = std::min(least, squared_distance(place, transform(*there, triangle)));
+  }
+  if (!triangles.empty()) return std::sqrt(least);
+  for (const Vec3& m : model)
+    least = std::min(least, squared_distance(place, transform(*there, m)));
+  return std::sqrt(least);
+}
+
+std::vector<DrawnBody> drawn_bodies(const std::vector<Vec3>& model, const std::vector<Pose>& poses,
+                                    const ReportOptions& options) {
+  std::vector<DrawnBody> bodies;
+  for (const Body& body : options.bodies) {
+    bodies.push_back(
+        {body.name, body.model, body.triangles, body.poses, body.path_pose, box_of(body.model)});
+  }
+  if (bodies.empty()) {
+    bodies.push_back({{}, model, options.model_triangles, poses, {}, box_of(model)});
+  }
+  return bodies;
+}
+
+Box box_around(std::span<const DrawnBody> bodies) {
+  Box box = bodies.front().box;
+  for (const DrawnBody& body : bodies) {
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], body.box.lo[k]);
+      box.hi[k] = std::max(box.hi[k], body.box.hi[k]);
+    }
+  }
+  return box;
+}
+
+std::vector<PagePoint> points_of_bodies(std::span<DrawnBody> bodies, const PageLattice& lattice,
+                                        std::size_t most) {
+  const std::size_t of_each = most / bodies.size();
+  std::vector<PagePoint> out;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    DrawnBody& body = bodies[i];
+    const std::size_t before = out.size();
+    std::vector<Vec3> surface;
+    if (!body.triangles.empty()) surface = surface_points(body, of_each);
+    append_points(body.triangles.empty() ? body.model : surface, of_each,
+                  static_cast<std::uint8_t>(i), lattice, out);
+    body.shown_points = out.size() - before;
+  }
+  return out;
+}
+
+void append_body_columns(std::span<const DrawnBody> bodies, std::span<const std::uint32_t> shown,
+                         const PageLattice& lattice, std::vector<PageColumn>& columns) {
+  static constexpr const char* kNames[] = {"body.there", "body.x",  "body.y",  "body.z",  "body.r0",
+                                           "body.r1",    "body.r2", "body.r3", "body.r4", "body.r5",
+                                           "body.r6",    "body.r7", "body.r8"};
+  std::vector<std::vector<std::int32_t>> values(std::size(kNames));
+  for (const DrawnBody& body : bodies) {
+    for (const std::uint32_t at : shown) {
+      const Pose* pose = body.pose_at(at);
+      values[0].push_back(pose != nullptr ? 1 : 0);
+      for (int k = 0; k < 3; ++k) {
+        values[1 + k].push_back(
+            pose != nullptr
+                ? column_value((pose->translation[k] - lattice.origin[k]) / lattice.step)
+                : 0);
+      }
+      for (int k = 0; k < 9; ++k) {
+        values[4 + k].push_back(pose != nullptr ? column_value(pose->rotation[k] / kRotationStep)
+                                                : 0);
+      }
+    }
+  }
+  const std::size_t first = columns.size();
+  for (const char* name : kNames) columns.push_back({name, {}});
+  tbb::parallel_for(std::size_t{0}, values.size(), [&](std::size_t k) {
+    columns[first + k].base64 = deflated_base64(delta_planes(values[k]));
+  });
+}
+
+std::size_t most_shown_poses(std::size_t bodies) {
+  return std::min(kMostShownPoses, kBodiesOfAllPoses * kMostShownPoses / bodies);
+}
+
+}  // namespace clearway
