@@ -17,6 +17,9 @@ struct Entry {
 };
 
 struct Vehicle : Entry {
+  /// A JSON file of several bodies, not a model.
+  bool has_bodies() const { return file.extension() == ".json"; }
+
   Arguments axes;  ///< of conflicts and reports
 };
 

@@ -36,7 +36,8 @@ class RunCommands {
         vehicle_(vehicle),
         route_(route),
         environment_(campaign.environments[route.environment]),
-        model_(Arguments{file_argument(vehicle, "--model")} + vehicle.arguments),
+        model_(Arguments{file_argument(vehicle, vehicle.has_bodies() ? "--vehicle" : "--model")} +
+               vehicle.arguments),
         path_(Arguments{file_argument(route, "--trajectory")} + route.arguments),
         radius_(radius) {}
 
@@ -68,13 +69,13 @@ class RunCommands {
   }
 
  private:
-  /// Pictures show the model; the other formats need the trajectory alone.
+  /// Pictures show the model, if it is one; the other formats need the trajectory alone.
   std::pair<Command, Arguments> conflicts() const {
     Command command{"conflicts", kResultName, "--force", "--show=0"};
     bool pictures = false;
     for (const std::string& format : campaign_.conflict_formats) {
       command.push_back("--output=conflicts." + format);
-      pictures = pictures || format == "bcf";
+      pictures = pictures || (format == "bcf" && !vehicle_.has_bodies());
     }
     return {std::move(command),
             path_ + (pictures ? model_ : Arguments{}) + vehicle_.axes + campaign_.conflicts};

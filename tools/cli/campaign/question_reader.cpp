@@ -10,6 +10,7 @@
 #include "cli/input_roles.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
+#include "cli/vehicle/read_vehicle.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
@@ -18,6 +19,7 @@
 #include "io/system/xxh64.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
+#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -106,17 +108,47 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
     throw InputError(file_.string() + ": query.ignore_classes: the points of " +
                      run.environment.file.string() + " have no classes");
   }
+  const ReadTrajectory& poses = trajectory(run, options);
+  header.poses = poses.count;
+  header.trajectory_hash = poses.hash;
+  const std::uint32_t shards = options.vehicle.empty() ? add_model(run, options, poses, header)
+                                                       : add_bodies(run, options, poses, header);
+  return {campaign::question_of(header), store.unit, shards, store.fingerprint};
+}
+
+/// Returns the number of shards.
+std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions& options,
+                                        const ReadTrajectory& path, ResultHeader& header) {
   const ReadModel& points = model(run, options);
   header.model_points = points.count;
   header.model_triangles = points.triangles;
   header.model_hash = points.hash;
-  const ReadTrajectory& poses = trajectory(run, options);
-  header.poses = poses.count;
-  header.trajectory_hash = poses.hash;
-  const std::uint32_t shards = named(run.environment.key, [&] {
-    return estimate_.shards(options, points.box, points.count, poses.poses);
+  return named(run.environment.key, [&] {
+    return estimate_.shards(options, {{points.box, points.count, path.poses}});
   });
-  return {campaign::question_of(header), store.unit, shards, store.fingerprint};
+}
+
+/// Where the bodies are depends on the route, so each run reads them anew. Likewise.
+std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions& options,
+                                         const ReadTrajectory& path, ResultHeader& header) {
+  std::vector<Message> messages;
+  Query query({}, path.poses, options.query);
+  named(run.vehicle.key, [&] {
+    check_vehicle_search(options.search);
+    query.bodies =
+        read_vehicle(options.vehicle, path.poses, model_options_of(options),
+                     options.trajectory_options, threads_or_all(options.search.threads), messages);
+    check_bodies(query, options.search);
+  });
+  tell(run.vehicle.key, messages);
+  std::vector<EstimatedModel> models;
+  for (const Body& body : query.bodies) {
+    header.model_points += body.model.size();
+    header.model_triangles += body.triangles.size();
+    models.push_back({box_of(body.model), body.model.size(), body.poses});
+  }
+  header.model_hash = hash_of_bodies(query.bodies);
+  return named(run.environment.key, [&] { return estimate_.shards(options, models); });
 }
 
 void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
@@ -220,17 +252,21 @@ const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
 
 const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRun& run,
                                                                  const RunOptions& options) {
+  const bool needs_poses = estimate_.is_asked_for() || !options.vehicle.empty();
   const auto known = trajectories_.find(run.route.name);
-  if (known != trajectories_.end()) return known->second;
+  if (known != trajectories_.end() &&
+      (!needs_poses || known->second.poses.size() == known->second.count)) {
+    return known->second;
+  }
   return named(run.route.key, [&]() -> const ReadTrajectory& {
     check_is_trajectory(options.trajectory);
     std::vector<Message> messages;
     std::vector<Pose> poses =
         read_trajectory(options.trajectory, options.trajectory_options, &messages);
-    tell(run.route.key, messages);
+    if (known == trajectories_.end()) tell(run.route.key, messages);
     ReadTrajectory& read = trajectories_[run.route.name];
     read = {poses.size(), hash_of_trajectory(poses)};
-    if (estimate_.is_asked_for()) read.poses = std::move(poses);
+    if (needs_poses) read.poses = std::move(poses);
     return read;
   });
 }

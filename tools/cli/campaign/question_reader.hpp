@@ -36,7 +36,7 @@ class QuestionReader {
   };
   struct ReadTrajectory {
     std::uint64_t count = 0, hash = 0;
-    std::vector<Pose> poses{};  ///< for the estimate only
+    std::vector<Pose> poses{};  ///< where they are needed again
   };
 
   void parse(const campaign::PlannedRun& run, RunOptions& options) const;
@@ -46,6 +46,10 @@ class QuestionReader {
   const Environment& environment(const campaign::Entry& entry);
   const ReadModel& model(const campaign::PlannedRun& run, const RunOptions& options);
   const ReadTrajectory& trajectory(const campaign::PlannedRun& run, const RunOptions& options);
+  std::uint32_t add_model(const campaign::PlannedRun& run, const RunOptions& options,
+                          const ReadTrajectory& path, ResultHeader& header);
+  std::uint32_t add_bodies(const campaign::PlannedRun& run, const RunOptions& options,
+                           const ReadTrajectory& path, ResultHeader& header);
 
   template <typename Call>
   decltype(auto) named(const std::string& key, const Call& call) const;

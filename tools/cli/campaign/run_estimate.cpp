@@ -9,14 +9,17 @@
 
 namespace clearway::tool {
 
-std::uint32_t RunEstimate::shards(const RunOptions& run, const Box& model,
-                                  std::uint64_t model_points, std::span<const Pose> poses) {
+std::uint32_t RunEstimate::shards(const RunOptions& run,
+                                  const std::vector<EstimatedModel>& models) {
   if (!is_asked_for()) return 1;
   if (!store_ || store_->path() != run.environment) store_.emplace(run.environment);
-  const Workload work = workload_of(store_->reader(), run.query, model, model_points, poses);
-  const DeviceEstimate seconds =
-      estimate_devices(work, run.query, run.search.engine, std::max(run.search.threads, 1));
-  const double needed = run.search.device == Device::kCuda ? seconds.cuda : seconds.cpu;
+  double needed = 0;
+  for (const auto& [box, points, poses] : models) {
+    const Workload work = workload_of(store_->reader(), run.query, box, points, poses);
+    const DeviceEstimate seconds =
+        estimate_devices(work, run.query, run.search.engine, std::max(run.search.threads, 1));
+    needed += run.search.device == Device::kCuda ? seconds.cuda : seconds.cpu;
+  }
   return static_cast<std::uint32_t>(
       std::clamp(std::ceil(needed / shard_seconds_), 1.0, double{Shard::kMost}));
 }

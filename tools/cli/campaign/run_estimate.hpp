@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "clearway/box.hpp"
 #include "clearway/pose.hpp"
@@ -11,6 +12,13 @@
 #include "cli/run_options.hpp"
 
 namespace clearway::tool {
+
+/// The model of a run, or a body of its vehicle.
+struct EstimatedModel {
+  Box box{};
+  std::uint64_t points = 0;
+  std::span<const Pose> poses;
+};
 
 /// Into how many shards runs are divided, by an estimate of their seconds.
 class RunEstimate {
@@ -21,8 +29,7 @@ class RunEstimate {
   bool is_asked_for() const { return shard_seconds_ > 0; }
 
   /// On the CPU with the threads that are asked for, or one; on a GPU where one is asked for.
-  std::uint32_t shards(const RunOptions& run, const Box& model, std::uint64_t model_points,
-                       std::span<const Pose> poses);
+  std::uint32_t shards(const RunOptions& run, const std::vector<EstimatedModel>& models);
 
  private:
   double shard_seconds_;

@@ -1,0 +1,89 @@
+"""Campaigns of vehicles of several bodies: beside models, divided into shards, and what is refused.
+
+vehicle_campaign_test.py PROGRAM
+"""
+
+import json
+import pathlib
+import tempfile
+
+from campaign_scene import expect, make_scene, outcome, program, write_campaign
+
+LIMITS = {"memory": "300M", "threads": 1}
+WAGON = {"bodies": [{"name": "middle", "model": "v00.ply", "pivots": [1.05, -1.05]},
+                    {"name": "front", "model": "v00.ply", "at": 1}]}
+
+
+def plan(work, name, **changes):
+    given = {"limits": LIMITS, "vehicles": {"wagon": "vehicles/wagon.json",
+                                            "car": "vehicles/v00.ply"},
+             "outputs": {"conflicts": ["csv", "bcf"], "report": True}, **changes}
+    return outcome("campaign", "plan", write_campaign(work, **given), "-o", work / name)
+
+
+def runs_are_those_of_the_program(work):
+    done = plan(work, "whole")
+    expect(done.returncode == 0 and "2 tasks" in done.stdout, done.stderr)
+    expect("body-off-path" in done.stderr or "the body has no pose there" in done.stderr,
+           done.stderr)
+    program("campaign", "run", work / "whole", "--all")
+    folder = work / "whole/runs/wagon/r00/0.1"
+    program("run", "--env", work / "site.h5", "--vehicle", work / "vehicles/wagon.json",
+            "--trajectory", work / "routes/r00.txt", "--radius", 0.1, "--first-pose", "-o",
+            work / "out.h5")
+    expect((folder / "out.h5").read_bytes() == (work / "out.h5").read_bytes(), "another result")
+    rows = (folder / "conflicts.csv").read_text().splitlines()
+    expect("body" in rows[0].split(",") and len(rows) > 1, rows[0])
+    expect('"name":"middle"' in (folder / "report.html").read_text(), "the page has no bodies")
+    facts = json.loads(program("campaign", "report", work / "whole", "--json"))
+    expect(facts["not_done"] == 0 and facts["conflict"] >= 1, f"{facts}")
+
+
+def divided_runs_are_whole_ones(work):
+    limits = {**LIMITS, "shard_seconds": 0.03}
+    done = plan(work, "divided", limits=limits)
+    expect(done.returncode == 0, done.stderr)
+    tasks = [json.loads(line.rstrip(",")) for line in
+             (work / "divided/plan.json").read_text().splitlines()[1:-1]]
+    expect(sum(task["vehicle"] == "wagon" for task in tasks) > 2, "it is not divided")
+    program("campaign", "run", work / "divided", "--all", "--jobs", "2")
+    for name in ["out.h5", "conflicts.csv"]:
+        one, other = [(work / kind / "runs/wagon/r00/0.1" / name).read_bytes()
+                      for kind in ["whole", "divided"]]
+        expect(one == other, name)
+
+
+def a_changed_body_is_another_question(work):
+    model = work / "vehicles/wagon.json"
+    sound = model.read_text()
+    model.write_text(json.dumps({"bodies": WAGON["bodies"][:1]}))
+    done = plan(work, "whole")
+    expect(done.returncode != 0 and "--force" in done.stderr, done.stderr)
+    model.write_text(sound)
+
+
+def refusals_name_the_key(work):
+    for bodies, words in [([{"name": "a", "model": "none.ply"}], ["bodies[0].model", "none.ply"]),
+                          ([{"name": "a", "model": "v00.ply", "at": 1, "pivots": [1, -1]}],
+                           ["bodies[0]: a body moves in one way"])]:
+        (work / "vehicles/broken.json").write_text(json.dumps({"bodies": bodies}))
+        done = plan(work, "refused", vehicles={"wagon": "vehicles/broken.json"})
+        expect(done.returncode in (3, 4) and all(
+            word in done.stderr for word in ["campaign.json: vehicles.wagon", *words]), done.stderr)
+    done = plan(work, "refused", limits={**LIMITS, "engine": "kdtree"})
+    expect(done.returncode in (2, 3) and "vehicles.wagon" in done.stderr and
+           "no vehicle of several bodies" in done.stderr, done.stderr)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        make_scene(work, vehicles=1, routes=1)
+        (work / "vehicles/wagon.json").write_text(json.dumps(WAGON))
+        for check in [runs_are_those_of_the_program, divided_runs_are_whole_ones,
+                      a_changed_body_is_another_question, refusals_name_the_key]:
+            check(work)
+            print(check.__name__, flush=True)
+
+
+main()
