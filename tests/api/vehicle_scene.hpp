@@ -55,8 +55,31 @@ struct Vehicle {
     query.bodies[body].poses.push_back(at);
     query.bodies[body].path_pose.push_back(pose);
   }
+  /// The model becomes triangles of three points each.
+  void make_surface(std::size_t body) {
+    const auto corners = static_cast<std::uint32_t>(query.bodies[body].model.size());
+    for (std::uint32_t i = 0; i + 2 < corners; i += 3) {
+      query.bodies[body].triangles.push_back({i, i + 1, i + 2});
+    }
+  }
   Query of(std::size_t body) const {
-    return {query.bodies[body].model, query.bodies[body].poses, query};
+    Query own(query.bodies[body].model, query.bodies[body].poses, query);
+    own.triangles = query.bodies[body].triangles;
+    return own;
+  }
+  /// For brute force: ignored points are far away.
+  std::vector<Vec3> searched_places() const {
+    std::vector<Vec3> out = places;
+    for (Vec3& place : out) {
+      for (const Box& box : query.ignore_boxes) {
+        bool inside = true;
+        for (int k = 0; k < 3; ++k) {
+          inside = inside && place[k] >= box.lo[k] && place[k] <= box.hi[k];
+        }
+        if (inside) place = {1e7, 1e7, 1e7};
+      }
+    }
+    return out;
   }
 
   Result run(const SearchOptions& options = {}) {

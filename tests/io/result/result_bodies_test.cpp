@@ -74,6 +74,18 @@ TEST_CASE("a vehicle's result is read as it was written") {
   CHECK_FALSE(vehicle.fault("out.h5"));
 }
 
+TEST_CASE("a vehicle's result may ignore points too") {
+  Vehicle vehicle;
+  vehicle.header.ignore_classes = {2, 7};
+  vehicle.header.ignored = {.points = 9, .of_classes = {4, 5}, .in_boxes = {}};
+  vehicle.header.classes_hash = 77;
+  vehicle.write("out.h5");
+  const ResultReader result(vehicle.folder / "out.h5");
+  CHECK(result.header() == vehicle.header);
+  CHECK(result.header().version == 4);
+  CHECK_FALSE(vehicle.fault("out.h5"));
+}
+
 TEST_CASE("bodies without first poses are only those of clearances") {
   Vehicle vehicle;
   vehicle.header.first_pose = false;

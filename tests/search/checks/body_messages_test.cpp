@@ -1,0 +1,74 @@
+// What the checks of several bodies say of the vehicle.
+#include "search/checks/body_messages.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace clearway;
+
+namespace {
+
+Message warning(const std::string& code, const std::string& text = "text") {
+  return {Message::Severity::kWarning, code, text};
+}
+
+std::vector<Message> told(const std::vector<BodyMessages>& bodies) {
+  std::vector<Message> out, warnings;
+  const MessageCallback keep = [&](const Message& message) { out.push_back(message); };
+  MessageLog log(keep, warnings);
+  tell_of_bodies(bodies, log);
+  return out;
+}
+
+std::vector<std::string> codes(const std::vector<Message>& messages) {
+  std::vector<std::string> out;
+  for (const Message& message : messages) out.push_back(message.code);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a warning of one body names it") {
+  const auto found = told({{"a", {}}, {"b", {warning("model-size", "large")}}});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].code == "model-size");
+  CHECK(found[0].text == "body b: large");
+}
+
+TEST_CASE("what several bodies are told alike is told once") {
+  const Message same = warning("radius-size", "odd");
+  auto found = told({{"a", {same}}, {"b", {same}}, {"c", {same}}});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].text == "each body: odd");
+  found = told({{"a", {same}}, {"b", {}}, {"c", {same, warning("radius-size", "other")}}});
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].text == "bodies a, c: odd");
+  CHECK(found[1].text == "body c: other");
+}
+
+TEST_CASE("the vehicle floats where all of its bodies do") {
+  const Message floats = warning("floats"), beside = warning("nothing-beside");
+  CHECK(told({{"roof", {floats}}, {"bogie", {}}}).empty());
+  CHECK(codes(told({{"roof", {floats}}, {"bogie", {floats}}})) ==
+        std::vector<std::string>{"floats"});
+  // Above the ground nothing is expected beside it.
+  CHECK(codes(told({{"roof", {floats, beside}}, {"bogie", {floats, beside}}})) ==
+        std::vector<std::string>{"floats"});
+  CHECK(codes(told({{"roof", {beside}}, {"bogie", {floats, beside}}})) ==
+        std::vector<std::string>{"nothing-beside"});
+}
+
+TEST_CASE("a body that is nowhere near the scan does not hide what others lack") {
+  const auto found = told({{"far", {warning("out-of-reach", "far away")}},
+                           {"near", {warning("nothing-below", "no ground")}},
+                           {"still", {warning("no-poses")}}});
+  CHECK(codes(found) == std::vector<std::string>{"out-of-reach", "nothing-below", "no-poses"});
+  CHECK(found[0].text == "body far: far away");
+  CHECK(found[1].text == "the vehicle, as its body near: no ground");
+}
+
+TEST_CASE("notes of bodies stay notes") {
+  const auto found = told({{"a", {{Message::Severity::kNote, {}, "small"}}}});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].severity == Message::Severity::kNote);
+  CHECK(found[0].text == "body a: small");
+}
