@@ -122,6 +122,12 @@ void run_report(ReportCommand& options) {
   check_model_or_vehicle(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
+  if (result.bodies().empty() != options.vehicle.empty()) {
+    throw InputError(options.result.string() +
+                     (options.vehicle.empty()
+                          ? ": is of a vehicle of several bodies; give it with --vehicle"
+                          : ": is of one model; give it with --model"));
+  }
   const Store store(options.environment);
   const double unit = metres_of_unit(store.length_unit()).value_or(1);
   options.lengths.convert(unit);

@@ -1,0 +1,159 @@
+// Vehicles as a person runs them: devices, shards, ignored points, and what is warned of.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "clearway/result.hpp"
+#include "tools/cli/support/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+/// Ground, a wall on either side of a path along x, and a post beside it. Two bodies in a row.
+struct Yard {
+  Yard() {
+    std::string scan;
+    for (int i = 0; i < 300; ++i) {
+      for (int k = -15; k <= 15; ++k) scan += at(i, k, 0);
+      for (int k = 0; k < 10; ++k) scan += at(i, -15, k) + at(i, 15, k);
+    }
+    for (int k = 0; k < 10; ++k) scan += at(150, 6, k);
+    put_bytes(folder / "scan.xyz", scan);
+    std::string box, path, far;
+    for (int i = -5; i <= 5; ++i) {
+      for (int k = -5; k <= 5; ++k) {
+        for (const char* z : {"0.3", "1.1"}) {
+          box += std::to_string(i * 0.1) + " " + std::to_string(k * 0.1) + " " + z + "\n";
+        }
+      }
+    }
+    put_bytes(folder / "box.xyz", box);
+    for (int i = 0; i <= 180; ++i) {
+      const std::string rest = " 0 1 0 0 0 0 1 0\n";
+      path += "1 0 0 " + std::to_string(2 + i * 0.1) + rest;
+      far += "1 0 0 " + std::to_string(1000 + i * 0.1) + rest;
+    }
+    put_bytes(folder / "path.txt", path);
+    put_bytes(folder / "far.txt", far);
+    put_vehicle(R"({"name": "truck", "model": "box.xyz"})");
+    REQUIRE(program("convert scan.xyz -o site.h5 --cell-points 512").exit_code == 0);
+  }
+
+  static std::string at(int i, int k, int j) {
+    return std::to_string(i * 0.1) + " " + std::to_string(k * 0.1) + " " + std::to_string(j * 0.2) +
+           "\n";
+  }
+  void put_vehicle(const std::string& truck) const {
+    put_bytes(folder / "wagon.json",
+              "{\"bodies\": [" + truck +
+                  R"(, {"name": "trailer", "model": "box.xyz", "pivots": [-1, -2]}]})");
+  }
+  Outcome program(const std::string& arguments) const {
+    return run_program_at("env", folder,
+                          "-C " + quoted(folder / "") + " '" CLEARWAY_PROGRAM "' " + arguments);
+  }
+  Outcome run(const std::string& arguments) const {
+    return program(
+        "run --env site.h5 --vehicle wagon.json --trajectory path.txt --threads 2 --force " +
+        arguments);
+  }
+
+  ScratchFolder folder;
+};
+
+}  // namespace
+
+TEST_CASE("a vehicle is searched on the CPU and says so") {
+  const Yard yard;
+  const Outcome found = yard.run("--radius 0.2 -o out.h5 --json");
+  REQUIRE(found.exit_code == 0);
+  CHECK_THAT(found.err, Contains("the CPU is taken: a vehicle of several bodies"));
+  CHECK(json::parse(found.out)["device"] == "cpu");
+  CHECK_THAT(yard.run("--radius 0.2 -o out.h5 --device cpu").err, !Contains("the CPU is taken"));
+  for (const char* option : {"--device cuda", "--gpus 0", "--device-memory 1G"}) {
+    const Outcome refused = yard.run(std::string("--radius 0.2 -o out.h5 ") + option);
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains("--vehicle: a vehicle of several bodies"));
+  }
+}
+
+TEST_CASE("shards of a vehicle merge to the bytes of its whole run") {
+  const Yard yard;
+  const std::string query = "--radius 0.2 --first-pose --clearance 0.5 --profile 0.5 ";
+  REQUIRE(yard.run(query + "-o whole.h5").exit_code == 0);
+  std::string parts;
+  for (const std::string part : {"1", "2", "3"}) {
+    const Outcome done = yard.run(query + "--shard " + part + "/3 -o part" + part + ".h5");
+    INFO(done.err);
+    REQUIRE(done.exit_code == 0);
+    parts += " part" + part + ".h5";
+  }
+  const Outcome merged = yard.program("merge" + parts + " -o merged.h5");
+  INFO(merged.err);
+  REQUIRE(merged.exit_code == 0);
+  CHECK_THAT(merged.out, Contains("body truck"));
+  CHECK(bytes_of(yard.folder / "merged.h5") == bytes_of(yard.folder / "whole.h5"));
+  yard.put_vehicle(R"({"name": "lorry", "model": "box.xyz"})");
+  REQUIRE(yard.run(query + "--shard 2/3 -o part2.h5").exit_code == 0);
+  const Outcome other = yard.program("merge" + parts + " -o merged.h5 --force");
+  CHECK(other.exit_code == 3);
+  CHECK_THAT(other.err, Contains("part2.h5"));
+}
+
+TEST_CASE("a vehicle may touch what the search ignores") {
+  const Yard yard;
+  REQUIRE(yard.run("--radius 0.2 --first-pose -o out.h5").exit_code == 0);
+  CHECK(Result(yard.folder / "out.h5").size() > 0);
+  const Outcome clear =
+      yard.run("--radius 0.2 --first-pose -o out.h5 --ignore-box 14,0.5,-1,16,0.7,3");
+  REQUIRE(clear.exit_code == 0);
+  const Result result(yard.folder / "out.h5");
+  CHECK(result.size() == 0);
+  CHECK(result.ignored().points > 9);
+  const json info = json::parse(yard.program("info out.h5 --json").out);
+  CHECK(info["version"] == 4);
+  CHECK(info["bodies"] == json{"truck", "trailer"});
+  CHECK(info["ignored"]["points"] == result.ignored().points);
+  CHECK(yard.program("verify out.h5").exit_code == 0);
+}
+
+TEST_CASE("a body that is far from the scan is warned of by name") {
+  const Yard yard;
+  yard.put_vehicle(R"({"name": "truck", "model": "box.xyz", "trajectory": "far.txt"})");
+  const Outcome found = yard.run("--radius 0.05 -o out.h5 --json");
+  const json report = json::parse(found.out);
+  bool told = false;
+  for (const json& warning : report["warnings"]) {
+    if (warning["code"] != "out-of-reach") continue;
+    told = warning["message"].get<std::string>().find("body truck: ") == 0;
+  }
+  INFO(found.err);
+  CHECK(told);
+  CHECK(yard.run("--radius 0.05 -o out.h5 --strict").exit_code == 3);
+}
+
+TEST_CASE("a vehicle above the ground is warned of and one on it is not") {
+  const Yard yard;
+  const auto codes = [](const Outcome& outcome) {
+    std::set<std::string> out;
+    const json report = json::parse(outcome.out);
+    for (const json& warning : report["warnings"]) out.insert(warning["code"]);
+    return out;
+  };
+  CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 0);
+  std::string high;
+  for (int i = 0; i <= 180; ++i) {
+    high += "1 0 0 " + std::to_string(2 + i * 0.1) + " 0 1 0 0 0 0 1 9\n";
+  }
+  // The trailer alone is on the ground: the truck is as a load on a crane.
+  put_bytes(yard.folder / "high.txt", high);
+  yard.put_vehicle(R"({"name": "truck", "model": "box.xyz", "trajectory": "high.txt"})");
+  CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 0);
+  put_bytes(yard.folder / "path.txt", high);
+  yard.put_vehicle(R"({"name": "truck", "model": "box.xyz"})");
+  CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 1);
+}
