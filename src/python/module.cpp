@@ -14,6 +14,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_values(module);
   add_inputs(module);
   add_reports(module);
+  add_bodies(module);
   add_search(module);
   add_results(module);
   add_merge(module);

@@ -77,12 +77,14 @@ void add_parameter(py::class_<ArrayQuery>& query, const char* name, const char* 
 ArrayQuery make_query(const py::object& model, const py::object& poses, double radius,
                       bool first_pose, bool between_poses, double clearance, double profile,
                       double tolerance, std::vector<std::uint8_t> ignore_classes,
-                      std::vector<Box> ignore_boxes, bool allow_non_rigid) {
+                      std::vector<Box> ignore_boxes, bool allow_non_rigid,
+                      std::vector<Body> bodies) {
   return {{radius, first_pose, between_poses, clearance, profile, tolerance,
            std::move(ignore_classes), std::move(ignore_boxes)},
           points_array(model, "model"),
           poses_array(poses, "poses"),
-          allow_non_rigid};
+          allow_non_rigid,
+          std::move(bodies)};
 }
 
 void add_query(py::module_& module) {
@@ -94,7 +96,7 @@ void add_query(py::module_& module) {
       .def(py::init(&make_query), "model"_a = nothing, "poses"_a = nothing, "radius"_a = 0.0,
            py::kw_only(), "first_pose"_a = false, "between_poses"_a = false, "clearance"_a = 0.0,
            "profile"_a = 0.0, "tolerance"_a = 0.0, "ignore_classes"_a = nothing,
-           "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false)
+           "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false, "bodies"_a = nothing)
       .def_property(
           "model", [](const ArrayQuery& q) { return q.model; },
           [](ArrayQuery& q, const py::object& value) { q.model = points_array(value, "model"); },
@@ -105,6 +107,8 @@ void add_query(py::module_& module) {
           "n x 4 x 4 or n x 3 x 4 float64; the translation, in metres, is the last column.")
       .def_readwrite("allow_non_rigid", &ArrayQuery::allow_non_rigid,
                      "Takes poses that scale or shear too.")
+      .def_readwrite("bodies", &ArrayQuery::bodies,
+                     "Of a vehicle: Body objects, in the place of a model; poses are the path's.")
       .def("__repr__", [](const ArrayQuery& q) {
         return py::str("<Query: {} model points, {} poses, radius {} m>")
             .format(q.model.shape(0), q.poses.shape(0), q.parameters.radius);
@@ -162,7 +166,10 @@ void add_searches(py::module_& module) {
         watch.attach(options);
         return watch.run(
             [&, asked = query_of(query), rigid = !query.allow_non_rigid, to = path_of(output)] {
-              if (rigid) require_rigid(asked.poses);
+              if (rigid) {
+                require_rigid(asked.poses);
+                for (const Body& body : asked.bodies) require_rigid(body.poses);
+              }
               return in_turn(store, options.stop,
                              [&](const Store& own) { return search(own, asked, to, options); });
             });
@@ -205,7 +212,9 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 }  // namespace
 
 Query query_of(const ArrayQuery& query) {
-  return {points_of(query.model, "model"), poses_of(query.poses, "poses"), query.parameters};
+  Query out{points_of(query.model, "model"), poses_of(query.poses, "poses"), query.parameters};
+  out.bodies = query.bodies;
+  return out;
 }
 
 void add_search(py::module_& module) {

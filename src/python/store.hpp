@@ -39,6 +39,7 @@ struct ArrayQuery {
   QueryParameters parameters;
   Doubles model, poses;  ///< as points_array() and poses_array() have them
   bool allow_non_rigid = false;
+  std::vector<Body> bodies = {};
 };
 
 /// With copies of model and poses, so that Python may change them meanwhile.

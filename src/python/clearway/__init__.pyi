@@ -83,6 +83,20 @@ class Store:
     def length_unit(self) -> str: ...
     path: Final[_Path]
 
+class Body:
+    name: Final[str]
+    model: Final[_Doubles]
+    poses: Final[_Doubles]
+    path_pose: Final[_Poses]
+    def __init__(
+        self, name: str, model: ArrayLike, poses: ArrayLike,
+        path_pose: Sequence[int] | None = None,
+    ) -> None: ...
+def follow(
+    name: str, model: ArrayLike, path: ArrayLike, *, at: float | None = None,
+    pivots: tuple[float, float] | None = None, messages: list[Message] | None = None,
+) -> Body: ...
+
 class Query:
     model: Any  # any array is taken, and float64 given
     poses: Any
@@ -95,11 +109,13 @@ class Query:
     ignore_classes: list[int]
     ignore_boxes: list[Box]
     allow_non_rigid: bool
+    bodies: list[Body]
     def __init__(
         self, model: ArrayLike = ..., poses: ArrayLike = ..., radius: float = 0.0, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
         profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
         ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
+        bodies: Sequence[Body] = ...,
     ) -> None: ...
 class QueryParameters:
     radius: Final[float]
