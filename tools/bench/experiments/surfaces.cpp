@@ -15,7 +15,9 @@ constexpr double kSurfaceRadius = 0.1;  ///< kRadius
 /// A spacing is the radius over one of these. The third gives ten points a triangle on the hall's
 /// body.
 constexpr int kParts[] = {4, 8, 12, 16, 64};
-constexpr std::uint64_t kTriangles = 20'000;
+constexpr std::uint64_t kTriangles = 20'000, kTrianglesOfSmoke = 2'000;
+
+bool smoke(const Bench& bench) { return bench.options().size == "smoke"; }
 
 class Surfaces {
  public:
@@ -31,6 +33,7 @@ class Surfaces {
         bench_.answer("surface-" + name_, files_, surface.with({"--clearance", "0.3"}).options);
     wrong_.look_at(measure("surface", "", surface));
     for (const int parts : kParts) {
+      if (smoke(bench_) && parts == 64) continue;
       const double spacing = kSurfaceRadius / parts;
       const Json sampled =
           measure("sampled", "r / " + std::to_string(parts),
@@ -79,7 +82,9 @@ void bench_surfaces(Bench& bench) {
   }
   SceneFiles hall = bench.scene("hall");
   const std::filesystem::path body = bench.work() / "body.off";
-  if (!std::filesystem::exists(body)) write_body(hall.model, body, kTriangles);
+  if (!std::filesystem::exists(body)) {
+    write_body(hall.model, body, smoke(bench) ? kTrianglesOfSmoke : kTriangles);
+  }
   hall.model = body;
   Surfaces(bench, "hall", hall).compare();
 }
