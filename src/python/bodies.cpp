@@ -8,6 +8,7 @@
 #include "clearway/body.hpp"
 #include "clearway/follow.hpp"
 #include "python/arrays.hpp"
+#include "python/model.hpp"
 #include "python/values.hpp"
 
 namespace clearway::python {
@@ -17,10 +18,12 @@ using namespace py::literals;
 
 Body make_body(std::string name, const py::object& model, const py::object& poses,
                std::optional<std::vector<std::uint32_t>> path_pose) {
+  ModelShape shape = model_of(model_object(model));
   Body body{.name = std::move(name),
-            .model = points_of(points_array(model, "model"), "model"),
+            .model = std::move(shape.points),
             .poses = poses_of(poses_array(poses, "poses"), "poses"),
-            .path_pose = {}};
+            .path_pose = {},
+            .triangles = std::move(shape.triangles)};
   if (path_pose) {
     body.path_pose = std::move(*path_pose);
   } else {
@@ -44,8 +47,12 @@ void add_body(py::module_& module) {
       .def(py::init(&make_body), "name"_a, "model"_a, "poses"_a, "path_pose"_a = py::none())
       .def_property_readonly("name", [](const Body& b) { return text(b.name); })
       .def_property_readonly(
-          "model", [](const Body& b) { return to_array(b.model); },
-          "Points in the body's own frame: n x 3 float64, metres.")
+          "model",
+          [](const Body& b) -> py::object {
+            if (b.is_surface()) return py::cast(ModelShape{b.model, b.triangles});
+            return to_array(b.model);
+          },
+          "In the body's own frame: points, n x 3 float64, metres; or a ModelShape.")
       .def_property_readonly(
           "poses", [](const Body& b) { return to_array(b.poses); }, "n x 4 x 4 float64.")
       .def_property_readonly(
@@ -78,7 +85,7 @@ void add_follow(py::module_& module) {
 
 Place a body of a vehicle at the poses of a path. Returns a Body, for Query(bodies=...).
 
-model: points in the body's own frame, n x 3, metres.
+model: in the body's own frame, as Query takes it: points, n x 3, metres; or a ModelShape.
 path: the poses that the vehicle follows, n x 4 x 4.
 at: the body has the path's pose so many metres ahead; negative: behind.
 pivots: two places of the body that lie on the path, front and rear, metres ahead: (10, -10).

@@ -12,7 +12,7 @@ FieldValue value_of(const std::optional<Number>& number) {
 
 }  // namespace
 
-std::vector<ConflictField> fields_of(const Conflict& c) {
+std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& header) {
   std::vector<ConflictField> fields{{"id", std::uint64_t{c.id}},
                                     {"points", c.points},
                                     {"source", c.source},
@@ -37,14 +37,17 @@ std::vector<ConflictField> fields_of(const Conflict& c) {
                                     {"lateral", value_of<double>(c.lateral)},
                                     {"height", value_of<double>(c.height)},
                                     {"group", c.group}};
-  if (c.body) fields.push_back({"body", std::uint64_t{*c.body}});
+  if (c.body) {
+    fields.push_back({"body", std::uint64_t{*c.body}});
+    fields.push_back({"body_name", std::string_view(header.bodies.at(*c.body))});
+  }
   return fields;
 }
 
 std::vector<ConflictField> sample_fields(const ResultHeader& header) {
   Conflict conflict;
   if (!header.bodies.empty()) conflict.body = 0;
-  return fields_of(conflict);
+  return fields_of(conflict, header);
 }
 
 }  // namespace clearway

@@ -19,8 +19,9 @@ struct ConflictField {
   FieldValue value;
 };
 
-/// The same names in the same order for every conflict of a result; body only where it has one.
-std::vector<ConflictField> fields_of(const Conflict& conflict);
+/// The same names in the same order for every conflict of a result, which outlives them; body and
+/// body_name only where it has bodies.
+std::vector<ConflictField> fields_of(const Conflict& conflict, const ResultHeader& header);
 
 /// Of conflicts of such a result: what a table of them has for columns.
 std::vector<ConflictField> sample_fields(const ResultHeader& header);

@@ -6,11 +6,18 @@
 namespace clearway {
 namespace {
 
-/// No value of a conflict has a comma or a quote.
+/// The names of bodies may have commas and quotes (RFC 4180).
+std::string csv_word(std::string_view word) {
+  if (word.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(word);
+  std::string quoted = "\"";
+  for (const char c : word) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 std::string csv_value(const FieldValue& value) {
   if (std::holds_alternative<std::monostate>(value)) return "";
   const auto* word = std::get_if<std::string_view>(&value);
-  return word != nullptr ? std::string(*word) : json_value(value);
+  return word != nullptr ? csv_word(*word) : json_value(value);
 }
 
 }  // namespace
@@ -25,7 +32,7 @@ void write_csv(const ConflictFile& conflicts, const File& file) {
   out << "\n";
   for (const Conflict& conflict : conflicts.conflicts.listed) {
     between = "";
-    for (const ConflictField& field : fields_of(conflict)) {
+    for (const ConflictField& field : fields_of(conflict, conflicts.header)) {
       out << between << csv_value(field.value);
       between = ",";
     }

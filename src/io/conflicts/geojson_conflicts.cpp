@@ -46,9 +46,10 @@ std::string footprint_json(const Box& box) {
   return R"({"type": "Polygon", "coordinates": [[)" + ring + "]]}";
 }
 
-std::string feature_json(const Conflict& conflict, const char* shape, const std::string& geometry) {
+std::string feature_json(const Conflict& conflict, const ResultHeader& header, const char* shape,
+                         const std::string& geometry) {
   std::string properties = R"("shape": )" + json_string(shape);
-  for (const ConflictField& field : fields_of(conflict)) {
+  for (const ConflictField& field : fields_of(conflict, header)) {
     properties += ", " + json_string(field.name) + ": " + json_value(field.value);
   }
   return R"({"type": "Feature", "geometry": )" + geometry + R"(, "properties": {)" + properties +
@@ -65,8 +66,10 @@ void write_geojson(const ConflictFile& conflicts, const File& file) {
       << summary_json(conflicts) << "\n  },\n  \"features\": [";
   const char* between = "\n    ";
   for (const Conflict& conflict : conflicts.conflicts.listed) {
-    out << between << feature_json(conflict, "centroid", point_json(conflict.centroid)) << ",\n    "
-        << feature_json(conflict, "footprint", footprint_json(conflict.box));
+    out << between
+        << feature_json(conflict, conflicts.header, "centroid", point_json(conflict.centroid))
+        << ",\n    "
+        << feature_json(conflict, conflicts.header, "footprint", footprint_json(conflict.box));
     between = ",\n    ";
   }
   out << (conflicts.conflicts.listed.empty() ? "]\n}\n" : "\n  ]\n}\n");

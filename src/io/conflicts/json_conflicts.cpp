@@ -12,9 +12,9 @@ namespace clearway {
 namespace {
 
 /// Corners and centroid are arrays in the place of their x; their y and z are left out.
-std::string conflict_json(const Conflict& conflict) {
+std::string conflict_json(const Conflict& conflict, const ResultHeader& header) {
   std::string out;
-  for (const ConflictField& field : fields_of(conflict)) {
+  for (const ConflictField& field : fields_of(conflict, header)) {
     if (field.name.ends_with("_y") || field.name.ends_with("_z")) continue;
     std::string_view name = field.name;
     std::string value = json_value(field.value);
@@ -36,7 +36,7 @@ void write_json(const ConflictFile& conflicts, const File& file) {
   out << "{\n" << summary_json(conflicts) << ",\n  \"conflicts\": [";
   const char* between = "\n    ";
   for (const Conflict& conflict : conflicts.conflicts.listed) {
-    out << between << conflict_json(conflict);
+    out << between << conflict_json(conflict, conflicts.header);
     between = ",\n    ";
   }
   out << (conflicts.conflicts.listed.empty() ? "]\n}\n" : "\n  ]\n}\n");

@@ -108,8 +108,10 @@ double path_length_of(std::span<const Pose> poses) {
 }  // namespace
 
 Workload workload_of(const PackedCloud& cloud, const Query& query) {
-  return workload_of(cloud, query, query.model.empty() ? Box{} : box_of(query.model),
-                     element_count(query), query.poses);
+  return workload_of(
+      cloud, query, query.model.empty() ? Box{} : box_of(query.model),
+      query.is_surface() ? kPointsOfTriangle * query.triangles.size() : query.model.size(),
+      query.poses);
 }
 
 Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,

@@ -9,10 +9,13 @@
 
 namespace clearway {
 
+/// A surface takes as long as so many points a triangle (docs/design/surfaces.md).
+inline constexpr std::uint64_t kPointsOfTriangle = 10;
+
 /// What a query's cost follows from, estimated from a few poses and the boxes of the store's blocks
 /// in about a millisecond. The same for the same store and query.
 struct Workload {
-  double model_points = 0;
+  double model_points = 0;  ///< a triangle counts as kPointsOfTriangle
   double poses = 0;
   double radius = 0;  ///< metres, of what is searched: the radius or a distance beyond
   /// Environment points in the model's box, widened by the radius, of all poses together.

@@ -114,6 +114,7 @@ TEST_CASE("each body of a vehicle has its own motion and its own name in the res
   REQUIRE(found["conflicts"].size() > 0);
   for (const auto& conflict : found["conflicts"]) {
     CHECK(conflict["body"] > 0);
+    CHECK(conflict["body_name"] == found["bodies"][conflict["body"].get<std::size_t>()]);
     CHECK(conflict["side"] == "unknown");
   }
   for (const std::string format : {"csv", "ply", "las"}) {

@@ -19,6 +19,7 @@
 #include "io/system/xxh64.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
+#include "search/choice/workload.hpp"
 #include "search/threads.hpp"
 
 namespace clearway::tool {
@@ -145,7 +146,9 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
   for (const Body& body : query.bodies) {
     header.model_points += body.model.size();
     header.model_triangles += body.triangles.size();
-    models.push_back({box_of(body.model), body.model.size(), body.poses});
+    const std::uint64_t points =
+        body.is_surface() ? kPointsOfTriangle * body.triangles.size() : body.model.size();
+    models.push_back({box_of(body.model), points, body.poses});
   }
   header.model_hash = hash_of_bodies(query.bodies);
   return named(run.environment.key, [&] { return estimate_.shards(options, models); });

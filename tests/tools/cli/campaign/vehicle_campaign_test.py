@@ -10,7 +10,7 @@ import tempfile
 from campaign_scene import expect, make_scene, outcome, program, write_campaign
 
 LIMITS = {"memory": "300M", "threads": 1}
-WAGON = {"bodies": [{"name": "middle", "model": "v00.ply", "pivots": [1.05, -1.05]},
+WAGON = {"bodies": [{"name": 'middle, "low"', "model": "v00.ply", "pivots": [1.05, -1.05]},
                     {"name": "front", "model": "v00.ply", "at": 1}]}
 
 
@@ -33,8 +33,9 @@ def runs_are_those_of_the_program(work):
             work / "out.h5")
     expect((folder / "out.h5").read_bytes() == (work / "out.h5").read_bytes(), "another result")
     rows = (folder / "conflicts.csv").read_text().splitlines()
-    expect("body" in rows[0].split(",") and len(rows) > 1, rows[0])
-    expect('"name":"middle"' in (folder / "report.html").read_text(), "the page has no bodies")
+    expect("body_name" in rows[0].split(",") and len(rows) > 1, rows[0])
+    expect(rows[1].endswith(('"middle, ""low"""', "front")), rows[1])
+    expect('"name":"middle, \\"low' in (folder / "report.html").read_text(), "the page has no bodies")
     facts = json.loads(program("campaign", "report", work / "whole", "--json"))
     expect(facts["not_done"] == 0 and facts["conflict"] >= 1, f"{facts}")
 
