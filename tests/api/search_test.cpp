@@ -200,7 +200,7 @@ TEST_CASE("warnings are values") {
   CHECK(read_model(scene.folder / "mesh.ply", {.spacing = 1}, &warnings).size() == 3);
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].severity == Message::Severity::kNote);
-  CHECK_THAT(warnings[0].text, Catch::Contains("1 triangles"));
+  CHECK_THAT(warnings[0].text, Catch::Contains("1 triangle,"));
   std::vector<Message> told;
   const ConvertReport converted =
       convert({scene.folder / "mesh.ply"}, scene.folder / "mesh.h5",

@@ -20,6 +20,7 @@
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
 #include "cli/vehicle/read_vehicle.hpp"
+#include "cli/vehicle/run_query.hpp"
 #include "cli/verdict.hpp"
 #include "core/query/ignored_text.hpp"
 #include "core/util/format.hpp"
@@ -167,26 +168,6 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
                  options.query.clearance, unit);
   }
   if (doubtful) spdlog::info("{}{}", found, caveat_of(report.warnings.size()));
-}
-
-/// Warnings of the inputs are told at once, and go into the report with those of the search.
-Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
-  std::vector<Message>& warnings = options.search.input_warnings;
-  const ModelOptions how = model_options_of(options);
-  Query query({}, {}, options.query);
-  if (options.vehicle.empty()) {
-    ModelShape model = read_model_shape(options.model, how, &warnings);
-    query.model = std::move(model.points);
-    query.triangles = std::move(model.triangles);
-  }
-  options.trajectory_options.default_crs = store.crs_wkt();
-  query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
-  if (!options.vehicle.empty()) {
-    query.bodies = read_vehicle(options.vehicle, query.poses, how, options.trajectory_options,
-                                threads_or_all(options.search.threads), warnings);
-  }
-  for (const Message& warning : warnings) log_message(warning);
-  return query;
 }
 
 Store open_environment(const std::filesystem::path& path) {

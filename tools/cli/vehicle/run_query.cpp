@@ -1,0 +1,31 @@
+#include "cli/vehicle/run_query.hpp"
+
+#include <utility>
+
+#include "clearway/model.hpp"
+#include "cli/support/console.hpp"
+#include "cli/vehicle/read_vehicle.hpp"
+#include "search/threads.hpp"
+
+namespace clearway::tool {
+
+Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
+  std::vector<Message>& warnings = options.search.input_warnings;
+  const ModelOptions how = model_options_of(options);
+  Query query({}, {}, options.query);
+  if (options.vehicle.empty()) {
+    ModelShape model = read_model_shape(options.model, how, &warnings);
+    query.model = std::move(model.points);
+    query.triangles = std::move(model.triangles);
+  }
+  options.trajectory_options.default_crs = store.crs_wkt();
+  query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
+  if (!options.vehicle.empty()) {
+    query.bodies = read_vehicle(options.vehicle, query.poses, how, options.trajectory_options,
+                                threads_or_all(options.search.threads), warnings);
+  }
+  for (const Message& warning : warnings) log_message(warning);
+  return query;
+}
+
+}  // namespace clearway::tool

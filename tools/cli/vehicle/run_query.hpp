@@ -1,0 +1,13 @@
+#pragma once
+
+#include "clearway/store.hpp"
+#include "clearway/trajectory.hpp"
+#include "cli/run_options.hpp"
+
+namespace clearway::tool {
+
+/// Reads model or vehicle, and trajectory. Warnings of the inputs are told at once, and go into the
+/// report with those of the search.
+Query read_query(RunOptions& options, const Store& store, PoseLabels& labels);
+
+}  // namespace clearway::tool
