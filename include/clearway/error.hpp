@@ -46,6 +46,7 @@ enum class Remedy {
   kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
   kResume,        ///< the same call goes on from what was finished
   kMerge,         ///< the file is one part of a result
+  kModelPoints,   ///< points of the surface can be asked about, where the surface cannot
 };
 
 /// What the world does wrong. A program chooses its exit code by the type.

@@ -48,4 +48,9 @@ struct Query : QueryParameters {
   std::vector<std::uint32_t> solid_of;
 };
 
+/// Of a surface its triangles, otherwise the model's points.
+inline std::uint64_t element_count(const Query& query) {
+  return query.is_surface() ? query.triangles.size() : query.model.size();
+}
+
 }  // namespace clearway

@@ -88,6 +88,7 @@ struct EngineEstimate {
 struct SearchReport {
   bool was_finished = false;  ///< the result was there already: nothing was searched
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
+  std::uint64_t model_triangles = 0;  ///< of a surface, whose corners the points are; else 0
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
   std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
@@ -103,7 +104,7 @@ struct SearchReport {
   std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
   std::string device_name = "the CPU";     ///< for people
   std::optional<double> shard_share;       ///< of a shard: its estimated work over the mean
-  std::uint64_t searches = 0;              ///< pairs of pose and model point
+  std::uint64_t searches = 0;              ///< pairs of a pose and a model point or triangle
   std::optional<ToleranceReport> tolerance;
   double field_voxel = 0, grid_cell = 0;  ///< metres, of what the engine built; 0: nothing
   std::uint64_t cells_total = 0, cells_read = 0, bytes_read = 0;

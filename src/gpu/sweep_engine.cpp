@@ -10,7 +10,8 @@
 namespace clearway {
 namespace {
 
-ResultParts parts_of(const SweepRef& sweep) {
+template <typename Element>
+ResultParts parts_of(const SweepRefOf<Element>& sweep) {
   return {.first_pose = sweep.first_pose,
           .clearance = sweep.clearance > 0,
           .profile = sweep.profile > 0};
@@ -21,7 +22,8 @@ std::uint64_t most_blocks(const PackedCloud& cloud, const SlotLayout& layout) {
   return std::uint64_t{layout.cells} * cloud.blocks_per_cell();
 }
 
-CudaSlotSize size_of_slot(const SweepRef& sweep, const PackedCloud& cloud,
+template <typename Element>
+CudaSlotSize size_of_slot(const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                           const SlotLayout& layout) {
   const std::uint64_t blocks = most_blocks(cloud, layout);
   ArrayRun result, work;
@@ -33,9 +35,11 @@ CudaSlotSize size_of_slot(const SweepRef& sweep, const PackedCloud& cloud,
           .work = work.bytes()};
 }
 
+template <typename Element>
 class SweepSearch final : public CudaPageSearch {
  public:
-  SweepSearch(int device, const SweepRef& sweep, const PackedCloud& cloud, const SlotLayout& layout)
+  SweepSearch(int device, const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
+              const SlotLayout& layout)
       : CudaPageSearch(device, parts_of(sweep)),
         resident_(resident_sweep_blocks(device)),
         quantisation_(cloud.quantisation()),
@@ -53,13 +57,13 @@ class SweepSearch final : public CudaPageSearch {
   const CudaSlotSize& slot_size() const override { return size_; }
 
   void enqueue(const CudaPage& page) const override {
-    const SweepPage job{.sweep = on_device_.sweep,
-                        .page = page.page,
-                        .quantisation = quantisation_,
-                        .hits = page.hits,
-                        .first_poses = page.first_poses,
-                        .clearances = page.clearances,
-                        .work = work_.in(page.work)};
+    const SweepPageOf<Element> job{.sweep = on_device_.sweep,
+                                   .page = page.page,
+                                   .quantisation = quantisation_,
+                                   .hits = page.hits,
+                                   .first_poses = page.first_poses,
+                                   .clearances = page.clearances,
+                                   .work = work_.in(page.work)};
     search_sweep(job, on_device_.tallies, resident_, page.stream);
     if (page.facts.empty()) return;
     const ProfileList list{page.facts.data(), page.fact_counts,
@@ -73,16 +77,16 @@ class SweepSearch final : public CudaPageSearch {
     std::vector<ProfileFact>& facts = facts_[slot];
     facts.assign(listed.begin(), listed.begin() + static_cast<std::ptrdiff_t>(
                                                       std::min<std::size_t>(count, listed.size())));
-    HostProfile(cloud_, sweep_).complete(page, count, facts);
+    HostProfileOf<Element>(cloud_, sweep_).complete(page, count, facts);
     return facts;
   }
 
   SweepStatistics statistics() const {
     use_device();
-    unsigned long long values[SweepOnDevice::kTallies];
+    unsigned long long values[SweepOnDevice<Element>::kTallies];
     check_cuda(cudaMemcpy(values, on_device_.tallies, sizeof(values), cudaMemcpyDeviceToHost));
     SweepStatistics total;
-    for (std::size_t i = 0; i < SweepOnDevice::kTallies; i += kSweepCounts) {
+    for (std::size_t i = 0; i < SweepOnDevice<Element>::kTallies; i += kSweepCounts) {
       total.add({values[i], values[i + 1], values[i + 2], values[i + 3], values[i + 4]});
     }
     return total;
@@ -92,40 +96,59 @@ class SweepSearch final : public CudaPageSearch {
   unsigned resident_;
   Quantisation quantisation_;
   CudaSlotSize size_;
-  SweepOnDevice on_device_;
+  SweepOnDevice<Element> on_device_;
   ArrayRun work_run_;
   SweepWorkArrays work_;
-  ProfileBests bests_{};  ///< on the device, with a profile
-  const SweepRef sweep_;  ///< on the host
+  ProfileBests bests_{};             ///< on the device, with a profile
+  const SweepRefOf<Element> sweep_;  ///< on the host
   const PackedCloud& cloud_;
   std::vector<std::vector<ProfileFact>> facts_;  ///< by slot
 };
 
 }  // namespace
 
-CudaSweepEngine::CudaSweepEngine(int device, const SweepRef& sweep, const PackedCloud& cloud,
-                                 const SlotLayout& layout)
-    : CudaPageEngine(layout.slots, std::make_unique<SweepSearch>(device, sweep, cloud, layout)) {}
+template <typename Element>
+CudaSweepEngineOf<Element>::CudaSweepEngineOf(int device, const SweepRefOf<Element>& sweep,
+                                              const PackedCloud& cloud, const SlotLayout& layout)
+    : CudaPageEngine(layout.slots,
+                     std::make_unique<SweepSearch<Element>>(device, sweep, cloud, layout)) {}
 
-SweepStatistics CudaSweepEngine::statistics() const {
-  return static_cast<const SweepSearch&>(search()).statistics();
+template <typename Element>
+SweepStatistics CudaSweepEngineOf<Element>::statistics() const {
+  return static_cast<const SweepSearch<Element>&>(search()).statistics();
 }
 
-std::uint64_t cuda_sweep_bytes(const SweepRef& sweep) {
+template <typename Element>
+std::uint64_t cuda_sweep_bytes(const SweepRefOf<Element>& sweep) {
   DeviceArrayCount count;
   put_on_device(sweep, count);
   put_on_device(sweep, ProfileBests{}, count);
   return count.bytes();
 }
 
-std::uint64_t cuda_sweep_slot_bytes(const SweepRef& sweep, const PackedCloud& cloud,
+template <typename Element>
+std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                                     const SlotLayout& layout) {
   return size_of_slot(sweep, cloud, layout).device();
 }
 
-std::uint64_t cuda_sweep_pinned_bytes(const SweepRef& sweep, const PackedCloud& cloud,
+template <typename Element>
+std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                                       const SlotLayout& layout) {
   return size_of_slot(sweep, cloud, layout).pinned();
 }
+
+template class CudaSweepEngineOf<Vec3>;
+template class CudaSweepEngineOf<Triangle>;
+template std::uint64_t cuda_sweep_bytes(const SweepRefOf<Vec3>&);
+template std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Vec3>&, const PackedCloud&,
+                                             const SlotLayout&);
+template std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Vec3>&, const PackedCloud&,
+                                               const SlotLayout&);
+template std::uint64_t cuda_sweep_bytes(const SweepRefOf<Triangle>&);
+template std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Triangle>&, const PackedCloud&,
+                                             const SlotLayout&);
+template std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Triangle>&, const PackedCloud&,
+                                               const SlotLayout&);
 
 }  // namespace clearway

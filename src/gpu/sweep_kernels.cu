@@ -29,10 +29,10 @@ __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lan
 }
 
 /// A warp a block of the page's cells.
-template <bool kClearance>
+template <bool kClearance, typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_blocks_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
-  using Block = SweepBlock<CudaWarp, kClearance>;
+    search_blocks_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
+  using Block = SweepBlock<CudaWarp, kClearance, Element>;
   __shared__ typename Block::Shared shared[kWarpsPerBlock];
   const std::uint32_t warp = threadIdx.x / kWarpLanes;
   const std::uint32_t block = blockIdx.x * kWarpsPerBlock + warp;
@@ -43,8 +43,9 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 }
 
 /// Warps take one entry after the other, since some take far longer than others.
+template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_entries_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+    search_entries_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
   const std::uint32_t count = job.work.entry_count();
   CudaWarp::PerLane<SweepStatistics> statistics;
   for (;;) {
@@ -56,20 +57,22 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 }
 
 /// A lane a walk.
+template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_walks_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+    search_walks_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
   const std::uint32_t count = job.work.walk_count();
   const std::uint32_t warp = blockIdx.x * kWarpsPerBlock + threadIdx.x / kWarpLanes;
   CudaWarp::PerLane<SweepStatistics> statistics;
   for (std::uint32_t first = warp * kWarpLanes; first < count; first += gridDim.x * kThreads) {
-    SweepHits<CudaWarp>(job, statistics).search_walks(first, count);
+    SweepHits<CudaWarp, Element>(job, statistics).search_walks(first, count);
   }
   tally(tallies, statistics[0]);
 }
 
 /// A thread an item.
+template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_items_kernel(const __grid_constant__ SweepPage job, unsigned long long* tallies) {
+    search_items_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
   const std::uint32_t count = job.work.item_count();
   SweepStatistics statistics;
   for (std::uint32_t i = blockIdx.x * kThreads + threadIdx.x; i < count;
@@ -81,10 +84,11 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 }
 
 /// Warps take one task after the other.
+template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_profile_kernel(const __grid_constant__ SweepPage job, const ProfileBests bests,
+    search_profile_kernel(const __grid_constant__ SweepPageOf<Element> job, const ProfileBests bests,
                           const ProfileList list, unsigned long long* tallies) {
-  using Task = ProfileTask<CudaWarp>;
+  using Task = ProfileTask<CudaWarp, Element>;
   __shared__ typename Task::Shared shared[kWarpsPerBlock];
   const auto count = static_cast<std::uint32_t>(Task::count(job.page.shape));
   CudaWarp::PerLane<SweepStatistics> statistics;
@@ -105,40 +109,50 @@ unsigned resident_sweep_blocks(int device) {
   return kBlocksPerProcessor * static_cast<unsigned>(processors);
 }
 
-void search_sweep(const SweepPage& page, unsigned long long* tallies, unsigned resident_blocks,
+template <typename Element>
+void search_sweep(const SweepPageOf<Element>& page, unsigned long long* tallies, unsigned resident_blocks,
                   cudaStream_t stream) {
   const auto blocks = static_cast<unsigned>(divide_up(page.block_count(), kWarpsPerBlock));
   check_cuda(cudaMemsetAsync(page.work.counts, 0, sizeof(SweepWork::Counts), stream));
   if (page.clearances != nullptr) {
-    search_blocks_kernel<true><<<blocks, kThreads, 0, stream>>>(page, tallies);
+    search_blocks_kernel<true, Element><<<blocks, kThreads, 0, stream>>>(page, tallies);
     check_cuda(cudaGetLastError());
     return;
   }
-  search_blocks_kernel<false><<<blocks, kThreads, 0, stream>>>(page, tallies);
+  search_blocks_kernel<false, Element><<<blocks, kThreads, 0, stream>>>(page, tallies);
   check_cuda(cudaGetLastError());
-  search_entries_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
+  search_entries_kernel<Element><<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
   check_cuda(cudaGetLastError());
-  search_walks_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
+  search_walks_kernel<Element><<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
   check_cuda(cudaGetLastError());
-  search_items_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
+  search_items_kernel<Element><<<resident_blocks, kThreads, 0, stream>>>(page, tallies);
   check_cuda(cudaGetLastError());
 }
 
-void search_profile(const SweepPage& page, const ProfileBests& bests, const ProfileList& list,
+template <typename Element>
+void search_profile(const SweepPageOf<Element>& page, const ProfileBests& bests, const ProfileList& list,
                     unsigned long long* tallies, unsigned resident_blocks, cudaStream_t stream) {
   check_cuda(cudaMemsetAsync(list.counts, 0, sizeof(ProfileCounts), stream));
-  search_profile_kernel<<<resident_blocks, kThreads, 0, stream>>>(page, bests, list, tallies);
+  search_profile_kernel<Element><<<resident_blocks, kThreads, 0, stream>>>(page, bests, list, tallies);
   check_cuda(cudaGetLastError());
 }
+
+template void search_sweep(const SweepPageOf<Vec3>&, unsigned long long*, unsigned, cudaStream_t);
+template void search_sweep(const SweepPageOf<Triangle>&, unsigned long long*, unsigned,
+                           cudaStream_t);
+template void search_profile(const SweepPageOf<Vec3>&, const ProfileBests&, const ProfileList&,
+                             unsigned long long*, unsigned, cudaStream_t);
+template void search_profile(const SweepPageOf<Triangle>&, const ProfileBests&, const ProfileList&,
+                             unsigned long long*, unsigned, cudaStream_t);
 
 void load_sweep_kernels() noexcept {
   cudaFuncAttributes unused;
-  cudaFuncGetAttributes(&unused, search_blocks_kernel<false>);
-  cudaFuncGetAttributes(&unused, search_blocks_kernel<true>);
-  cudaFuncGetAttributes(&unused, search_entries_kernel);
-  cudaFuncGetAttributes(&unused, search_walks_kernel);
-  cudaFuncGetAttributes(&unused, search_items_kernel);
-  cudaFuncGetAttributes(&unused, search_profile_kernel);
+  cudaFuncGetAttributes(&unused, search_blocks_kernel<false, Vec3>);
+  cudaFuncGetAttributes(&unused, search_blocks_kernel<true, Vec3>);
+  cudaFuncGetAttributes(&unused, search_entries_kernel<Vec3>);
+  cudaFuncGetAttributes(&unused, search_walks_kernel<Vec3>);
+  cudaFuncGetAttributes(&unused, search_items_kernel<Vec3>);
+  cudaFuncGetAttributes(&unused, search_profile_kernel<Vec3>);
 }
 
 }  // namespace clearway

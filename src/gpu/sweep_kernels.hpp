@@ -19,16 +19,30 @@ unsigned resident_sweep_blocks(int device);
 
 /// Clears and fills the page's answer. tallies: kSweepCounts times kSweepTallies, added to.
 /// Enqueued on `stream`, not synchronised. Throws ResourceError.
-void search_sweep(const SweepPage& page, unsigned long long* tallies, unsigned resident_blocks,
-                  cudaStream_t stream);
+template <typename Element>
+void search_sweep(const SweepPageOf<Element>& page, unsigned long long* tallies,
+                  unsigned resident_blocks, cudaStream_t stream);
 
 /// Lists the nearest points of a page at its poses. tallies: as of search_sweep. Enqueued on
 /// `stream`, not synchronised. Throws ResourceError.
-void search_profile(const SweepPage& page, const ProfileBests& bests, const ProfileList& list,
-                    unsigned long long* tallies, unsigned resident_blocks, cudaStream_t stream);
+template <typename Element>
+void search_profile(const SweepPageOf<Element>& page, const ProfileBests& bests,
+                    const ProfileList& list, unsigned long long* tallies, unsigned resident_blocks,
+                    cudaStream_t stream);
 
-/// CUDA loads a kernel where it is first asked for: asks for all of this file. On the current
-/// device.
+extern template void search_sweep(const SweepPageOf<Vec3>&, unsigned long long*, unsigned,
+                                  cudaStream_t);
+extern template void search_sweep(const SweepPageOf<Triangle>&, unsigned long long*, unsigned,
+                                  cudaStream_t);
+extern template void search_profile(const SweepPageOf<Vec3>&, const ProfileBests&,
+                                    const ProfileList&, unsigned long long*, unsigned,
+                                    cudaStream_t);
+extern template void search_profile(const SweepPageOf<Triangle>&, const ProfileBests&,
+                                    const ProfileList&, unsigned long long*, unsigned,
+                                    cudaStream_t);
+
+/// CUDA loads a kernel where it is first asked for: asks for those of this file that search points.
+/// On the current device.
 void load_sweep_kernels() noexcept;
 
 }  // namespace clearway

@@ -7,18 +7,19 @@
 namespace clearway {
 
 /// What the kernels of a sweep need besides a page.
+template <typename Element>
 struct SweepOnDevice {
-  SweepRef sweep;
+  SweepRefOf<Element> sweep;
   unsigned long long* tallies;  ///< zero at first
 
   static constexpr std::size_t kTallies = std::size_t{kSweepCounts} * kSweepTallies;
 };
 
 /// Puts it into DeviceArrays, or counts it with DeviceArrayCount.
-template <typename Arrays>
-SweepOnDevice put_on_device(const SweepRef& sweep, Arrays& arrays) {
+template <typename Element, typename Arrays>
+SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& arrays) {
   const auto move = [&](auto*& values, std::size_t count) { values = arrays.copy(values, count); };
-  SweepRef ref = sweep;
+  SweepRefOf<Element> ref = sweep;
   const std::size_t coarse = ref.field.coarse_nodes();
   const std::size_t fine = std::size_t{ref.field.bricks} * ModelFieldRef::kBrickNodes;
   const std::size_t poses = ref.motion.pose_count;
@@ -27,7 +28,7 @@ SweepOnDevice put_on_device(const SweepRef& sweep, Arrays& arrays) {
   move(ref.field.brick_of, coarse);
   move(ref.field.distances, fine);
   move(ref.field.nearest, fine);
-  move(ref.model.points, ref.model.size);
+  move(ref.model.elements, ref.model.size);
   move(ref.model.boxes, ref.model.box_count);
   move(ref.wide.nodes, ref.wide.node_count);
   move(ref.wide.packets, ref.wide.packet_count);
@@ -35,12 +36,13 @@ SweepOnDevice put_on_device(const SweepRef& sweep, Arrays& arrays) {
   move(ref.motion.inverse_poses, poses);
   move(ref.motion.poses, poses);
   move(ref.motion.curves, ref.motion.curves == nullptr ? 0 : 2 * poses - 1);
-  return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice::kTallies)};
+  return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice<Element>::kTallies)};
 }
 
 /// Likewise what is known of the poses; none without a profile.
-template <typename Arrays>
-ProfileBests put_on_device(const SweepRef& sweep, const ProfileBests& bests, Arrays& arrays) {
+template <typename Element, typename Arrays>
+ProfileBests put_on_device(const SweepRefOf<Element>& sweep, const ProfileBests& bests,
+                           Arrays& arrays) {
   if (!(sweep.profile > 0)) return {};
   const auto move = [&](double* values, std::size_t count) {
     return const_cast<double*>(arrays.copy(static_cast<const double*>(values), count));

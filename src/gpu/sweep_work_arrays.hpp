@@ -9,7 +9,8 @@ namespace clearway {
 /// are searched without.
 class SweepWorkArrays {
  public:
-  SweepWorkArrays(ArrayRun& run, const SweepRef& sweep, std::uint64_t most_blocks)
+  template <typename Element>
+  SweepWorkArrays(ArrayRun& run, const SweepRefOf<Element>& sweep, std::uint64_t most_blocks)
       : SweepWorkArrays(run, sweep.clearance > 0 ? 0 : most_blocks) {}
 
   /// In a run that begins at `begin`.

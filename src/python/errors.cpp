@@ -82,6 +82,8 @@ const char* name_of(Remedy remedy) {
       return "ask_for_profile";
     case Remedy::kModelSpacing:
       return "model_spacing";
+    case Remedy::kModelPoints:
+      return "model_points";
     case Remedy::kMerge:
       return "merge";
     case Remedy::kResume:

@@ -60,6 +60,21 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
+void check_triangles(const Query& query) {
+  if (query.triangles.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
+    throw InputError("the model has " + std::to_string(query.triangles.size()) +
+                     " triangles, expected fewer than 2^31");
+  }
+  for (std::size_t i = 0; i < query.triangles.size(); ++i) {
+    for (const std::uint32_t corner : query.triangles[i]) {
+      if (corner < query.model.size()) continue;
+      throw InputError("triangle " + std::to_string(i) + " of the model has the corner " +
+                       std::to_string(corner) + ", expected one below " +
+                       std::to_string(query.model.size()));
+    }
+  }
+}
+
 }  // namespace
 
 Engine chosen_engine(const SearchOptions& options) {
@@ -109,6 +124,21 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
+void check_model(const Query& query, const SearchOptions& options) {
+  if (!query.is_surface()) return;
+  const Engine engine = chosen_engine(options);
+  if (engine != Engine::kSweep) {
+    throw UsageError(std::string("engine ") + name_of(engine) +
+                         " needs a model of points, and this one is a surface: engine sweep "
+                         "searches surfaces",
+                     Remedy::kModelPoints);
+  }
+  if (query.between_poses) {
+    throw UsageError("motion between poses needs a model of points, and this one is a surface",
+                     Remedy::kModelPoints);
+  }
+}
+
 void check_sizes(const Query& query) {
   constexpr std::uint64_t kEnd = std::uint64_t{1} << 31;  // trees have up to 2 n - 1 nodes
   if (query.poses.size() >= kEnd) {
@@ -120,6 +150,7 @@ void check_sizes(const Query& query) {
     throw InputError("the model has " + std::to_string(query.model.size()) +
                      " points, expected fewer than 2^32");
   }
+  check_triangles(query);
 }
 
 }  // namespace clearway

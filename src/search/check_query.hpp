@@ -11,7 +11,11 @@ Engine chosen_engine(const SearchOptions& options);
 /// its model and poses, or where the options contradict each other.
 void check_query(const QueryParameters& query, const SearchOptions& options);
 
-/// Throws InputError where the trees over model and poses cannot have as many nodes.
+/// Throws UsageError, saying what can do it, where the engine cannot search such a model.
+void check_model(const Query& query, const SearchOptions& options);
+
+/// Throws InputError where a triangle has a corner that is not there, and where the trees over
+/// model and poses cannot have as many nodes.
 void check_sizes(const Query& query);
 
 }  // namespace clearway

@@ -14,7 +14,7 @@ std::uint64_t program_bytes(int threads) {
 
 std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
   return store.allocated_bytes() + query.model.size() * sizeof(Vec3) +
-         query.poses.size() * sizeof(Pose);
+         query.triangles.size() * sizeof(query.triangles[0]) + query.poses.size() * sizeof(Pose);
 }
 
 std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) {
@@ -25,7 +25,9 @@ std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) 
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {
-  return 52 * query.model.size() + 168 * query.poses.size();
+  const std::uint64_t of_model =
+      query.is_surface() ? 240 * query.triangles.size() : 52 * query.model.size();
+  return of_model + 168 * query.poses.size();
 }
 
 void check_memory(std::uint64_t needed, std::uint64_t allowed) {

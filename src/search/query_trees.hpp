@@ -4,26 +4,43 @@
 
 #include "clearway/query.hpp"
 #include "core/geometry/model_tree.hpp"
+#include "core/geometry/triangle_box.hpp"
 #include "core/trajectory/motion_tree.hpp"
 #include "core/util/stopwatch.hpp"
 
 namespace clearway {
 
-/// The trees over model and poses that every plan of a query starts from.
+/// The trees over a model's points or triangles and over the poses that every plan of a query
+/// starts from.
 struct QueryTrees {
   /// The query outlives it; clock: started now.
   explicit QueryTrees(const Query& query, int threads = 1, const Stopwatch& clock = {})
-      : model(query.model, threads),
+      : model(query.is_surface() ? std::span<const Vec3>() : query.model, threads),
+        triangles(triangles_of(query.model, query.triangles), threads),
         model_seconds(clock.seconds()),
-        motion(query.poses, model.box(), query.between_poses, threads),
+        motion(query.poses, box(), query.between_poses, threads),
         motion_seconds(clock.seconds() - model_seconds) {}
 
   std::uint64_t allocated_bytes() const {
-    return model.allocated_bytes() + motion.allocated_bytes();
+    return model.allocated_bytes() + triangles.allocated_bytes() + motion.allocated_bytes();
   }
 
-  ModelTree model;
-  double model_seconds;  ///< wall clock
+  /// Of the model, which is not empty.
+  const Box& box() const { return triangles.size() > 0 ? triangles.box() : model.box(); }
+
+  /// Of the model's elements.
+  template <typename Element>
+  const ModelTreeOf<Element>& of() const {
+    if constexpr (kIsTriangle<Element>) {
+      return triangles;
+    } else {
+      return model;
+    }
+  }
+
+  ModelTree model;         ///< empty for a surface
+  TriangleTree triangles;  ///< of a surface
+  double model_seconds;    ///< wall clock
   MotionTree motion;
   double motion_seconds;
 };

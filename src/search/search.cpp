@@ -84,6 +84,7 @@ class Search {
   void report_sizes() {
     report_.environment_points = store_.point_count();
     report_.model_points = query_.model.size();
+    report_.model_triangles = query_.triangles.size();
     report_.poses = query_.poses.size();
     report_.cells_total = store_.cells().size();
   }
@@ -129,7 +130,7 @@ class Search {
     if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
     choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
     report_.engine = options_.engine;
-    report_.searches = report_.poses * report_.model_points;
+    report_.searches = report_.poses * element_count(query_);
     Found found =
         options_.engine == Engine::kKdtree
             ? search_kdtree(store_, query_, only(), options_, open_journal(), progress_, report_)
@@ -190,7 +191,7 @@ class Search {
     if (options_.engine == Engine::kGrid) {
       return std::make_unique<CpuGridKind>(store_, query_, options_);
     }
-    return std::make_unique<CpuSweepKind>(store_, query_, options_);
+    return cpu_sweep_kind(store_, query_, options_);
   }
 
   /// Where the search needs them: they have been starting meanwhile. Throws NoGpu.
@@ -280,6 +281,7 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
 SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
                     const SearchOptions& options) {
   check_query(query, options);
+  check_model(query, options);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

@@ -24,9 +24,10 @@ SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int thre
 SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
   return run_sweep(
       cloud, query, threads,
-      [](const SweepFilter& filter, const PackedCloud& of, const SlotLayout& layout) {
-        const SweepRef& sweep = filter.ref();
-        auto engine = std::make_unique<CudaSweepEngine>(0, sweep, of, layout);
+      []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
+                           const SlotLayout& layout) {
+        const SweepRefOf<Element>& sweep = filter.ref();
+        auto engine = std::make_unique<CudaSweepEngineOf<Element>>(0, sweep, of, layout);
         CHECK(engine->device_bytes() ==
               cuda_sweep_bytes(sweep) + layout.slots * cuda_sweep_slot_bytes(sweep, of, layout));
         return engine;
@@ -38,8 +39,8 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
 }  // namespace clearway
 
 int main(int count, char** arguments) {
-  clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true},
-                       {"grid on CUDA", clearway::grid_on_cuda, false, false, false}});
+  clearway::test_only({{"sweep on CUDA", clearway::sweep_on_cuda, true, true, true, true},
+                       {"grid on CUDA", clearway::grid_on_cuda, false, false, false, false}});
   return run_catch(count, arguments, [] {
     return clearway::cuda_device_count() == 0 ? "no CUDA device here" : nullptr;
   });

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/model_elements.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/geometry/triangle_box.hpp"
 
 namespace clearway {
 template <typename Element>

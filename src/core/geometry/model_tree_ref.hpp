@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/geometry/box.hpp"
-#include "core/geometry/model_elements.hpp"
+#include "core/geometry/model_element.hpp"
 
 namespace clearway {
 

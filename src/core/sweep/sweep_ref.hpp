@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/geometry/model_elements.hpp"
+#include "core/geometry/model_element.hpp"
 #include "core/geometry/model_tree_ref.hpp"
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/geometry/wide_tree_ref.hpp"

@@ -109,7 +109,7 @@ double path_length_of(std::span<const Pose> poses) {
 
 Workload workload_of(const PackedCloud& cloud, const Query& query) {
   return workload_of(cloud, query, query.model.empty() ? Box{} : box_of(query.model),
-                     query.model.size(), query.poses);
+                     element_count(query), query.poses);
 }
 
 Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,

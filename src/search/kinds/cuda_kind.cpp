@@ -103,35 +103,42 @@ Statistics report_of(const PageEngines& engines, SearchReport& report) {
   return total;
 }
 
-class CudaSweepKind final : public SweepKind {
+template <typename Element>
+class CudaSweepKindOf final : public SweepKindOf<Element> {
  public:
-  CudaSweepKind(const StoreReader& store, const Query& query, const SearchOptions& options,
-                OpenGpus open)
-      : SweepKind(needs_of(store, options, 1), store, query, options, kFieldFineness),
+  CudaSweepKindOf(const StoreReader& store, const Query& query, const SearchOptions& options,
+                  OpenGpus open)
+      : SweepKindOf<Element>(needs_of(store, options, 1), store, query, options, kFieldFineness),
         gpus_(std::move(open), options.end_gpus) {}
 
-  void resolve_devices() override { gpus_.resolve(needs_); }
+  void resolve_devices() override { gpus_.resolve(this->needs_); }
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override {
-    return gpus_.size() * (layout.slots * cuda_sweep_pinned_bytes(filter_->ref(), store_, layout) +
-                           SweepEngine::profile_bytes(store_, query_, layout, most_poses));
+    return gpus_.size() *
+           (layout.slots * cuda_sweep_pinned_bytes(filter_->ref(), store_, layout) +
+            SweepEngineOf<Element>::profile_bytes(store_, query_, layout, most_poses));
   }
   std::uint64_t device_bytes(const SlotLayout& layout) const override {
-    const SweepRef& sweep = filter_->ref();
+    const SweepRefOf<Element>& sweep = filter_->ref();
     return cuda_sweep_bytes(sweep) + layout.slots * cuda_sweep_slot_bytes(sweep, store_, layout);
   }
   PageEngines make(const SlotLayout& layout) override {
     return gpus_.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
-      return std::make_unique<CudaSweepEngine>(gpu, filter_->ref(), store_, layout);
+      return std::make_unique<CudaSweepEngineOf<Element>>(gpu, filter_->ref(), store_, layout);
     });
   }
   EngineEnd end(PageEngines engines) const override { return gpus_.end(std::move(engines)); }
   void report_search(const PageEngines& engines, SearchReport& report,
                      const MessageLog& log) const override {
-    report_statistics(report_of<CudaSweepEngine, SweepStatistics>(engines, report), report, log);
+    this->report_statistics(report_of<CudaSweepEngineOf<Element>, SweepStatistics>(engines, report),
+                            report, log);
   }
 
  private:
+  using SweepKindOf<Element>::store_;
+  using SweepKindOf<Element>::query_;
+  using SweepKindOf<Element>::filter_;
+
   Gpus gpus_;
 };
 
@@ -172,7 +179,10 @@ std::unique_ptr<PageEngineKind> cuda_kind(const StoreReader& store, const Query&
   if (chosen_engine(options) == Engine::kGrid) {
     return std::make_unique<CudaGridKind>(store, query, options, std::move(open));
   }
-  return std::make_unique<CudaSweepKind>(store, query, options, std::move(open));
+  if (query.is_surface()) {
+    return std::make_unique<CudaSweepKindOf<Triangle>>(store, query, options, std::move(open));
+  }
+  return std::make_unique<CudaSweepKindOf<Vec3>>(store, query, options, std::move(open));
 }
 
 }  // namespace clearway

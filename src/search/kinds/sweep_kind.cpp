@@ -28,42 +28,49 @@ constexpr double kLeastFineness = 0.25;
 }  // namespace
 
 /// With a tolerance the result depends on the field, which memory must not decide.
-std::vector<PageEngineKind::IndexSize> SweepKind::index_sizes() const {
+template <typename Element>
+std::vector<PageEngineKind::IndexSize> SweepKindOf<Element>::index_sizes() const {
   constexpr std::uint64_t kMost = std::uint64_t{64} << 20, kLeast = std::uint64_t{1} << 20;
   if (options_.field_voxel > 0 || query_.tolerance > 0) return {{kMost, 0}};
   return {size_of(64), size_of(16), size_of(4), {kLeast, 0}};
 }
 
-const PoseReach& SweepKind::build_index(const QueryTrees& trees, std::uint64_t most_bytes) {
+template <typename Element>
+const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
+                                                   std::uint64_t most_bytes) {
   filter_.reset();
   field_.reset();
-  field_.emplace(trees.model, search_radius(query_),
+  const ModelTreeOf<Element>& model = trees.of<Element>();
+  field_.emplace(model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
                                    .fineness = fineness_for_query(),
                                    .cheaply_finer = !(query_.tolerance > 0),
                                    .reach = std::max(query_.clearance, query_.profile),
                                    .most_bytes = most_bytes,
-                                   .by_need = !needs_.on_gpu},
+                                   .by_need = !this->needs().on_gpu},
                  options_.threads);
-  return filter_.emplace(query_, trees.motion, trees.model, *field_, store_, options_.threads);
+  return filter_.emplace(query_, trees.motion, model, *field_, store_, options_.threads);
 }
 
 /// Coarser for few poses, which ask for few exact tests. Not with a tolerance, whose result depends
 /// on the field; and other modes ask more of it.
-double SweepKind::fineness_for_query() const {
+template <typename Element>
+double SweepKindOf<Element>::fineness_for_query() const {
   if (query_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
   const auto poses = static_cast<double>(query_.poses.size());
   return fineness_ * std::clamp(std::cbrt(poses / kPosesOfFullFineness), kLeastFineness, 1.0);
 }
 
-void SweepKind::report_index(SearchReport& report, const MessageLog& log) const {
+template <typename Element>
+void SweepKindOf<Element>::report_index(SearchReport& report, const MessageLog& log) const {
   report.field_voxel = field_->voxel();
   log.note("model field: voxel " + format_brief(field_->voxel()) + " m, " +
            format_count(field_->bricks()) + " bricks, " + format_size(field_->allocated_bytes()));
 }
 
-void SweepKind::report_statistics(const SweepStatistics& s, SearchReport& report,
-                                  const MessageLog& log) {
+template <typename Element>
+void SweepKindOf<Element>::report_statistics(const SweepStatistics& s, SearchReport& report,
+                                             const MessageLog& log) {
   log.note("tests: " + format_count(s.node_tests) + " of boxes, " + format_count(s.point_tests) +
            " of points (" + format_count(s.points_tested) + " points), " +
            format_count(s.exact_tests) + " exact");
@@ -73,28 +80,44 @@ void SweepKind::report_statistics(const SweepStatistics& s, SearchReport& report
   }
 }
 
-CpuSweepKind::CpuSweepKind(const StoreReader& store, const Query& query,
-                           const SearchOptions& options)
-    : SweepKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
-                 .threads = options.threads},
-                store, query, options, query.profile > 0 ? kProfileFineness : 1) {}
+template <typename Element>
+CpuSweepKindOf<Element>::CpuSweepKindOf(const StoreReader& store, const Query& query,
+                                        const SearchOptions& options)
+    : SweepKindOf<Element>({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
+                            .threads = options.threads},
+                           store, query, options, query.profile > 0 ? kProfileFineness : 1) {}
 
-std::uint64_t CpuSweepKind::host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const {
+template <typename Element>
+std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,
+                                                  std::uint64_t most_poses) const {
   const auto threads = static_cast<std::uint32_t>(options_.threads);
   return layout.slots * PagePool::slot_bytes(store_, query_, layout) +
-         std::min(layout.slots, threads) * CellSearch::most_bytes(store_, query_, most_poses) +
-         SweepEngine::profile_bytes(store_, query_, layout, most_poses);
+         std::min(layout.slots, threads) *
+             CellSearchOf<Element>::most_bytes(store_, query_, most_poses) +
+         SweepEngineOf<Element>::profile_bytes(store_, query_, layout, most_poses);
 }
 
-PageEngines CpuSweepKind::make(const SlotLayout& layout) {
+template <typename Element>
+PageEngines CpuSweepKindOf<Element>::make(const SlotLayout& layout) {
   PageEngines engines;
-  engines.push_back(std::make_unique<SweepEngine>(store_, *filter_, layout));
+  engines.push_back(std::make_unique<SweepEngineOf<Element>>(store_, *filter_, layout));
   return engines;
 }
 
-void CpuSweepKind::report_search(const PageEngines& engines, SearchReport& report,
-                                 const MessageLog& log) const {
-  report_statistics(dynamic_cast<const SweepEngine&>(*engines.front()).statistics(), report, log);
+template <typename Element>
+void CpuSweepKindOf<Element>::report_search(const PageEngines& engines, SearchReport& report,
+                                            const MessageLog& log) const {
+  this->report_statistics(
+      dynamic_cast<const SweepEngineOf<Element>&>(*engines.front()).statistics(), report, log);
+}
+
+template class SweepKindOf<Vec3>;
+template class SweepKindOf<Triangle>;
+
+std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Query& query,
+                                               const SearchOptions& options) {
+  if (query.is_surface()) return std::make_unique<CpuSweepKindOf<Triangle>>(store, query, options);
+  return std::make_unique<CpuSweepKindOf<Vec3>>(store, query, options);
 }
 
 }  // namespace clearway

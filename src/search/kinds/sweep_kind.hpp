@@ -9,13 +9,15 @@
 
 namespace clearway {
 
-/// What the sweep engine's forms share: the model field and the filter over it.
-class SweepKind : public PageEngineKind {
+/// What the sweep engine's forms share: the model field and the filter over it. Element: what the
+/// model consists of.
+template <typename Element>
+class SweepKindOf : public PageEngineKind {
  public:
   /// options.threads is not 0. fineness: of the field (core/sweep/field/model_field.hpp). All
   /// references outlive it.
-  SweepKind(PageEngineNeeds needs, const StoreReader& store, const Query& query,
-            const SearchOptions& options, double fineness)
+  SweepKindOf(PageEngineNeeds needs, const StoreReader& store, const Query& query,
+              const SearchOptions& options, double fineness)
       : PageEngineKind(std::move(needs)),
         store_(store),
         query_(query),
@@ -37,7 +39,7 @@ class SweepKind : public PageEngineKind {
   const Query& query_;
   const SearchOptions& options_;
   std::optional<ModelField> field_;
-  std::optional<SweepFilter> filter_;
+  std::optional<SweepFilterOf<Element>> filter_;
 
  private:
   double fineness_for_query() const;
@@ -45,14 +47,27 @@ class SweepKind : public PageEngineKind {
   double fineness_;
 };
 
-class CpuSweepKind : public SweepKind {
+template <typename Element>
+class CpuSweepKindOf : public SweepKindOf<Element> {
  public:
-  CpuSweepKind(const StoreReader& store, const Query& query, const SearchOptions& options);
+  CpuSweepKindOf(const StoreReader& store, const Query& query, const SearchOptions& options);
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
   PageEngines make(const SlotLayout& layout) override;
   void report_search(const PageEngines& engines, SearchReport& report,
                      const MessageLog& log) const override;
+
+ private:
+  using SweepKindOf<Element>::store_;
+  using SweepKindOf<Element>::query_;
+  using SweepKindOf<Element>::options_;
+  using SweepKindOf<Element>::filter_;
 };
+
+std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Query& query,
+                                               const SearchOptions& options);
+
+extern template class SweepKindOf<Vec3>;
+extern template class SweepKindOf<Triangle>;
 
 }  // namespace clearway

@@ -26,21 +26,22 @@ constexpr std::size_t kBlocks = 400'000, kLeastBlocksOfCell = 32;
 constexpr double kCell = 1, kPose = 64;
 
 /// One filter for all machines and budgets: that of a search may be coarser, or on a GPU.
+template <typename Element>
 class WorkFilter {
  public:
   WorkFilter(const PackedCloud& cloud, const Query& query, const QueryTrees& trees, int threads)
-      : field_(trees.model, search_radius(query),
+      : field_(trees.of<Element>(), search_radius(query),
                {.reach = std::max(query.clearance, query.profile),
                 .most_bytes = kFieldBytes,
                 .by_need = true},
                threads),
-        filter_(query, trees.motion, trees.model, field_, cloud, threads) {}
+        filter_(query, trees.motion, trees.of<Element>(), field_, cloud, threads) {}
 
-  const SweepFilter& get() const { return filter_; }
+  const SweepFilterOf<Element>& get() const { return filter_; }
 
  private:
   ModelField field_;
-  SweepFilter filter_;
+  SweepFilterOf<Element> filter_;
 };
 
 /// A pose costs less where there are many: most points collide, or are dismissed, at the first
@@ -51,8 +52,9 @@ double work_of_poses(std::uint64_t poses) {
 }
 
 /// The poses that a search has to look at, block by block.
-double work_of(const PackedCloud& cloud, const SweepFilter& filter, const PlannedCell& planned,
-               std::size_t most_blocks) {
+template <typename Element>
+double work_of(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
+               const PlannedCell& planned, std::size_t most_blocks) {
   const Cell& cell = cloud.cells()[planned.cell];
   const std::size_t first = std::size_t{planned.cell} * cloud.blocks_per_cell();
   const std::size_t blocks = divide_up(cell.count, kBlockPoints);
@@ -71,12 +73,11 @@ double work_of(const PackedCloud& cloud, const SweepFilter& filter, const Planne
   return kCell + kPose * work * static_cast<double>(blocks) / static_cast<double>(looks);
 }
 
-}  // namespace
-
-std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
-                                     const QueryTrees& trees, int threads) {
+template <typename Element>
+std::vector<std::uint64_t> cell_work_of(const PackedCloud& cloud, const Query& query,
+                                        const QueryTrees& trees, int threads) {
   std::vector<std::uint64_t> work(cloud.cells().size());
-  const WorkFilter filter(cloud, query, trees, threads);
+  const WorkFilter<Element> filter(cloud, query, trees, threads);
   const std::vector<PlannedCell> cells = plan(cloud, filter.get());
   const std::size_t most_blocks =
       std::max(kLeastBlocksOfCell, kBlocks / std::max<std::size_t>(cells.size(), 1));
@@ -90,11 +91,19 @@ std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& quer
   return work;
 }
 
+}  // namespace
+
+std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
+                                     const QueryTrees& trees, int threads) {
+  return query.is_surface() ? cell_work_of<Triangle>(cloud, query, trees, threads)
+                            : cell_work_of<Vec3>(cloud, query, trees, threads);
+}
+
 std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query) {
   constexpr std::uint64_t kCellBytes = 128;  // with its motion nodes
   // What the filter keeps of model and motion for clearances, at the most.
   const std::uint64_t for_clearances =
-      query.clearance > 0 ? 64 * (query.model.size() + query.poses.size()) : 0;
+      query.clearance > 0 ? 64 * (element_count(query) + query.poses.size()) : 0;
   return kFieldBytes + kFieldBytes / 4 + kCellBytes * cloud.cells().size() + for_clearances;
 }
 

@@ -3,6 +3,7 @@
 #include <list>
 #include <optional>
 
+#include "core/geometry/triangle_box.hpp"
 #include "core/sweep/tolerance.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"

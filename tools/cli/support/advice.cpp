@@ -96,6 +96,8 @@ std::string advice_on(const Error& error) {
              " sets it, and --model-unit says what the file counts in";
     case Remedy::kResume:
       return "; the same command with --resume, without --force, continues from the finished work";
+    case Remedy::kModelPoints:
+      return "; take --model-as points";
     case Remedy::kMerge:
       return "; clearway merge makes the result of all parts";
   }

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/triangle.hpp"
+
+namespace clearway {
+
+/// Of indices into the vertices, all of which there are.
+inline std::vector<Triangle> triangles_of(std::span<const Vec3> vertices,
+                                          std::span<const std::array<std::uint32_t, 3>> indices) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(indices.size());
+  for (const auto& [a, b, c] : indices) {
+    triangles.push_back({vertices[a], vertices[b], vertices[c]});
+  }
+  return triangles;
+}
+
+/// The box of triangles, at least one.
+inline Box box_of(std::span<const Triangle> triangles) {
+  Box box{triangles[0].a, triangles[0].a};
+  for (const Triangle& t : triangles) {
+    for (const Vec3* corner : {&t.a, &t.b, &t.c}) {
+      for (int k = 0; k < 3; ++k) {
+        if ((*corner)[k] < box.lo[k]) box.lo[k] = (*corner)[k];
+        if ((*corner)[k] > box.hi[k]) box.hi[k] = (*corner)[k];
+      }
+    }
+  }
+  return box;
+}
+
+/// By what elements are divided along an axis; for triangles three times their middle.
+inline double place_along(const Vec3& m, int axis) { return m[axis]; }
+inline double place_along(const Triangle& t, int axis) { return t.a[axis] + t.b[axis] + t.c[axis]; }
+
+}  // namespace clearway
