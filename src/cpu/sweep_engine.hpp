@@ -55,5 +55,6 @@ using SweepEngine = SweepEngineOf<Vec3>;
 
 extern template class SweepEngineOf<Vec3>;
 extern template class SweepEngineOf<Triangle>;
+extern template class SweepEngineOf<SolidTriangle>;
 
 }  // namespace clearway

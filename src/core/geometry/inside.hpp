@@ -9,7 +9,8 @@
 /// the model's frame (docs/design/solids.md, "The definition"). The same on host and device.
 namespace clearway {
 
-/// A triangle of a model some of whose triangles are solids. It is searched as any triangle.
+/// A triangle of a model of which some triangles are solids. A type of its own, so that searches of
+/// surfaces do not ask for an inside.
 struct SolidTriangle : Triangle {
   using Triangle::Triangle;
   SolidTriangle() = default;
@@ -51,15 +52,18 @@ struct SolidLattice {
     std::int64_t x, y, z;
   };
 
+  /// Smaller solids have fewer steps. Larger ones than the second are refused.
+  static constexpr double kLeastSide = 1e-150, kMostSide = 1e150;
+
   Box box{};
-  double step = 0;      ///< metres: at most 2^-40 of the box's largest side
+  double step = 0;       ///< metres: at most 2^-40 of the box's largest side
   double per_metre = 0;  ///< 1 / step
 
   SolidLattice() = default;
   explicit SolidLattice(const Box& of) : box(of) {
     const double x = of.hi.x - of.lo.x, y = of.hi.y - of.lo.y, z = of.hi.z - of.lo.z;
     const double side = std::fmax(x, std::fmax(y, z));
-    const int exponent = side > 0 ? std::ilogb(side) : 0;
+    const int exponent = side > kLeastSide ? std::ilogb(side) : std::ilogb(kLeastSide);
     step = std::ldexp(1.0, exponent + 1 - kBits);
     per_metre = std::ldexp(1.0, kBits - 1 - exponent);
   }

@@ -35,5 +35,6 @@ Clearance ClearanceSearchOf<Element>::nearest(const Vec3& e, std::span<const std
 
 template class ClearanceSearchOf<Vec3>;
 template class ClearanceSearchOf<Triangle>;
+template class ClearanceSearchOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -31,5 +31,6 @@ class ClearanceSearchOf {
 
 extern template class ClearanceSearchOf<Vec3>;
 extern template class ClearanceSearchOf<Triangle>;
+extern template class ClearanceSearchOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -112,5 +112,6 @@ std::uint64_t HostProfileOf<Element>::most_facts(const PackedCloud& cloud, std::
 
 template class HostProfileOf<Vec3>;
 template class HostProfileOf<Triangle>;
+template class HostProfileOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -90,5 +90,6 @@ using HostProfile = HostProfileOf<Vec3>;
 
 extern template class HostProfileOf<Vec3>;
 extern template class HostProfileOf<Triangle>;
+extern template class HostProfileOf<SolidTriangle>;
 
 }  // namespace clearway
