@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -13,7 +15,15 @@ namespace clearway {
 inline constexpr double kMetresPerMillimetre = 0.001, kMetresPerCentimetre = 0.01,
                         kMetresPerInch = 0.0254, kMetresPerFoot = 0.3048;
 
+enum class ModelAs {
+  kPoints,         ///< samples of a mesh's surface, or the points of the file
+  kSurface,        ///< the triangles of a mesh; a file without any is refused
+  kSurfaceOfMesh,  ///< the same of a mesh, and the points of any other file
+};
+
 struct ModelOptions {
+  /// For read_model_shape().
+  ModelAs as = ModelAs::kPoints;
   /// Of a mesh, metres: no place of its surface is farther than this from a model point. So a point
   /// that the search finds touches the surface, and one that it misses is between
   /// radius - spacing and radius away. 0: none given, and a mesh is refused.
@@ -26,7 +36,7 @@ struct ModelOptions {
   /// Takes the vertices of a mesh alone, and not its surface.
   bool vertices_only = false;
   /// Leaves out the points whose z in the model's frame is below it, metres: wheels, for example,
-  /// which stand on the ground.
+  /// which stand on the ground. Triangles are cut there.
   std::optional<double> above = {};
 };
 
@@ -37,7 +47,18 @@ struct ModelOptions {
 std::vector<Vec3> read_model(const std::filesystem::path& path, const ModelOptions& options,
                              std::vector<Message>* messages = nullptr);
 
-/// The same with default options.
+/// Points, or the corners of triangles and three indices a triangle.
+struct ModelShape {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< none: the points are the model
+};
+
+/// The same, as options.as says. Corners are where the samples of kPoints are drawn from; those
+/// that no triangle uses are left out.
+ModelShape read_model_shape(const std::filesystem::path& path, const ModelOptions& options,
+                            std::vector<Message>* messages = nullptr);
+
+/// As read_model above, with default options.
 std::vector<Vec3> read_model(const std::filesystem::path& path,
                              std::vector<Message>* messages = nullptr);
 

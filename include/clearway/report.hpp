@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -27,6 +28,8 @@ struct ReportOptions {
   /// to say; `model` is without them.
   std::optional<double> model_above = {};
   std::uint64_t model_left_out = 0;
+  /// Of a result of a surface: its triangles, whose corners `model` holds.
+  std::vector<std::array<std::uint32_t, 3>> model_triangles = {};
   /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.
   /// The last is at least the radius, and none above it is beyond the clearance asked for. Empty:
   /// the radius, and the clearance where that is larger.

@@ -21,6 +21,7 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
                                   {"model_hash", hash_text(header.model_hash)},
                                   {"poses", header.poses},
                                   {"trajectory_hash", hash_text(header.trajectory_hash)}};
+  if (header.model_triangles > 0) question["model_triangles"] = header.model_triangles;
   if (header.part) question["shard"] = to_string(header.part->shard);
   return question;
 }

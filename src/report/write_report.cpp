@@ -11,6 +11,7 @@
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
 #include "findings/side.hpp"
+#include "io/model/sample_mesh.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
@@ -38,7 +39,7 @@ void check_hash(const Result& result, const char* what, std::uint64_t is, std::u
 }
 
 void check_inputs(const Result& result, const Store& store, const std::vector<Vec3>& model,
-                  const std::vector<Pose>& poses) {
+                  const std::vector<Pose>& poses, const ReportOptions& options) {
   const ResultHeader& header = result.reader().header();
   check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,
              Remedy::kSameEnvironment);
@@ -47,7 +48,8 @@ void check_inputs(const Result& result, const Store& store, const std::vector<Ve
         result.reader().name() + ": names another coordinate reference system than the store",
         Remedy::kSameEnvironment);
   }
-  check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kSameModel);
+  check_hash(result, "model", hash_of_model(model, options.model_triangles), header.model_hash,
+             Remedy::kSameModel);
   check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
              Remedy::kSameTrajectory);
 }
@@ -199,7 +201,8 @@ class Report {
     }
     model_lattice_ = lattice_for(model_box_, path_.half_diagonal() / 0x1p15);
     model_lattice_.origin = box_centre_at(model_box_, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}});
-    const std::vector<PagePoint> model = model_points(model_, model_lattice_);
+    const std::vector<PagePoint> model =
+        model_points(options_.model_triangles.empty() ? model_ : surface_points(), model_lattice_);
     shown_model_points_ = model.size();
     append_columns("environment", environment_.points, columns);
     append_columns("points", points_.points, columns);
@@ -235,6 +238,12 @@ class Report {
 
   const Result& result_;
   const Store& store_;
+  /// For the page to show.
+  std::vector<Vec3> surface_points() const {
+    const TriangleMesh mesh{model_, options_.model_triangles};
+    return sample_mesh(mesh, spacing_for(mesh, kMostModelPoints), "the model");
+  }
+
   const std::vector<Vec3>& model_;
   const std::vector<Pose>& poses_;
   const ReportOptions& options_;
@@ -258,7 +267,7 @@ class Report {
 ReportSummary write_report(const Result& result, const Store& store, const std::vector<Vec3>& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options) {
-  check_inputs(result, store, model, poses);
+  check_inputs(result, store, model, poses, options);
   PendingFile file(output, options.overwrite);
   const int threads = options.conflicts.threads;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);

@@ -124,8 +124,7 @@ void check_query(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
-void check_model(const Query& query, const SearchOptions& options) {
-  if (!query.is_surface()) return;
+void check_surface(const QueryParameters& query, const SearchOptions& options) {
   const Engine engine = chosen_engine(options);
   if (engine != Engine::kSweep) {
     throw UsageError(std::string("engine ") + name_of(engine) +

@@ -11,8 +11,8 @@ Engine chosen_engine(const SearchOptions& options);
 /// its model and poses, or where the options contradict each other.
 void check_query(const QueryParameters& query, const SearchOptions& options);
 
-/// Throws UsageError, saying what can do it, where the engine cannot search such a model.
-void check_model(const Query& query, const SearchOptions& options);
+/// The same of a query whose model is a surface.
+void check_surface(const QueryParameters& query, const SearchOptions& options);
 
 /// Throws InputError where a triangle has a corner that is not there, and where the trees over
 /// model and poses cannot have as many nodes.

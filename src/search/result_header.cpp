@@ -13,7 +13,7 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
           metadata.input_points,
           metadata.points_hash,
           query.model.size(),
-          hash_of_model(query.model),
+          hash_of_model(query.model, query.triangles),
           query.poses.size(),
           hash_of_trajectory(query.poses),
           query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
@@ -22,7 +22,8 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
           metadata.crs_wkt,
           false,
           query.model.empty() ? Box{} : box_of(query.model),
-          std::nullopt};
+          std::nullopt,
+          query.triangles.size()};
 }
 
 }  // namespace clearway

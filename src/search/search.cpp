@@ -281,7 +281,7 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
 SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,
                     const SearchOptions& options) {
   check_query(query, options);
-  check_model(query, options);
+  if (query.is_surface()) check_surface(query, options);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

@@ -66,15 +66,19 @@ void note_left_out(ReportCommand& options, const std::vector<Message>& messages)
 
 Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {
   std::vector<Message>& warnings = options.report.warnings;
-  const ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
-  std::vector<Vec3> model = read_model(options.model, how, &warnings);
+  ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
+  how.as = model_kind_of(result);
+  ModelShape model = read_model_shape(options.model, how, &warnings);
   options.trajectory_options.default_crs = store.crs_wkt();
   std::vector<Pose> poses = read_trajectory(options.trajectory, options.trajectory_options,
                                             &warnings, &options.report.labels);
   note_left_out(options, warnings);
   std::erase_if(warnings,
                 [](const Message& told) { return told.severity == Message::Severity::kNote; });
-  return {std::move(model), std::move(poses), result.parameters()};
+  Query query(std::move(model.points), std::move(poses), result.parameters());
+  query.triangles = std::move(model.triangles);
+  options.report.model_triangles = query.triangles;
+  return query;
 }
 
 void log_summary(const ReportCommand& options, const ReportSummary& summary, const Result& result) {

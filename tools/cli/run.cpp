@@ -103,7 +103,9 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["radius"] = options.query.radius;
   out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
+  out["model_as"] = report.model_triangles > 0 ? "surface" : "points";
   out["model_points"] = report.model_points;
+  out["model_triangles"] = report.model_triangles;
   out["poses"] = report.poses;
   out["colliding_points"] = report.colliding_points;
   out["clearance_points"] = report.clearance_points;
@@ -169,13 +171,14 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
 /// Warnings of the inputs are told at once, and go into the report with those of the search.
 Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   std::vector<Message>& warnings = options.search.input_warnings;
-  const ModelOptions how = with_spacing(options.model_options, options.query.radius);
-  std::vector<Vec3> model = read_model(options.model, how, &warnings);
+  ModelShape model = read_model_shape(options.model, model_options_of(options), &warnings);
   options.trajectory_options.default_crs = store.crs_wkt();
   std::vector<Pose> poses =
       read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
   for (const Message& warning : warnings) log_message(warning);
-  return {std::move(model), std::move(poses), options.query};
+  Query query(std::move(model.points), std::move(poses), options.query);
+  query.triangles = std::move(model.triangles);
+  return query;
 }
 
 Store open_environment(const std::filesystem::path& path) {
@@ -217,6 +220,7 @@ bool run(RunOptions& options) {
   ConsoleProgress progress;
   watch_call(options.search, progress);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
+  model_options_of(options);
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
   prepare_device(options.search);
@@ -258,8 +262,9 @@ void add_run(CLI::App& program, int& exit_code) {
       "run", "Find every environment point within the radius of the moving model");
   add_run_options(*command, *options);
   command->footer(
-      "A point collides when its distance to a model point at some pose is strictly below the\n"
-      "radius. With --between-poses the way from each pose to the next counts too.\n"
+      "A point collides when its distance to the model at some pose is strictly below the radius.\n"
+      "A mesh is searched as its surface, other models as their points. With --between-poses the "
+      "way from each pose to the next counts too.\n"
       "The first pose is the first one that touches the point. With --between-poses it is the "
       "pose\n"
       "from which the first way starts that touches the point. A way includes both its ends.\n"

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "clearway/error.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "io/formats/text/text_number.hpp"
+#include "search/check_query.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -31,6 +33,16 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
+  command
+      .add_option_function<std::string>(
+          "--model-as",
+          [&options](const std::string& name) {
+            options.model_as = name == "surface" ? ModelAs::kSurface : ModelAs::kPoints;
+          },
+          "surface: search the triangles of a mesh as they are; points: search points on its "
+          "surface (default: surface, for what engine sweep searches at poses)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"surface", "points"}));
   add_model_options(command, options.model_options, options.lengths);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
@@ -136,7 +148,30 @@ void add_shard(CLI::App& command, SearchOptions& options) {
       ->type_name("I/N");
 }
 
+/// Whether points were asked for, or what only points have.
+bool asks_for_points(const RunOptions& options) {
+  const SearchOptions& search = options.search;
+  return options.model_options.spacing > 0 || options.model_options.vertices_only ||
+         options.query.between_poses || search.engine == Engine::kGrid ||
+         search.engine == Engine::kKdtree || search.float_precision || search.grid_cell > 0;
+}
+
 }  // namespace
+
+ModelOptions model_options_of(const RunOptions& options) {
+  ModelOptions how = options.model_options;
+  how.as = options.model_as.value_or(asks_for_points(options) ? ModelAs::kPoints
+                                                              : ModelAs::kSurfaceOfMesh);
+  if (how.as == ModelAs::kSurface) {
+    if (how.spacing > 0 || how.vertices_only) {
+      throw UsageError(
+          "a surface is searched as it is: --model-spacing and --model-vertices are of points",
+          Remedy::kModelPoints);
+    }
+    check_surface(options.query, options.search);
+  }
+  return with_spacing(how, options.query.radius);
+}
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_inputs(command, options);

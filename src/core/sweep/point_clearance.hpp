@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "core/query/clearance_set.hpp"
-#include "core/sweep/curve_ball.hpp"
 #include "core/sweep/point_curve.hpp"
 #include "core/sweep/solid_depth.hpp"
 #include "core/sweep/sweep_ref.hpp"

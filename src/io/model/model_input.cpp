@@ -124,17 +124,6 @@ std::uint64_t unused_vertices(const TriangleMesh& mesh) {
   return unused;
 }
 
-void tell_bend(const ModelInput& input, double spacing, std::vector<Message>& messages) {
-  const double bend = input.remarks.largest_bend;
-  if (!(bend > kBendToTell * spacing)) return;
-  const std::string text = "a face with more than three corners is bent by " + format_brief(bend) +
-                           " m (" + input.remarks.largest_bend_at +
-                           "); how it is cut into triangles changes the surface by about as much";
-  if (bend <= spacing) return tell(messages, input, text);
-  tell(messages, input, text + ", which is more than the spacing. Export the mesh as triangles",
-       {{"bend", bend}, {"spacing", spacing}}, "mesh-bent-faces");
-}
-
 std::vector<Vec3> sampled(const ModelInput& input, double spacing, std::vector<Message>& messages) {
   if (spacing == 0) {
     refuse(input.path.string(),
@@ -148,7 +137,7 @@ std::vector<Vec3> sampled(const ModelInput& input, double spacing, std::vector<M
     tell(messages, input,
          format_count(unused) + " vertices belong to no face, and are left out of the model");
   }
-  tell_bend(input, spacing, messages);
+  tell_bend(input, spacing, "the spacing", messages);
   tell(messages, input,
        "a mesh of " + format_count(input.mesh.triangles.size()) + " triangles, sampled to " +
            format_count(points.size()) + " points; no place of its surface is farther than " +
@@ -182,6 +171,18 @@ void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& p
 }
 
 }  // namespace
+
+void tell_bend(const ModelInput& input, double allowed, const std::string& of_what,
+               std::vector<Message>& messages) {
+  const double bend = input.remarks.largest_bend;
+  if (!(bend > kBendToTell * allowed)) return;
+  const std::string text = "a face with more than three corners is bent by " + format_brief(bend) +
+                           " m (" + input.remarks.largest_bend_at +
+                           "); how it is cut into triangles changes the surface by about as much";
+  if (bend <= allowed) return tell(messages, input, text);
+  tell(messages, input, text + ", which is more than " + of_what + ". Export the mesh as triangles",
+       {{"bend", bend}, {"spacing", allowed}}, "mesh-bent-faces");
+}
 
 ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options) {
   if (!(options.unit >= 0) || !(options.environment_unit > 0)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "clearway/model.hpp"
@@ -23,6 +24,11 @@ struct ModelInput {
 /// Reads a file that has one vertex or point at least; everything is finite in the environment's
 /// unit too. Throws InputError, and UsageError for units that are not above 0.
 ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options);
+
+/// Tells how far the corners of a polygon lie beside its plane, where that is not small beside
+/// `allowed` metres; of_what: what that is, for people.
+void tell_bend(const ModelInput& input, double allowed, const std::string& of_what,
+               std::vector<Message>& messages);
 
 /// Its points as the options ask: samples of a mesh, or all its vertices. Throws InputError as
 /// sample_mesh does, and for a mesh without a spacing. Notes and warnings are appended.

@@ -99,4 +99,21 @@ std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const st
   return cover.samples().take_points();
 }
 
+double spacing_for(const TriangleMesh& mesh, double samples) {
+  double area = 0, reach = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k];
+    const Vec3 ab = difference(b, a), ac = difference(c, a);
+    const Vec3 normal{ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z,
+                      ab.x * ac.y - ab.y * ac.x};
+    area += std::sqrt(squared_length(normal.x, normal.y, normal.z)) / 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      reach = std::max({reach, std::abs(a[axis]), std::abs(b[axis]), std::abs(c[axis])});
+    }
+  }
+  // A lattice of equilateral triangles has 2 / (3 sqrt(3) h^2) points an area (Kershner 1939).
+  const double of_area = std::sqrt(2 * area / (3 * std::sqrt(3.0) * samples));
+  return std::clamp(std::max(of_area, reach * 0x1p-27), 2 * kLeastSpacing, kLargestSpacing / 2);
+}
+
 }  // namespace clearway

@@ -19,4 +19,7 @@ inline constexpr double kLeastSpacing = 1e-9, kLargestSpacing = 1e9;  // metres
 /// too fine for the size of the coordinates. docs/design/model.md has the proof.
 std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const std::string& name);
 
+/// A spacing that gives about so many samples, beside the vertices, and is never refused.
+double spacing_for(const TriangleMesh& mesh, double samples);
+
 }  // namespace clearway

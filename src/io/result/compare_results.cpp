@@ -137,8 +137,11 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
   const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
     if (text_a != text_b) out.push_back({std::move(what), std::move(text_a), std::move(text_b)});
   };
-  differ("model", content_text(a.model_points, "points", a.model_hash),
-         content_text(b.model_points, "points", b.model_hash));
+  const auto model_text = [](const ResultHeader& of) {
+    return of.model_triangles > 0 ? content_text(of.model_triangles, "triangles", of.model_hash)
+                                  : content_text(of.model_points, "points", of.model_hash);
+  };
+  differ("model", model_text(a), model_text(b));
   differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
          content_text(b.poses, "poses", b.trajectory_hash));
   differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");

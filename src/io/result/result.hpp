@@ -43,6 +43,8 @@ struct ResultHeader : QueryParameters {
   bool ways_without_ends = false;
   Box model_box{};                 ///< of the model's points
   std::optional<ResultPart> part;  ///< of what merge() makes a result of
+  /// Of a surface, whose corners the model's points are; 0: the points are the model.
+  std::uint64_t model_triangles = 0;
   /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances.
   std::uint32_t version = 3;
 

@@ -119,6 +119,9 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
   }
+  if (header.model_triangles > 0) {
+    hdf5::write_number(file, names::kModelTriangles, header.model_triangles);
+  }
   if (!header.part) return;
   const std::uint32_t shard[]{header.part->shard.number, header.part->shard.count};
   hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
@@ -147,6 +150,9 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     header.tolerance = hdf5::read_number<double>(file, names::kTolerance, name);
     header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
     check_tolerance(header, name);
+  }
+  if (hdf5::has_attribute(file, names::kModelTriangles, name)) {
+    header.model_triangles = hdf5::read_number<std::uint64_t>(file, names::kModelTriangles, name);
   }
   header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
   header.ways_without_ends =

@@ -32,6 +32,8 @@ inline constexpr const char* kFloat = "float";
 inline constexpr const char* kFirstPoseOf = "first_pose_of";  // only where it is kClosedWay
 inline constexpr const char* kClosedWay = "closed way";
 
+inline constexpr const char* kModelTriangles = "model_triangles";  // only of a surface
+
 inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
 inline constexpr const char* kDivision = "division";
 inline constexpr const char* kLengthUnit = "length_unit";

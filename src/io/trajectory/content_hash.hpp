@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -11,6 +12,11 @@ namespace clearway {
 /// xxh64, seed 0, over the coordinates x, y, z of every point, each as 8 little-endian bytes: equal
 /// for equal points whatever file they came from.
 std::uint64_t hash_of_model(std::span<const Vec3> points);
+
+/// Of a surface: the same over the corners, then the indices of each triangle as 4 little-endian
+/// bytes each. Without triangles that of the points.
+std::uint64_t hash_of_model(std::span<const Vec3> points,
+                            std::span<const std::array<std::uint32_t, 3>> triangles);
 
 /// The same over the 12 numbers of every pose: the rotation row by row, then the translation.
 std::uint64_t hash_of_trajectory(std::span<const Pose> poses);

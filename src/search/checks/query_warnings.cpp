@@ -1,5 +1,8 @@
 #include "search/checks/query_warnings.hpp"
 
+#include <algorithm>
+
+#include "io/model/sample_mesh.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/words.hpp"
 
@@ -40,9 +43,27 @@ void note_sizes(const Question& question, MessageLog& log) {
            length_text(question.query.radius, question.unit));
 }
 
-}  // namespace
+/// What a model is for the checks that look at it from outside.
+enum class ModelForm { kPoints, kSurface, kCoarseSurface };
 
-void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
+/// Points of the surface, as close as the radius asks for where these are not too many.
+Query sampled(const Query& query, ModelForm& view) {
+  constexpr double kMostSamples = 1e5;
+  const TriangleMesh mesh{query.model, query.triangles};
+  const double spacing = std::max(spacing_for(mesh, kMostSamples), query.radius);
+  view = spacing > query.radius ? ModelForm::kCoarseSurface : ModelForm::kSurface;
+  return {sample_mesh(mesh, spacing, "the model"), query.poses, query};
+}
+
+void check_model_itself(const Question& question, ModelForm view, MessageLog& log) {
+  const bool close = view != ModelForm::kCoarseSurface;  // else gaps are those of the samples
+  if (close) check_inside(question, log);
+  check_model(question, log);
+  if (close) check_open_model(question, log);
+  if (view == ModelForm::kPoints) check_model_spacing(question, log);
+}
+
+void warn_of_points(const StoreReader& store, const Query& query, ModelForm view, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;
   if (query.poses.empty()) {
     log.warn("no-poses", "the trajectory has no poses: nothing can collide");
@@ -63,13 +84,19 @@ void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log
   check_reach(question, cover, log);
   const bool floats = check_height(question, log);
   check_surroundings(question, cover, floats, log);
-  check_inside(question, log);
-  check_model(question, log);
-  check_open_model(question, log);
-  check_model_spacing(question, log);
+  check_model_itself(question, view, log);
   check_radius(question, log);
   check_steps(question, log);
   check_heading(question, log);
+}
+
+}  // namespace
+
+void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
+  if (!query.is_surface()) return warn_of_points(store, query, ModelForm::kPoints, log);
+  ModelForm view{};
+  const Query points = sampled(query, view);
+  warn_of_points(store, points, view, log);
 }
 
 }  // namespace clearway

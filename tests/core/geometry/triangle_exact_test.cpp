@@ -58,7 +58,6 @@ TEST_CASE("distances to triangles are within their bound of the exact ones") {
       worst = std::max(worst, share);
     }
   }
-  CHECK(worst > 0.001);  // the measure sees errors
+  CHECK(worst > 0.1);  // the measure sees errors
   CHECK(worst <= 1);
-  WARN("largest share of the bound: " << worst);
 }

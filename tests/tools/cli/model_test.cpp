@@ -64,7 +64,7 @@ TEST_CASE("run of a mesh is run of the points that model wrote") {
   CHECK(points ==
         read_model(meshes.work.folder / "car.stl", {.spacing = 0.1, .unit = kMetresPerMillimetre}));
   // A quarter of the radius is the default.
-  const Outcome mesh = meshes.run("car.stl", "mesh.h5", "--model-unit mm --json");
+  const Outcome mesh = meshes.run("car.stl", "mesh.h5", "--model-as points --model-unit mm --json");
   REQUIRE(mesh.exit_code == 0);
   CHECK(json::parse(mesh.out)["model_points"] == points.size());
   CHECK(json::parse(mesh.out)["colliding_points"] > 0);
@@ -75,6 +75,98 @@ TEST_CASE("run of a mesh is run of the points that model wrote") {
   }
   REQUIRE(meshes.run("car.ply", "points.h5", "").exit_code == 0);
   CHECK(meshes.work.bytes("mesh.h5") == meshes.work.bytes("points.h5"));
+}
+
+TEST_CASE("run of a mesh searches its surface") {
+  const Meshes meshes;
+  const Outcome run = meshes.run("car.stl", "surface.h5", "--model-unit mm --first-pose --json");
+  REQUIRE(run.exit_code == 0);
+  const json told = json::parse(run.out);
+  CHECK(told["model_as"] == "surface");
+  CHECK(told["model_points"] == 8);
+  CHECK(told["model_triangles"] == 12);
+  CHECK(told["engine"] == "sweep");
+  CHECK(told["searches"] == told["poses"].get<std::uint64_t>() * 12);
+  CHECK_THAT(run.err, Contains("12 triangles, which are searched as they are"));
+  const json info =
+      json::parse(meshes.work.run("info " + meshes.work.path("surface.h5") + " --json").out);
+  CHECK(info["model_as"] == "surface");
+  CHECK(info["model_triangles"] == 12);
+  // Samples lie on the surface: what touches one touches it. And no sample is far.
+  const auto count = [&](const std::string& output, const std::string& options) {
+    const Outcome points = meshes.run("car.stl", output, "--model-unit mm --json " + options);
+    REQUIRE(points.exit_code == 0);
+    CHECK(json::parse(points.out)["model_as"] == "points");
+    return json::parse(points.out)["colliding_points"].get<std::uint64_t>();
+  };
+  const std::uint64_t hits = told["colliding_points"];
+  CHECK(hits >= count("coarse.h5", "--model-as points"));
+  const std::uint64_t fine = count("fine.h5", "--model-spacing 0.02");
+  CHECK(hits >= fine);
+  CHECK(hits - fine < hits / 20);
+  // The same again, in parts and on the same journal's identity.
+  REQUIRE(meshes.run("car.stl", "part1.h5", "--model-unit mm --first-pose --shard 1/2").exit_code ==
+          0);
+  REQUIRE(meshes.run("car.stl", "part2.h5", "--model-unit mm --first-pose --shard 2/2").exit_code ==
+          0);
+  REQUIRE(meshes.work
+              .run("merge " + meshes.work.path("part1.h5") + " " + meshes.work.path("part2.h5") +
+                   " -o " + meshes.work.path("merged.h5"))
+              .exit_code == 0);
+  CHECK(meshes.work.bytes("merged.h5") == meshes.work.bytes("surface.h5"));
+  CHECK(meshes.run("car.stl", "surface.h5", "--model-unit mm --first-pose --resume").exit_code ==
+        0);
+  check_refused(meshes.run("car.stl", "surface.h5",
+                           "--model-unit mm --first-pose --model-as points --resume"),
+                2, "surface.h5");
+}
+
+TEST_CASE("what has no surface is refused and points are named") {
+  const Meshes meshes;
+  const std::string surface = "--model-as surface --model-unit mm ";
+  const auto refused = [&](const std::string& options, const char* words) {
+    check_refused(meshes.run("car.stl", "no.h5", surface + options), 2, words);
+    CHECK_THAT(meshes.run("car.stl", "no.h5", surface + options).err,
+               Contains("take --model-as points"));
+  };
+  refused("--engine kdtree", "engine kdtree needs a model of points");
+  refused("--engine grid", "engine grid needs a model of points");
+  refused("--between-poses", "motion between poses needs a model of points");
+  refused("--model-spacing 0.1", "a surface is searched as it is");
+  refused("--model-vertices", "a surface is searched as it is");
+  put_bytes(meshes.work.folder / "car.xyz", "1 0 0\n0 1 0\n1 0 0\n");
+  check_refused(meshes.run("car.xyz", "no.h5", "--model-as surface"), 3, "has no triangles");
+  // Without --model-as these are asked of points.
+  for (const char* options : {"--engine kdtree", "--engine grid --device cpu", "--between-poses"}) {
+    const Outcome run =
+        meshes.run("car.stl", "some.h5", "--force --model-unit mm --json " + std::string(options));
+    REQUIRE(run.exit_code == 0);
+    CHECK(json::parse(run.out)["model_as"] == "points");
+  }
+}
+
+TEST_CASE("the surface below a height is cut off") {
+  const Meshes meshes;
+  const Outcome run = meshes.run("car.stl", "above.h5", "--model-unit mm --model-above 0.5 --json");
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.err,
+             Contains("2 of 12 triangles are below z = 0.5 m, and are left out; 8 are cut there"));
+  ModelShape cut =
+      read_model_shape(meshes.work.folder / "car.stl",
+                       {.as = ModelAs::kSurface, .unit = kMetresPerMillimetre, .above = 0.5});
+  double lowest = 1e9, area = 0;
+  for (const auto& [i, j, k] : cut.triangles) {
+    const Vec3 &a = cut.points[i], &b = cut.points[j], &c = cut.points[k];
+    for (const Vec3& p : {a, b, c}) lowest = std::min(lowest, p.z);
+    const Vec3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
+    area += std::sqrt(std::pow(u.y * v.z - u.z * v.y, 2) + std::pow(u.z * v.x - u.x * v.z, 2) +
+                      std::pow(u.x * v.y - u.y * v.x, 2)) /
+            2;
+  }
+  CHECK(lowest == 0.5);
+  CHECK(area == Approx(4 * 1.8 + 2 * 0.9 * (4 + 1.8)));
+  check_refused(meshes.run("car.stl", "none.h5", "--model-unit mm --model-above 9"), 3,
+                "all 12 triangles of the model are below z = 9 m");
 }
 
 TEST_CASE("the vertices alone are the model when asked, in the unit of the file") {

@@ -101,6 +101,7 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   static_cast<QueryParameters&>(header) = options.query;
   const ReadModel& points = model(run, options);
   header.model_points = points.count;
+  header.model_triangles = points.triangles;
   header.model_hash = points.hash;
   const ReadTrajectory& poses = trajectory(run, options);
   header.poses = poses.count;
@@ -192,17 +193,18 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
 
 const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
                                                        const RunOptions& options) {
-  const ModelOptions how = with_spacing(options.model_options, options.query.radius);
+  const ModelOptions how = model_options_of(options);
   const std::string id = run.vehicle.name + '\n' + format_number(how.spacing) + '\n' +
+                         std::to_string(static_cast<int>(how.as)) + '\n' +
                          format_number(how.environment_unit);
   const auto known = models_.find(id);
   if (known != models_.end()) return known->second;
   return named(run.vehicle.key, [&]() -> const ReadModel& {
     check_is_model(options.model);
     std::vector<Message> messages;
-    const std::vector<Vec3> points = read_model(options.model, how, &messages);
+    const auto [points, triangles] = read_model_shape(options.model, how, &messages);
     tell(run.vehicle.key, messages);
-    return models_[id] = {points.size(), hash_of_model(points),
+    return models_[id] = {points.size(), triangles.size(), hash_of_model(points, triangles),
                           points.empty() ? Box{} : box_of(points)};
   });
 }

@@ -31,7 +31,7 @@ class QuestionReader {
     std::string unit;
   };
   struct ReadModel {
-    std::uint64_t count = 0, hash = 0;
+    std::uint64_t count = 0, triangles = 0, hash = 0;
     Box box{};
   };
   struct ReadTrajectory {

@@ -61,11 +61,17 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
   return poses;
 }
 
+ModelAs model_kind_of(const Result& result) {
+  return result.reader().header().model_triangles > 0 ? ModelAs::kSurface : ModelAs::kPoints;
+}
+
 std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                                 const Result& result) {
-  std::vector<Vec3> points = read_model(path, with_spacing(options, result.parameters().radius));
+  ModelOptions how = with_spacing(options, result.parameters().radius);
+  how.as = model_kind_of(result);
+  const auto [points, triangles] = read_model_shape(path, how);
   const ResultHeader& header = result.reader().header();
-  const std::uint64_t hash = hash_of_model(points);
+  const std::uint64_t hash = hash_of_model(points, triangles);
   if (points.size() == header.model_points && hash == header.model_hash) return points;
   refuse(path.string(), "is not the model of " + result.reader().name() + ": it has " +
                             format_count(points.size()) + " points with the hash " +

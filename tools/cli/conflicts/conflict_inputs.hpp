@@ -33,6 +33,9 @@ void add_axis_options(CLI::App& command, ConflictOptions& options);
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result);
 
+/// What the model of a result was searched as.
+ModelAs model_kind_of(const Result& result);
+
 /// The points of the model that a result is of. Throws InputError for another model.
 std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                                 const Result& result);

@@ -18,6 +18,8 @@ constexpr double kMarginSteps = 3;
 /// twice the radius.
 constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
+/// A node takes a search for the nearest triangle, of some microseconds: no more coarse ones.
+constexpr double kMostSurfaceNodes = 1 << 17;
 /// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
 /// the model's points are worth.
 constexpr double kCheapNodes = 1 << 17;
@@ -82,7 +84,9 @@ void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOpt
     }
     return nodes * static_cast<double>(kCoarseNodeBytes);
   };
-  while (coarse_bytes() > static_cast<double>(options.most_bytes) / 4) voxel_ *= 2;
+  double most = static_cast<double>(options.most_bytes) / 4;
+  if (is_surface()) most = std::min(most, kMostSurfaceNodes * kCoarseNodeBytes);
+  while (coarse_bytes() > most) voxel_ *= 2;
 }
 
 /// How far from the model bricks are needed.
@@ -220,8 +224,7 @@ double ModelField::node_error() const {
   const Vec3 extent{model_.hi.x - model_.lo.x, model_.hi.y - model_.lo.y,
                     model_.hi.z - model_.lo.z};
   const double of_place = 8 * (length(model_.hi) + length(model_.lo) + margin_);
-  const double of_surface =
-      std::holds_alternative<const ModelTree*>(tree_) ? 0 : 161 * length(extent);
+  const double of_surface = is_surface() ? 161 * length(extent) : 0;
   return kUnitRoundoff * (of_place + of_surface);
 }
 

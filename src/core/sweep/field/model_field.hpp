@@ -76,6 +76,7 @@ class ModelField {
   ModelField(Tree tree, const Box& model, double spacing, double radius,
              const ModelFieldOptions& options, int threads);
 
+  bool is_surface() const { return std::holds_alternative<const TriangleTree*>(tree_); }
   void choose_voxel(double spacing, double radius, const ModelFieldOptions& options);
   double band(double radius, double reach) const;
   double margin_steps(double reach) const;

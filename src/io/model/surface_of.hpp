@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "clearway/model.hpp"
+#include "io/model/model_input.hpp"
+
+namespace clearway {
+
+/// The triangles of a mesh and the vertices that they use, in the order of the file. With
+/// options.above they are cut there, and what is below is left out. Throws InputError for a file
+/// without triangles, and where none is left. Notes and warnings are appended.
+TriangleMesh surface_of(const ModelInput& input, const ModelOptions& options,
+                        std::vector<Message>& messages);
+
+}  // namespace clearway
