@@ -53,4 +53,13 @@ inline std::uint64_t element_count(const Query& query) {
   return query.is_surface() ? query.triangles.size() : query.model.size();
 }
 
+/// How many solids the model has.
+inline std::uint64_t solid_count(const Query& query) {
+  std::uint64_t count = 0;
+  for (const std::uint32_t solid : query.solid_of) {
+    if (solid != kNoSolid && solid >= count) count = solid + std::uint64_t{1};
+  }
+  return count;
+}
+
 }  // namespace clearway

@@ -30,6 +30,7 @@ struct ReportOptions {
   std::uint64_t model_left_out = 0;
   /// Of a result of a surface: its triangles, whose corners `model` holds.
   std::vector<std::array<std::uint32_t, 3>> model_triangles = {};
+  std::vector<std::uint32_t> model_solid_of = {};  ///< with solids: as Query has them
   /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.
   /// The last is at least the radius, and none above it is beyond the clearance asked for. Empty:
   /// the radius, and the clearance where that is larger.

@@ -7,7 +7,7 @@
 
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
-#include "core/sweep/host_profile.hpp"
+#include "core/sweep/profile/host_profile.hpp"
 #include "cpu/cell_search.hpp"
 
 namespace clearway {

@@ -1,4 +1,4 @@
-#include "core/sweep/profile_page.hpp"
+#include "core/sweep/profile/profile_page.hpp"
 #include "core/sweep/sweep_block.hpp"
 #include "gpu/cuda_check.hpp"
 #include "gpu/sweep_kernels.hpp"
@@ -31,7 +31,8 @@ __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lan
 /// A warp a block of the page's cells.
 template <bool kClearance, typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_blocks_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
+    search_blocks_kernel(const __grid_constant__ SweepPageOf<Element> job,
+                         unsigned long long* tallies) {
   using Block = SweepBlock<CudaWarp, kClearance, Element>;
   __shared__ typename Block::Shared shared[kWarpsPerBlock];
   const std::uint32_t warp = threadIdx.x / kWarpLanes;
@@ -45,7 +46,8 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 /// Warps take one entry after the other, since some take far longer than others.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_entries_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
+    search_entries_kernel(const __grid_constant__ SweepPageOf<Element> job,
+                          unsigned long long* tallies) {
   const std::uint32_t count = job.work.entry_count();
   CudaWarp::PerLane<SweepStatistics> statistics;
   for (;;) {
@@ -59,7 +61,8 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 /// A lane a walk.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_walks_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
+    search_walks_kernel(const __grid_constant__ SweepPageOf<Element> job,
+                        unsigned long long* tallies) {
   const std::uint32_t count = job.work.walk_count();
   const std::uint32_t warp = blockIdx.x * kWarpsPerBlock + threadIdx.x / kWarpLanes;
   CudaWarp::PerLane<SweepStatistics> statistics;
@@ -72,7 +75,8 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 /// A thread an item.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_items_kernel(const __grid_constant__ SweepPageOf<Element> job, unsigned long long* tallies) {
+    search_items_kernel(const __grid_constant__ SweepPageOf<Element> job,
+                        unsigned long long* tallies) {
   const std::uint32_t count = job.work.item_count();
   SweepStatistics statistics;
   for (std::uint32_t i = blockIdx.x * kThreads + threadIdx.x; i < count;
@@ -86,8 +90,9 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 /// Warps take one task after the other.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    search_profile_kernel(const __grid_constant__ SweepPageOf<Element> job, const ProfileBests bests,
-                          const ProfileList list, unsigned long long* tallies) {
+    search_profile_kernel(const __grid_constant__ SweepPageOf<Element> job,
+                          const ProfileBests bests, const ProfileList list,
+                          unsigned long long* tallies) {
   using Task = ProfileTask<CudaWarp, Element>;
   __shared__ typename Task::Shared shared[kWarpsPerBlock];
   const auto count = static_cast<std::uint32_t>(Task::count(job.page.shape));
@@ -110,8 +115,8 @@ unsigned resident_sweep_blocks(int device) {
 }
 
 template <typename Element>
-void search_sweep(const SweepPageOf<Element>& page, unsigned long long* tallies, unsigned resident_blocks,
-                  cudaStream_t stream) {
+void search_sweep(const SweepPageOf<Element>& page, unsigned long long* tallies,
+                  unsigned resident_blocks, cudaStream_t stream) {
   const auto blocks = static_cast<unsigned>(divide_up(page.block_count(), kWarpsPerBlock));
   check_cuda(cudaMemsetAsync(page.work.counts, 0, sizeof(SweepWork::Counts), stream));
   if (page.clearances != nullptr) {
@@ -130,20 +135,26 @@ void search_sweep(const SweepPageOf<Element>& page, unsigned long long* tallies,
 }
 
 template <typename Element>
-void search_profile(const SweepPageOf<Element>& page, const ProfileBests& bests, const ProfileList& list,
-                    unsigned long long* tallies, unsigned resident_blocks, cudaStream_t stream) {
+void search_profile(const SweepPageOf<Element>& page, const ProfileBests& bests,
+                    const ProfileList& list, unsigned long long* tallies, unsigned resident_blocks,
+                    cudaStream_t stream) {
   check_cuda(cudaMemsetAsync(list.counts, 0, sizeof(ProfileCounts), stream));
-  search_profile_kernel<Element><<<resident_blocks, kThreads, 0, stream>>>(page, bests, list, tallies);
+  search_profile_kernel<Element>
+      <<<resident_blocks, kThreads, 0, stream>>>(page, bests, list, tallies);
   check_cuda(cudaGetLastError());
 }
 
 template void search_sweep(const SweepPageOf<Vec3>&, unsigned long long*, unsigned, cudaStream_t);
 template void search_sweep(const SweepPageOf<Triangle>&, unsigned long long*, unsigned,
                            cudaStream_t);
+template void search_sweep(const SweepPageOf<SolidTriangle>&, unsigned long long*, unsigned,
+                           cudaStream_t);
 template void search_profile(const SweepPageOf<Vec3>&, const ProfileBests&, const ProfileList&,
                              unsigned long long*, unsigned, cudaStream_t);
 template void search_profile(const SweepPageOf<Triangle>&, const ProfileBests&, const ProfileList&,
                              unsigned long long*, unsigned, cudaStream_t);
+template void search_profile(const SweepPageOf<SolidTriangle>&, const ProfileBests&,
+                             const ProfileList&, unsigned long long*, unsigned, cudaStream_t);
 
 void load_sweep_kernels() noexcept {
   cudaFuncAttributes unused;

@@ -13,7 +13,7 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
           metadata.input_points,
           metadata.points_hash,
           query.model.size(),
-          hash_of_model(query.model, query.triangles),
+          hash_of_model(query.model, query.triangles, query.solid_of),
           query.poses.size(),
           hash_of_trajectory(query.poses),
           query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
@@ -23,7 +23,8 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
           false,
           query.model.empty() ? Box{} : box_of(query.model),
           std::nullopt,
-          query.triangles.size()};
+          query.triangles.size(),
+          solid_count(query)};
 }
 
 }  // namespace clearway

@@ -85,6 +85,7 @@ class Search {
     report_.environment_points = store_.point_count();
     report_.model_points = query_.model.size();
     report_.model_triangles = query_.triangles.size();
+    report_.model_solids = solid_count(query_);
     report_.poses = query_.poses.size();
     report_.cells_total = store_.cells().size();
   }
@@ -282,6 +283,7 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
                     const SearchOptions& options) {
   check_query(query, options);
   if (query.is_surface()) check_surface(query, options);
+  if (query.is_solid()) check_solid(query);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/query/signed_root.hpp"
 #include "io/system/thread_limit.hpp"
 #include "stream/write/gather_rows.hpp"
 #include "stream/write/write_profile.hpp"
@@ -226,7 +227,7 @@ class ResultWriting {
                                                std::uint32_t i) {
         const Clearance clearance = clearances.at(entry);
         return ClearanceRow{
-            source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
+            source, signed_root(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
       };
     };
     const auto encode_rows = [&](std::span<const ClearanceRow> rows) {

@@ -111,7 +111,7 @@ TEST_CASE("random solids") {
 #ifdef CLEARWAY_SANITIZED
   constexpr std::uint64_t kScenes = 15;
 #else
-  constexpr std::uint64_t kScenes = 60;
+  constexpr std::uint64_t kScenes = 20;
 #endif
   std::uint64_t with_hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {

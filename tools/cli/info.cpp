@@ -64,9 +64,12 @@ ordered_json describe(const ResultReader& result) {
                            {"colliding_points", result.collisions()},
                            {"environment_points", h.environment_points},
                            {"radius", h.radius},
-                           {"model_as", h.model_triangles > 0 ? "surface" : "points"},
+                           {"model_as", h.model_solids > 0      ? "solid"
+                                        : h.model_triangles > 0 ? "surface"
+                                                                : "points"},
                            {"model_points", h.model_points},
                            {"model_triangles", h.model_triangles},
+                           {"model_solids", h.model_solids},
                            {"model_box", h.has_model_box() ? box_json(h.model_box) : nullptr},
                            {"poses", h.poses},
                            {"first_pose", h.first_pose},

@@ -72,6 +72,10 @@ std::string place_text(const AnswerPlace& place, const PoseLabels& labels,
 std::string nearest_text(const Verdict& verdict, const PoseLabels& labels,
                          const std::string& unit) {
   const auto& nearest = verdict.nearest();
+  if (nearest && *nearest->distance < 0) {
+    return fmt::format("; the greatest depth inside the model is {:.4g} {} at {}",
+                       -*nearest->distance, unit, place_text(*nearest, labels, unit));
+  }
   if (nearest) {
     return fmt::format("; the least distance is {:.4g} {} at {}", *nearest->distance, unit,
                        place_text(*nearest, labels, unit));

@@ -17,8 +17,13 @@ class SolidParts {
 
   /// Valid while they live.
   SolidPartsRef ref() const {
-    return {parts_.data(), triangles_.data(), boxes_.data(),
-            static_cast<std::uint32_t>(parts_.size()), lattice_};
+    return {parts_.data(),
+            triangles_.data(),
+            boxes_.data(),
+            static_cast<std::uint32_t>(parts_.size()),
+            static_cast<std::uint32_t>(triangles_.size()),
+            static_cast<std::uint32_t>(boxes_.size()),
+            lattice_};
   }
 
   /// How far a place may be moved before it is asked whether it lies inside, metres in the model's

@@ -21,6 +21,7 @@ struct SolidPartsRef {
   const Triangle* triangles = nullptr;
   const Box* boxes = nullptr;
   std::uint32_t count = 0;  ///< solids
+  std::uint32_t triangle_count = 0, box_count = 0;
   SolidLattice lattice;
 
   CLEARWAY_HD Tree tree(std::uint32_t solid) const {

@@ -45,6 +45,7 @@ struct ResultHeader : QueryParameters {
   std::optional<ResultPart> part;  ///< of what merge() makes a result of
   /// Of a surface, whose corners the model's points are; 0: the points are the model.
   std::uint64_t model_triangles = 0;
+  std::uint64_t model_solids = 0;  ///< parts of it with an inside; then distances may be below 0
   /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances.
   std::uint32_t version = 3;
 

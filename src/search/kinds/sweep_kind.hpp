@@ -69,5 +69,6 @@ std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Q
 
 extern template class SweepKindOf<Vec3>;
 extern template class SweepKindOf<Triangle>;
+extern template class SweepKindOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -121,6 +121,38 @@ TEST_CASE("run of a mesh searches its surface") {
                 2, "surface.h5");
 }
 
+TEST_CASE("run of a solid finds what is inside") {
+  const Meshes meshes;
+  const std::string options = "--model-unit mm --clearance 0.5 --profile 0.5 --first-pose --json ";
+  const Outcome surface = meshes.run("car.stl", "surface.h5", options);
+  const Outcome solid = meshes.run("car.stl", "solid.h5", options + "--model-as solid");
+  REQUIRE(solid.exit_code == 0);
+  const json told = json::parse(solid.out);
+  CHECK(told["model_as"] == "solid");
+  CHECK(told["model_solids"] == 1);
+  CHECK(told["colliding_points"] > json::parse(surface.out)["colliding_points"]);
+  CHECK_THAT(solid.err, Contains("1 closed parts of 12 triangles are solid"));
+  CHECK_THAT(solid.err, Contains("the greatest depth inside the model is"));
+  const Outcome verified = meshes.work.run("verify " + meshes.work.path("solid.h5"));
+  CHECK(verified.exit_code == 0);
+  const json info =
+      json::parse(meshes.work.run("info --json " + meshes.work.path("solid.h5")).out);
+  CHECK(info["model_as"] == "solid");
+  // In parts too.
+  const std::string shard = "--model-as solid " + options + "--shard ";
+  REQUIRE(meshes.run("car.stl", "part1.h5", shard + "1/2").exit_code == 0);
+  REQUIRE(meshes.run("car.stl", "part2.h5", shard + "2/2").exit_code == 0);
+  REQUIRE(meshes.work
+              .run("merge " + meshes.work.path("part1.h5") + " " + meshes.work.path("part2.h5") +
+                   " -o " + meshes.work.path("merged.h5"))
+              .exit_code == 0);
+  CHECK(meshes.work.bytes("merged.h5") == meshes.work.bytes("solid.h5"));
+  check_refused(meshes.run("car.stl", "no.h5", "--model-as solid --model-unit mm --tolerance 0.01"),
+                2, "a tolerance and a model with solids cannot be combined");
+  check_refused(meshes.run("car.stl", "no.h5", "--model-as solid --model-unit mm --model-above 0"),
+                2, "no longer solid");
+}
+
 TEST_CASE("what has no surface is refused and points are named") {
   const Meshes meshes;
   const std::string surface = "--model-as surface --model-unit mm ";

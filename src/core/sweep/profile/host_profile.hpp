@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/cloud/packed_cloud.hpp"
-#include "core/sweep/profile_search.hpp"
+#include "core/sweep/profile/profile_search.hpp"
 #include "core/sweep/sweep_filter.hpp"
 
 namespace clearway {

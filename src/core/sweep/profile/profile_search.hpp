@@ -3,10 +3,10 @@
 #include <cmath>
 #include <type_traits>
 
-#include "core/sweep/profile_blocks.hpp"
-#include "core/sweep/profile_depths.hpp"
-#include "core/sweep/profile_reaches.hpp"
-#include "core/sweep/sweep_profile.hpp"
+#include "core/sweep/profile/profile_blocks.hpp"
+#include "core/sweep/profile/profile_depths.hpp"
+#include "core/sweep/profile/profile_reaches.hpp"
+#include "core/sweep/profile/sweep_profile.hpp"
 
 namespace clearway {
 

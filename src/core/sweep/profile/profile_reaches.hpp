@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/geometry/sweep_bounds.hpp"
-#include "core/sweep/sweep_profile.hpp"
+#include "core/sweep/profile/sweep_profile.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
 
 namespace clearway {

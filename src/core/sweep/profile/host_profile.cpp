@@ -1,4 +1,4 @@
-#include "core/sweep/host_profile.hpp"
+#include "core/sweep/profile/host_profile.hpp"
 
 #include <algorithm>
 #include <tuple>

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/sweep/profile_blocks.hpp"
+#include "core/sweep/profile/profile_blocks.hpp"
+#include "core/sweep/profile/sweep_profile.hpp"
 #include "core/sweep/solid_depth.hpp"
-#include "core/sweep/sweep_profile.hpp"
 
 namespace clearway {
 
