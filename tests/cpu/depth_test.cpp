@@ -25,6 +25,7 @@ std::vector<double> signed_distances(const std::vector<Vec3>& points, const Vec3
                                      Query query) {
   const Quantisation quantisation{{0x1p-20, 0x1p-20, 0x1p-20}, {offset.x, offset.y, offset.z}};
   std::vector<Quantum> quanta;
+  quanta.reserve(points.size());
   for (const Vec3& p : points) {
     quanta.push_back({static_cast<std::int32_t>(std::round(p.x * 0x1p20)),
                       static_cast<std::int32_t>(std::round(p.y * 0x1p20)),
@@ -51,6 +52,7 @@ std::vector<double> signed_distances(const std::vector<Vec3>& points, const Vec3
 /// Poses along x; a body's own frame is the environment's but for that.
 std::vector<Pose> along_x(double from, double to, int count) {
   std::vector<Pose> poses;
+  poses.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     poses.push_back(translation({from + (to - from) * i / (count - 1), 0, 0}));
   return poses;

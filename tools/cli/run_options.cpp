@@ -41,8 +41,8 @@ void add_inputs(CLI::App& command, RunOptions& options) {
                                : name == "surface" ? ModelAs::kSurface
                                                    : ModelAs::kPoints;
           },
-          "surface: search the triangles of a mesh as they are; solid: and what its closed parts "
-          "enclose; points: search points on its surface (default: surface, for what engine sweep "
+          "surface: search the triangles of a mesh as they are. solid: and what its closed parts "
+          "enclose. points: search points on its surface. (Default: surface, for what engine sweep "
           "searches at poses)")
       ->type_name("KIND")
       ->check(CLI::IsMember({"surface", "solid", "points"}));

@@ -176,7 +176,8 @@ CLEARWAY_HD inline bool ModelFieldRef::contains(const Vec3& x, double squared_lo
   for (int k = 0; k < 3; ++k) {
     if (!(whole[k] >= 0 && whole[k] < size[k] - 1)) return inside.solids.contains(x);
     cell[k] = static_cast<std::uint32_t>(whole[k]);
-    node[k] = static_cast<std::uint32_t>((whole[k] - cell[k]) * kBrick + 0.5);
+    const double rounded = (whole[k] - cell[k]) * kBrick + 0.5;
+    node[k] = static_cast<std::uint32_t>(rounded);
   }
   const std::size_t at = (std::size_t{cell[2]} * size[1] + cell[1]) * size[0] + cell[0];
   const std::uint32_t brick = made_brick_at(at);
