@@ -5,7 +5,7 @@ clearway_packages=(
   libhdf5-dev libeigen3-dev libtbb-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libxxhash-dev
   libpugixml-dev libproj-dev libsqlite3-dev zlib1g-dev libnanoflann-dev catch2
   pybind11-dev python3-dev python3-numpy
-  hdf5-tools python3-h5py python3-matplotlib python3-pil
+  hdf5-tools python3-h5py python3-matplotlib python3-pil libcgal-dev
 )
 
 install_missing_packages() {

@@ -6,6 +6,7 @@
 #include "clearway/conflicts.hpp"   // IWYU pragma: export
 #include "clearway/convert.hpp"     // IWYU pragma: export
 #include "clearway/error.hpp"       // IWYU pragma: export
+#include "clearway/ignored.hpp"     // IWYU pragma: export
 #include "clearway/merge.hpp"       // IWYU pragma: export
 #include "clearway/model.hpp"       // IWYU pragma: export
 #include "clearway/progress.hpp"    // IWYU pragma: export

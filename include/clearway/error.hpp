@@ -47,6 +47,7 @@ enum class Remedy {
   kResume,        ///< the same call goes on from what was finished
   kMerge,         ///< the file is one part of a result
   kModelPoints,   ///< points of the surface can be asked about, where the surface cannot
+  kOtherPart,     ///< the output is not of the part, or the whole, that is asked for
 };
 
 /// What the world does wrong. A program chooses its exit code by the type.

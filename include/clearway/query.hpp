@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "clearway/box.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 
@@ -23,6 +24,13 @@ struct QueryParameters {
   /// Metres: a point whose distance differs from the radius by no more may be answered wrongly; 0:
   /// none. Below the radius, and only without first poses, clearances and motion between poses.
   double tolerance = 0;
+  /// Points of these classes are left out of the search, as if the scans did not have them. Only of
+  /// an environment that has classes.
+  std::vector<std::uint8_t> ignore_classes = {};
+  /// So are points in these closed boxes, in the environment's coordinates and unit.
+  std::vector<Box> ignore_boxes = {};
+
+  bool ignores_points() const { return !ignore_classes.empty() || !ignore_boxes.empty(); }
   friend bool operator==(const QueryParameters&, const QueryParameters&) = default;
 };
 

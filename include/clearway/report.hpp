@@ -30,7 +30,6 @@ struct ReportOptions {
   std::uint64_t model_left_out = 0;
   /// Of a result of a surface: its triangles, whose corners `model` holds.
   std::vector<std::array<std::uint32_t, 3>> model_triangles = {};
-  std::vector<std::uint32_t> model_solid_of = {};  ///< with solids: as Query has them
   /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.
   /// The last is at least the radius, and none above it is beyond the clearance asked for. Empty:
   /// the radius, and the clearance where that is larger.
@@ -41,6 +40,7 @@ struct ReportOptions {
   PoseLabels labels = {};              ///< of the poses, where the trajectory has them
   std::vector<Message> warnings = {};  ///< of the inputs and the query: the page shows them
   bool overwrite = false;
+  std::vector<std::uint32_t> model_solid_of = {};  ///< with solids: as Query has them
 };
 
 struct ReportSummary {

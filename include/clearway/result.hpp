@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/ignored.hpp"
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
 
@@ -45,6 +46,7 @@ class Result {
   std::uint64_t size() const;  ///< colliding points
   const QueryParameters& parameters() const;
   std::uint64_t environment_points() const;
+  const IgnoredPointCounts& ignored() const;  ///< of the parameters' lists
   std::uint64_t poses() const;
 
   std::vector<std::uint64_t> source() const;  ///< indices in the order of the scans, ascending

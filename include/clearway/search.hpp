@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clearway/found_place.hpp"
+#include "clearway/ignored.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
@@ -41,8 +42,8 @@ struct SearchOptions {
   bool overwrite = false;  ///< an existing result, and the journal of an earlier run
   bool resume = false;     ///< goes on from the journal of an earlier run
   bool strict = false;     ///< any warning ends with InputError, nothing searched
-  /// Of reading model and trajectory, told already: the report holds them too, and strict counts
-  /// them.
+  /// Of reading model and trajectory, told already: the report holds them too, as a part does, and
+  /// strict counts them. To be given again where a search is resumed.
   std::vector<Message> input_warnings = {};
   std::shared_ptr<const DeviceStart> started = nullptr;  ///< start_devices(), or done here
   /// The process uses CUDA for nothing else: the GPUs' contexts end while the result is written.
@@ -93,6 +94,11 @@ struct SearchReport {
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
   std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
+  /// Of the whole environment, in the order of the result's parameters: ascending, each once.
+  IgnoredPointCounts ignored;
+  /// Ignored points of the cells that this search looked at: not of a journal's cells, nor of those
+  /// that no pose comes near.
+  std::uint64_t ignored_looked_at = 0;
   /// Where the query asks for it, and not of a result that was there already: the point with the
   /// smallest first pose, the least clearance and the least distance of the profile, with its
   /// first pose. Of several points the smallest source.
@@ -104,6 +110,7 @@ struct SearchReport {
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
   std::string device_name = "the CPU";     ///< for people
+  std::optional<Shard> shard;              ///< where it is the answer of one part alone
   std::optional<double> shard_share;       ///< of a shard: its estimated work over the mean
   std::uint64_t searches = 0;              ///< pairs of a pose and a model point or triangle
   std::optional<ToleranceReport> tolerance;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "clearway/box.hpp"
 
@@ -23,7 +24,9 @@ class Store {
 
   std::uint64_t point_count() const;
   std::uint64_t cell_count() const;
-  Box box() const;                     ///< of all points; of no points: zeros
+  Box box() const;  ///< of all points; of no points: zeros
+  /// How many points each class has, 256 numbers; empty where the points have no classes.
+  std::vector<std::uint64_t> class_points() const;
   const std::string& crs_wkt() const;  ///< as the scans had it, or empty
   /// "metre", "foot", "us-survey-foot", "degree" or "unknown".
   std::string length_unit() const;

@@ -2,6 +2,8 @@
 
 #include "clearway/error.hpp"
 #include "core/util/callback_progress.hpp"
+#include "core/util/format.hpp"
+#include "core/util/message_log.hpp"
 #include "io/merge/merge_parts.hpp"
 #include "io/result/verify_result.hpp"
 #include "io/system/pending_file.hpp"
@@ -30,7 +32,22 @@ MergeReport report_of(const PartSet& set) {
   report.poses = set.header().poses;
   report.colliding_points = set.collisions();
   report.clearance_points = set.clearances();
+  report.warnings = set.warnings();
+  report.ignored = set.header().ignored;
   return report;
+}
+
+/// Of a result that is there already too.
+void tell_warnings(const std::vector<PartWarning>& warnings, std::uint32_t parts,
+                   const MergeOptions& options) {
+  for (const PartWarning& warning : warnings) {
+    Message told = warning;
+    told.text += warning.parts == parts ? " (in all parts)"
+                                        : " (in " + std::to_string(warning.parts) + " of " +
+                                              counted(parts, "part") + ")";
+    if (options.message) options.message(told);
+  }
+  if (options.strict) refuse_warnings({warnings.begin(), warnings.end()});
 }
 
 }  // namespace
@@ -43,6 +60,7 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
   return in_threads(options.threads, [&] {
     const PartSet set(parts);
     MergeReport report = report_of(set);
+    tell_warnings(report.warnings, report.parts, options);
     report.was_finished = options.resume && is_merged(set, output, progress);
     if (report.was_finished) return report;
     if (!options.overwrite) pending.refuse_existing();

@@ -12,6 +12,7 @@ Result& Result::operator=(Result&&) noexcept = default;
 std::uint64_t Result::size() const { return reader_->collisions(); }
 const QueryParameters& Result::parameters() const { return reader_->header(); }
 std::uint64_t Result::environment_points() const { return reader_->header().environment_points; }
+const IgnoredPointCounts& Result::ignored() const { return reader_->header().ignored; }
 std::uint64_t Result::poses() const { return reader_->header().poses; }
 
 std::vector<std::uint64_t> Result::source() const {

@@ -18,6 +18,12 @@ Box Store::box() const {
   return position_box(reader_->quantisation(), reader_->tree()[0].box);
 }
 
+std::vector<std::uint64_t> Store::class_points() const {
+  const auto& classes = reader_->metadata().classes;
+  if (!classes) return {};
+  return {classes->points.begin(), classes->points.end()};
+}
+
 const std::string& Store::crs_wkt() const { return reader_->metadata().crs_wkt; }
 std::string Store::length_unit() const { return to_string(reader_->metadata().unit); }
 

@@ -33,6 +33,8 @@ const std::vector<OptionKey> kQueryKeys{{"first_pose", "--first-pose", ValueKind
                                         {"clearance", "--clearance", ValueKind::kLength},
                                         {"profile", "--profile", ValueKind::kLength},
                                         {"between_poses", "--between-poses", ValueKind::kFlag},
+                                        {"ignore_classes", "--ignore-class", ValueKind::kList},
+                                        {"ignore_boxes", "--ignore-box", ValueKind::kLists},
                                         {"strict", "--strict", ValueKind::kFlag}};
 const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
                                            {"min_points", "--min-points", ValueKind::kCount},

@@ -53,6 +53,10 @@ Arguments arguments_of(const KeyReader& object, const std::vector<OptionKey>& ta
     const KeyReader value = object.at(name);
     if (kind == ValueKind::kFlag) {
       if (value.flag()) out.push_back({value.key(), option, option});
+    } else if (kind == ValueKind::kLists) {
+      for (const KeyReader& one : value.elements()) {
+        out.push_back({one.key(), option, option + ("=" + list_text(one))});
+      }
     } else {
       out.push_back({value.key(), option, option + ("=" + value_text(value, kind))});
     }

@@ -17,7 +17,15 @@ struct Argument {
 using Arguments = std::vector<Argument>;
 
 /// What a value of campaign.json may be; what it means is for the command line to judge.
-enum class ValueKind { kLength, kText, kFlag, kCount, kSize, kList };
+enum class ValueKind {
+  kLength,
+  kText,
+  kFlag,
+  kCount,
+  kSize,
+  kList,
+  kLists  ///< a list of lists: the option once for each
+};
 
 /// A key and the option that it stands for.
 struct OptionKey {

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "campaign/question.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway::campaign {
@@ -110,15 +111,26 @@ Command merge_words(const Task& task, const Arguments& limits) {
   return words;
 }
 
-/// The run finds its result merged: it says what is in it.
-Task make_task(const Campaign& campaign, const PlannedRun& run, const RunFacts& facts) {
+/// Of a merge: it finds its result, says what is in it, and searches nothing. So it needs no GPU.
+Arguments without_search(const Campaign& campaign, const RunCommands& commands) {
+  return commands.run() + Arguments{{"limits.device", "--device", "--device=cpu"}} +
+         campaign.limits;
+}
+
+Task make_task(const Campaign& campaign, const RunCommands& commands, const PlannedRun& run,
+               const RunFacts& facts) {
   Task task;
   task.question = facts.question;
   task.unit = facts.unit;
   task.shards = facts.shards > 1 ? facts.shards : 0;
   auto made = nlohmann::ordered_json::array();
-  if (task.shards > 0) task.commands.push_back(merge_words(task, campaign.limits));
-  task.commands.push_back(with_arguments(run_words(task), run.arguments, {}));
+  if (task.shards > 0) {
+    task.store = facts.store;
+    task.commands.push_back(merge_words(task, campaign.limits));
+  }
+  const bool searches = task.shards == 0;
+  task.commands.push_back(with_arguments(
+      run_words(task), searches ? run.arguments : without_search(campaign, commands), {}));
   for (const auto& [command, arguments] : run.outputs) {
     made.push_back(with_arguments(command, arguments, {}));
     task.commands.push_back(with_arguments(command, arguments, campaign.limits));
@@ -151,9 +163,22 @@ Task shard_of(const Task& merge, std::uint32_t number) {
   shard.unit = merge.unit;
   shard.shard = Shard{number, merge.shards};
   shard.question = merge.question;
-  shard.question["shard"] = to_string(*shard.shard);
+  ask_for_part(*shard.shard, merge.store, shard.question);
   shard.outputs_id = id_of(nlohmann::ordered_json::array());
   return shard;
+}
+
+Task run_of(const Task& shard) {
+  Task run;
+  run.vehicle = shard.vehicle;
+  run.route = shard.route;
+  run.environment = shard.environment;
+  run.radius = shard.radius;
+  run.unit = shard.unit;
+  run.question = shard.question;
+  run.question.erase("shard");
+  run.question.erase("store");
+  return run;
 }
 
 Plan make_plan(const Campaign& campaign,
@@ -170,7 +195,7 @@ Plan make_plan(const Campaign& campaign,
                              environment,
                              commands.run() + campaign.search_limits + campaign.limits,
                              commands.outputs()};
-        Task task = make_task(campaign, run, facts_of(run));
+        Task task = make_task(campaign, commands, run, facts_of(run));
         task.vehicle = vehicle.name;
         task.route = route.name;
         task.environment = environment.name;

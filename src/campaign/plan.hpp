@@ -30,6 +30,7 @@ struct Task {
   nlohmann::ordered_json question;
   std::optional<Shard> shard;        ///< of a shard
   std::uint32_t shards = 0;          ///< of a merge: the tasks before it
+  std::string store;                 ///< of a merge: the fingerprint that its shards are of
   std::vector<std::string> outputs;  ///< names of the files beside the result
   std::vector<Command> commands;     ///< the first one makes the result
   std::string outputs_id;            ///< of how the outputs are made, whatever the limits
@@ -52,6 +53,9 @@ struct Plan {
 /// Of a merge: a task that it waits for, with all but its commands. number: from 1.
 Task shard_of(const Task& merge, std::uint32_t number);
 
+/// Of a shard: its run, as far as the result goes: without outputs and commands.
+Task run_of(const Task& shard);
+
 /// A run as it is to be asked.
 struct PlannedRun {
   const Vehicle& vehicle;
@@ -67,6 +71,7 @@ struct RunFacts {
   nlohmann::ordered_json question;
   std::string unit;
   std::uint32_t shards = 1;  ///< that it is divided into
+  std::string store;         ///< its fingerprint, as text
 };
 
 /// Vehicles, routes and radii in the order of the file, radii innermost. The shards of a run come

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;  // 1: without the stores of shards
 constexpr std::string_view kEnd = "]}";
 
 ordered_json json_of(const Task& task) {
@@ -23,7 +23,10 @@ ordered_json json_of(const Task& task) {
                     {"unit", task.unit},
                     {"folder", task.folder().string()}};
   if (task.shard) line["shard"] = {task.shard->number, task.shard->count};
-  if (task.shards > 0) line["shards"] = task.shards;
+  if (task.shards > 0) {
+    line["shards"] = task.shards;
+    line["store"] = task.store;
+  }
   line["question"] = task.question;
   line["outputs"] = task.outputs;
   line["outputs_id"] = task.outputs_id;
@@ -43,7 +46,10 @@ Task task_of(const ordered_json& line) {
     const ordered_json& shard = line["shard"];
     task.shard = Shard{shard.at(0).get<std::uint32_t>(), shard.at(1).get<std::uint32_t>()};
   }
-  if (line.contains("shards")) line["shards"].get_to(task.shards);
+  if (line.contains("shards")) {
+    line["shards"].get_to(task.shards);
+    line.at("store").get_to(task.store);
+  }
   task.question = line.at("question");
   line.at("outputs").get_to(task.outputs);
   line.at("outputs_id").get_to(task.outputs_id);

@@ -6,6 +6,24 @@
 #include "io/system/xxh64.hpp"
 
 namespace clearway::campaign {
+namespace {
+
+nlohmann::ordered_json ignored_of(const ResultHeader& header) {
+  nlohmann::ordered_json boxes = nlohmann::ordered_json::array();
+  for (const Box& box : header.ignore_boxes) {
+    boxes.push_back({box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z});
+  }
+  nlohmann::ordered_json ignored{{"classes", header.ignore_classes}, {"boxes", boxes}};
+  if (!header.ignore_classes.empty()) ignored["classes_hash"] = hash_text(header.classes_hash);
+  return ignored;
+}
+
+}  // namespace
+
+void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordered_json& question) {
+  question["shard"] = to_string(shard);
+  question["store"] = store;
+}
 
 nlohmann::ordered_json question_of(const ResultHeader& header) {
   nlohmann::ordered_json question{{"radius", header.radius},
@@ -21,8 +39,9 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
                                   {"model_hash", hash_text(header.model_hash)},
                                   {"poses", header.poses},
                                   {"trajectory_hash", hash_text(header.trajectory_hash)}};
+  if (header.ignores_points()) question["ignored"] = ignored_of(header);
   if (header.model_triangles > 0) question["model_triangles"] = header.model_triangles;
-  if (header.part) question["shard"] = to_string(header.part->shard);
+  if (header.part) ask_for_part(header.part->shard, hash_text(header.part->store), question);
   return question;
 }
 

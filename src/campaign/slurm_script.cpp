@@ -32,7 +32,8 @@ trap 'kill -TERM "$child" 2>/dev/null' TERM
 wait "$child"; code=$?
 while kill -0 "$child" 2>/dev/null; do wait "$child"; code=$?; done  # a trap ends a wait
 
-# 5: interrupted, to go on. 4, or killed: the machine, may work later. 2, 3: the same again for ever.
+# 5: interrupted, to go on. 4, or killed: the machine, may work later. 2, 3: the same again, and a
+# merge without all of its parts.
 again=no
 case $code in
   5) again=yes ;;
@@ -59,8 +60,14 @@ numbers_of() {  # 3,7-9: a number a line
   done
 }
 
+script() {  # a merge needs no GPU
+  if [ "$gpu" = yes ]; then cat "$folder/campaign.sbatch"; else
+    grep -vx '#SBATCH --gres=gpu:1' "$folder/campaign.sbatch"
+  fi
+}
+
 # Numbers of an array stay below MaxArraySize: more tasks become several arrays.
-submit() {  # numbers and options of sbatch in the variables of these names: adds to jobs
+submit() {  # numbers and options of sbatch in the variables of these names, gpu: adds to jobs
   local first=0 array rest number job
   while [ ${#numbers[@]} -gt 0 ]; do
     array= rest=()
@@ -72,8 +79,8 @@ submit() {  # numbers and options of sbatch in the variables of these names: add
       fi
     done
     if [ -n "$array" ]; then
-      job=$(CLEARWAY_FIRST=$first sbatch --parsable --export=ALL --array="$array" \
-        ${options[@]+"${options[@]}"} "$folder/campaign.sbatch")
+      job=$(script | CLEARWAY_FIRST=$first sbatch --parsable --export=ALL --array="$array" \
+        ${options[@]+"${options[@]}"})
       jobs+=:${job%%;*}
     fi
     numbers=(${rest[@]+"${rest[@]}"})
@@ -87,10 +94,10 @@ runs=() later=()
 for number in $(numbers_of "$list"); do
   if [ -n "${is_merge[$number]:-}" ]; then later+=("$number"); else runs+=("$number"); fi
 done
-jobs= options=() numbers=(${runs[@]+"${runs[@]}"})
+jobs= options=() gpu=yes numbers=(${runs[@]+"${runs[@]}"})
 submit
 if [ -n "$jobs" ]; then options=(--dependency="afterany$jobs"); fi
-numbers=(${later[@]+"${later[@]}"})
+gpu=no numbers=(${later[@]+"${later[@]}"})
 submit
 report=$(sbatch --parsable --dependency="afterany$jobs" --job-name="$name-report" \
   --output="$folder/slurm/report.log" "${report_options[@]}" \

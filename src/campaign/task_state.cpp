@@ -48,7 +48,12 @@ const char* name_of(TaskStatus status) {
   return kNames[static_cast<std::size_t>(status)];
 }
 
+bool has_result(const Task& task, const fs::path& campaign) {
+  return answers(campaign / task.folder() / task.result(), task.question);
+}
+
 bool is_done(const Task& task, const fs::path& campaign, const std::optional<TaskState>& state) {
+  if (task.shard && has_result(run_of(task), campaign)) return true;
   if (!state || state->ending != Ending::kDone || state->question_id != task.question_id() ||
       state->outputs_id != task.outputs_id) {
     return false;
@@ -57,7 +62,7 @@ bool is_done(const Task& task, const fs::path& campaign, const std::optional<Tas
   std::error_code unknown;
   return std::ranges::all_of(
              task.outputs, [&](const auto& name) { return fs::exists(folder / name, unknown); }) &&
-         answers(folder / task.result(), task.question);
+         has_result(task, campaign);
 }
 
 TaskLook look_at(const Task& task, const fs::path& campaign) {

@@ -27,8 +27,11 @@ struct TaskLook {
 /// campaign: its folder. Changes nothing.
 TaskLook look_at(const Task& task, const std::filesystem::path& campaign);
 
+/// Whether the result is there, complete, and answers the task's question.
+bool has_result(const Task& task, const std::filesystem::path& campaign);
+
 /// Whether a try said so of this plan, and the result is complete and answers the task's question,
-/// and the outputs are there.
+/// and the outputs are there. A shard is done too where its run has the result: it is not needed.
 bool is_done(const Task& task, const std::filesystem::path& campaign,
              const std::optional<TaskState>& state);
 

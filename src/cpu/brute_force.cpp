@@ -27,7 +27,7 @@ template <>
 std::vector<Triangle> elements_of(const Query& query) {
   std::vector<Triangle> triangles;
   for (const auto& [a, b, c] : query.triangles) {
-    triangles.push_back({query.model.at(a), query.model.at(b), query.model.at(c)});
+    triangles.emplace_back(query.model.at(a), query.model.at(b), query.model.at(c));
   }
   return triangles;
 }

@@ -13,6 +13,8 @@ namespace clearway {
 
 template <typename Element>
 void CellSearchOf<Element>::run(const PageRef& page, std::uint32_t index, const Output& output) {
+  page_ = page;
+  index_ = index;
   cell_ = &page.cell(index);
   blocks_ = page.blocks(index);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -53,9 +55,20 @@ QuantumBox CellSearchOf<Element>::box_of(std::uint32_t first, std::uint32_t coun
   return box;
 }
 
+/// Whether any point of the blocks is to be searched.
+template <typename Element>
+bool CellSearchOf<Element>::has_points(std::uint32_t first, std::uint32_t count) const {
+  if (!page_.shape.masked) return true;
+  for (std::uint32_t block = first; block < first + count; ++block) {
+    if (page_.searched(index_, block) != 0) return true;
+  }
+  return false;
+}
+
 template <typename Element>
 void CellSearchOf<Element>::search_blocks(std::uint32_t first, std::uint32_t count,
                                           std::span<const std::uint32_t> nodes, std::size_t depth) {
+  if (!has_points(first, count)) return;
   if (depth == lists_.size()) lists_.emplace_back();
   std::vector<std::uint32_t> open = std::move(lists_[depth]);
   open.clear();
@@ -77,8 +90,7 @@ void CellSearchOf<Element>::search_blocks(std::uint32_t first, std::uint32_t cou
 
 template <typename Element>
 void CellSearchOf<Element>::mark_all(std::uint32_t block) {
-  const std::uint32_t count = std::min(kBlockPoints, cell_->count - block * kBlockPoints);
-  output_.hits[block] = ~std::uint64_t{0} >> (kBlockPoints - count);
+  output_.hits[block] = page_.searched(index_, block);
 }
 
 template <typename Element>
@@ -93,7 +105,9 @@ void CellSearchOf<Element>::search_points(std::uint32_t block,
   }
   std::int32_t q[3][kBlockPoints];
   for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
+  const std::uint64_t searched = page_.searched(index_, block);
   for (std::uint32_t i = 0; i < count; ++i) {
+    if ((searched >> i & 1) == 0) continue;
     const Vec3 e = position(cloud_.quantisation(), q[0][i], q[1][i], q[2][i]);
     const bool hit = clearance_search_ && filter_.ref().hits_follow_from_clearance()
                          ? search_clearance(e, begin + i)

@@ -39,6 +39,7 @@ class CellSearchOf {
 
  private:
   QuantumBox box_of(std::uint32_t first, std::uint32_t count) const;
+  bool has_points(std::uint32_t first, std::uint32_t count) const;
   void search_blocks(std::uint32_t first, std::uint32_t count, std::span<const std::uint32_t> nodes,
                      std::size_t depth);
   void mark_all(std::uint32_t block);
@@ -49,6 +50,8 @@ class CellSearchOf {
   const PackedCloud& cloud_;
   const SweepFilterOf<Element>& filter_;
   const PageCell* cell_ = nullptr;
+  PageRef page_{};
+  std::uint32_t index_ = 0;  ///< of the cell, in the page
   const BlockBox* blocks_ = nullptr;
   std::array<PackedChunk<std::int32_t>, 3> chunks_;
   Output output_;

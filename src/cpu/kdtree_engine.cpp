@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "core/geometry/predicate.hpp"
+#include "cpu/first_failure.hpp"
+#include "cpu/ignored/ignored_entries.hpp"
 #include "cpu/range_search.hpp"
 
 namespace clearway {
@@ -18,27 +19,6 @@ namespace {
 
 /// A leaf of the model's spheres is no wider than this many search radii.
 constexpr double kLeafRadii = 2;
-
-/// The first exception of a parallel region, kept until it is over.
-class FirstFailure {
- public:
-  bool happened() const { return happened_.load(std::memory_order_relaxed); }
-
-  void keep_current() {
-    const std::lock_guard lock(mutex_);
-    if (!failure_) failure_ = std::current_exception();
-    happened_.store(true, std::memory_order_relaxed);
-  }
-
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-  std::atomic<bool> happened_ = false;
-};
 
 /// The query cut into tasks: a run of poses and a part of the model, in the order of the poses.
 class Tasks {
@@ -172,6 +152,8 @@ HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOpti
     ResolvedPoints resolved(environment, hits);
     Tasks tasks(query, model, threads);
     if (options.only) resolved.leave_out([&](std::uint32_t cell) { return !options.only(cell); });
+    const IgnoredEntries ignored(cloud, query, options.only, threads);
+    counted.ignored_points = ignored.mark(hits);
     if (options.journal != nullptr) options.journal->restore(hits);
     Shared shared{query, model, environment, resolved, tasks, progress, counted, options.journal};
 #pragma omp parallel num_threads(threads)
@@ -184,6 +166,7 @@ HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOpti
     }
     shared.failure.rethrow();
     if (shared.next_task < tasks.count()) throw Interrupted("interrupted");
+    ignored.take_back(hits);
     if (options.only) clear_others(cloud, options.only, hits);
     counted.allocated_bytes =
         hits.allocated_bytes() + environment.allocated_bytes() + resolved.allocated_bytes();

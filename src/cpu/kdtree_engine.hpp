@@ -22,6 +22,7 @@ struct KdTreeStatistics {
   std::uint64_t tested_searches = 0;  ///< of these, those that no filter dismissed
   std::uint64_t allocated_bytes = 0;  ///< per-thread caches and the cloud's own memory not counted
   std::uint64_t cache_bytes = 0;      ///< per-thread caches
+  std::uint64_t ignored_points = 0;   ///< of the cells to search
 };
 
 /// An upper bound of the memory that run_kdtree takes beside the cloud's own, bytes.

@@ -10,11 +10,17 @@
 namespace clearway {
 namespace {
 
+/// Most poses of a page have a fact or none, and some a few. A search on the host takes far longer
+/// than copying lists that are not full.
+constexpr std::uint64_t kFactsAhead = 1024, kMostFactsOfPoses = std::uint64_t{1} << 20;
+
 template <typename Element>
 ResultParts parts_of(const SweepRefOf<Element>& sweep) {
   return {.first_pose = sweep.first_pose,
           .clearance = sweep.clearance > 0,
-          .profile = sweep.profile > 0};
+          .profile = sweep.profile > 0,
+          .facts_ahead =
+              kFactsAhead + std::min<std::uint64_t>(sweep.motion.pose_count, kMostFactsOfPoses)};
 }
 
 /// Blocks of a page at the most.
@@ -75,9 +81,16 @@ class SweepSearch final : public CudaPageSearch {
                                        std::span<const ProfileFact> listed,
                                        std::uint32_t count) override {
     std::vector<ProfileFact>& facts = facts_[slot];
-    facts.assign(listed.begin(), listed.begin() + static_cast<std::ptrdiff_t>(
-                                                      std::min<std::size_t>(count, listed.size())));
-    HostProfileOf<Element>(cloud_, sweep_).complete(page, count, facts);
+    facts.clear();
+    HostProfileOf<Element> host(cloud_, sweep_);
+    if (count > listed.size()) {
+      ProfileBestValues known = known_bests();
+      host.search(page, known.ref(), facts);
+    } else {
+      const auto found = listed.first(count);
+      facts.assign(found.begin(), found.end());
+      host.complete(page, facts);
+    }
     return facts;
   }
 
@@ -93,6 +106,19 @@ class SweepSearch final : public CudaPageSearch {
   }
 
  private:
+  /// What the device knows of the poses by now: the host need not find it again.
+  ProfileBestValues known_bests() const {
+    ProfileBestValues values(sweep_);
+    const ProfileBests to = values.ref();
+    const std::size_t poses = sweep_.motion.pose_count;
+    check_cuda(
+        cudaMemcpy(to.of_pose, bests_.of_pose, poses * sizeof(double), cudaMemcpyDeviceToHost));
+    const std::size_t nodes = poses == 0 ? 0 : 2 * poses - 1;
+    check_cuda(
+        cudaMemcpy(to.of_node, bests_.of_node, nodes * sizeof(double), cudaMemcpyDeviceToHost));
+    return values;
+  }
+
   unsigned resident_;
   Quantisation quantisation_;
   CudaSlotSize size_;

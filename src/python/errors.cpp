@@ -86,6 +86,8 @@ const char* name_of(Remedy remedy) {
       return "model_points";
     case Remedy::kMerge:
       return "merge";
+    case Remedy::kOtherPart:
+      return "other_part";
     case Remedy::kResume:
       return "resume";
   }

@@ -49,7 +49,8 @@ void add_read_model(py::module_& module) {
       "read_model",
       [](const py::object& path, double spacing, double unit, double environment_unit,
          bool vertices_only, std::optional<double> above, const py::object& messages) {
-        const ModelOptions options{spacing, unit, environment_unit, vertices_only, above};
+        const ModelOptions options{ModelAs::kPoints, spacing,       unit,
+                                   environment_unit, vertices_only, above};
         return to_array(read(messages, [&, file = path_of(path)](auto* noted) {
           return read_model(file, options, noted);
         }));

@@ -75,6 +75,7 @@ void add_write_report(py::module_& module) {
                               std::move(trajectory_name),
                               model_above,
                               model_left_out,
+                              {},
                               std::move(classes),
                               max_points,
                               conflict_options(gap, min_points, split, chainage_start, forward, up,

@@ -52,6 +52,9 @@ void add_findings_of(py::class_<Report>& report) {
                     "Points closer than the clearance asked for.")
       .def_readonly("profile_poses", &Report::profile_poses,
                     "Poses closer than the profile's distance asked for.")
+      .def_readonly("ignored", &Report::ignored, "IgnoredPointCounts of the whole environment.")
+      .def_readonly("ignored_looked_at", &Report::ignored_looked_at,
+                    "Ignored points of the cells that this search looked at.")
       .def_readonly("first_place", &Report::first_place,
                     "The point with the smallest first pose, a FoundPlace, or None.")
       .def_readonly("least_clearance", &Report::least_clearance,
@@ -72,6 +75,13 @@ void add_work_of(py::class_<Report>& report) {
       .def_readonly("engine_estimate", &Report::engine_estimate,
                     "Where engine 'auto' chose, an EngineEstimate.")
       .def_readonly("estimate", &Report::estimate, "Where device 'auto' chose, a DeviceEstimate.")
+      .def_property_readonly(
+          "shard",
+          [](const Report& r) -> py::object {
+            if (!r.shard) return py::none();
+            return py::make_tuple(r.shard->number, r.shard->count);
+          },
+          "Where it is the answer of one part alone: (i, n); otherwise None.")
       .def_readonly("shard_share", &Report::shard_share,
                     "Of a shard: its estimated work over the mean; otherwise None.")
       .def_readonly("searches", &Report::searches, "Pairs of pose and model point.")
@@ -100,9 +110,9 @@ void add_reports(py::module_& module) {
   add_findings_of(report);
   add_work_of(report);
   report.def("__repr__", [](const Report& r) {
-    return text("<" + std::to_string(r.colliding_points) + " of " +
-                std::to_string(r.environment_points) + " points collide" +
-                warning_words(r.warnings) + ">");
+    return text("<" + (r.shard ? in_words(*r.shard) + ": " : "") +
+                std::to_string(r.colliding_points) + " of " + std::to_string(r.environment_points) +
+                " points collide" + warning_words(r.warnings) + ">");
   });
 }
 

@@ -78,6 +78,12 @@ void add_columns(py::module_& module) {
 }
 
 void add_parameters(py::module_& module) {
+  using Counts = IgnoredPointCounts;
+  py::class_<Counts>(module, "IgnoredPointCounts",
+                     "How many points of a whole environment a query leaves out.")
+      .def_readonly("points", &Counts::points, "Each once.")
+      .def_readonly("of_classes", &Counts::of_classes, "Of each of the parameters' classes.")
+      .def_readonly("in_boxes", &Counts::in_boxes, "In each of the parameters' boxes.");
   using Q = QueryParameters;
   py::class_<Q>(module, "QueryParameters", "What was asked, whatever the model and the poses.")
       .def_readonly("radius", &Q::radius, "Metres.")
@@ -85,7 +91,9 @@ void add_parameters(py::module_& module) {
       .def_readonly("between_poses", &Q::between_poses)
       .def_readonly("clearance", &Q::clearance, "Metres; 0: not asked for.")
       .def_readonly("profile", &Q::profile, "Metres; 0: not asked for.")
-      .def_readonly("tolerance", &Q::tolerance, "Metres; 0: exact.");
+      .def_readonly("tolerance", &Q::tolerance, "Metres; 0: exact.")
+      .def_readonly("ignore_classes", &Q::ignore_classes, "Of points left out of the search.")
+      .def_readonly("ignore_boxes", &Q::ignore_boxes, "The same, Box objects.");
 }
 
 }  // namespace
@@ -104,6 +112,9 @@ void add_results(py::module_& module) {
       .def(
           "parameters", [](const Result& r) { return r.parameters(); }, "QueryParameters.")
       .def("environment_points", &Result::environment_points)
+      .def(
+          "ignored", [](const Result& r) { return r.ignored(); },
+          "How many points of the whole environment the search left out: IgnoredPointCounts.")
       .def("poses", &Result::poses, "The number of poses.")
       .def(
           "source",

@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,6 +40,17 @@ void add_store(py::module_& module) {
           "box", [](const SharedStore& s) { return s.store.box(); },
           "Of all points, a Box; of no points: zeros.")
       .def(
+          "class_points",
+          [](const SharedStore& s) {
+            std::map<unsigned, std::uint64_t> out;
+            const std::vector<std::uint64_t> points = s.store.class_points();
+            for (unsigned i = 0; i < points.size(); ++i) {
+              if (points[i] > 0) out[i] = points[i];
+            }
+            return out;
+          },
+          "Number of points by class; empty where the points have no classes.")
+      .def(
           "crs_wkt", [](const SharedStore& s) { return text(s.store.crs_wkt()); },
           "Coordinate reference system as the scans had it, or ''.")
       .def(
@@ -64,8 +76,10 @@ void add_parameter(py::class_<ArrayQuery>& query, const char* name, const char* 
 
 ArrayQuery make_query(const py::object& model, const py::object& poses, double radius,
                       bool first_pose, bool between_poses, double clearance, double profile,
-                      double tolerance, bool allow_non_rigid) {
-  return {{radius, first_pose, between_poses, clearance, profile, tolerance},
+                      double tolerance, std::vector<std::uint8_t> ignore_classes,
+                      std::vector<Box> ignore_boxes, bool allow_non_rigid) {
+  return {{radius, first_pose, between_poses, clearance, profile, tolerance,
+           std::move(ignore_classes), std::move(ignore_boxes)},
           points_array(model, "model"),
           poses_array(poses, "poses"),
           allow_non_rigid};
@@ -79,7 +93,8 @@ void add_query(py::module_& module) {
   query
       .def(py::init(&make_query), "model"_a = nothing, "poses"_a = nothing, "radius"_a = 0.0,
            py::kw_only(), "first_pose"_a = false, "between_poses"_a = false, "clearance"_a = 0.0,
-           "profile"_a = 0.0, "tolerance"_a = 0.0, "allow_non_rigid"_a = false)
+           "profile"_a = 0.0, "tolerance"_a = 0.0, "ignore_classes"_a = nothing,
+           "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false)
       .def_property(
           "model", [](const ArrayQuery& q) { return q.model; },
           [](ArrayQuery& q, const py::object& value) { q.model = points_array(value, "model"); },
@@ -108,6 +123,11 @@ void add_query(py::module_& module) {
   add_parameter<&Q::tolerance>(
       query, "tolerance",
       "Metres: points whose distance differs from the radius by no more may be answered wrongly.");
+  add_parameter<&Q::ignore_classes>(query, "ignore_classes",
+                                    "Numbers of classes: their points are left out of the search.");
+  add_parameter<&Q::ignore_boxes>(
+      query, "ignore_boxes",
+      "Boxes in the environment's coordinates: points in them are left out of the search.");
 }
 
 void add_searches(py::module_& module) {

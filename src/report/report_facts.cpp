@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "core/query/ignored_text.hpp"
 #include "io/result/result.hpp"
+#include "io/store/class_names.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/xxh64.hpp"
 #include "report/json_text.hpp"
@@ -46,6 +48,28 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.field("length", facts.path_length).end('}').end('}');
 }
 
+/// What the search left out; null for nothing.
+void write_ignored_points(JsonText& json, const ResultHeader& header) {
+  json.key("ignored");
+  if (!header.ignores_points()) {
+    json.raw("null");
+    return;
+  }
+  json.begin('{').field("points", header.ignored.points);
+  json.field("what", ignored_text(header)).key("classes").begin('[');
+  for (std::size_t i = 0; i < header.ignore_classes.size(); ++i) {
+    json.begin('{').field("class", std::uint64_t{header.ignore_classes[i]});
+    json.field("name", class_name(header.ignore_classes[i]));
+    json.field("points", header.ignored.of_classes[i]).end('}');
+  }
+  json.end(']').key("boxes").begin('[');
+  for (std::size_t i = 0; i < header.ignore_boxes.size(); ++i) {
+    json.begin('{').field("lo", header.ignore_boxes[i].lo).field("hi", header.ignore_boxes[i].hi);
+    json.field("points", header.ignored.in_boxes[i]).end('}');
+  }
+  json.end(']').end('}');
+}
+
 void write_query(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   json.key("query").begin('{').field("radius", header.radius);
@@ -53,6 +77,7 @@ void write_query(JsonText& json, const ReportFacts& facts) {
   json.field("clearance", header.clearance).field("profile", header.profile);
   json.field("tolerance", header.tolerance);
   json.field("exact", header.tolerance == 0 && !header.float_precision).end('}');
+  write_ignored_points(json, header);
 }
 
 void write_classes(JsonText& json, const ReportFacts& facts) {

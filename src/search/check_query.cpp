@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/inside.hpp"
+#include "core/query/ignored_text.hpp"
 
 namespace clearway {
 namespace {
@@ -61,6 +62,19 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
+void check_ignored(const QueryParameters& query) {
+  for (const Box& box : query.ignore_boxes) {
+    for (int k = 0; k < 3; ++k) {
+      if (!std::isfinite(box.lo[k]) || !std::isfinite(box.hi[k])) {
+        throw UsageError("an ignored box has to have finite corners");
+      }
+      if (box.lo[k] <= box.hi[k]) continue;
+      throw UsageError("the ignored box " + box_text(box) +
+                       " has its corners the wrong way round: expected the least x, y and z first");
+    }
+  }
+}
+
 void check_triangles(const Query& query) {
   if (query.triangles.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
     throw InputError("the model has " + std::to_string(query.triangles.size()) +
@@ -104,6 +118,7 @@ Engine chosen_engine(const SearchOptions& options) {
 
 void check_query(const QueryParameters& query, const SearchOptions& options) {
   check_numbers(query, options);
+  check_ignored(query);
   const Engine engine = chosen_engine(options);
   if (query.tolerance > 0) check_tolerance(query, engine);
   if (query.clearance > 0 && query.between_poses) {

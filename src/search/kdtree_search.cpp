@@ -36,9 +36,11 @@ Found search_kdtree(const StoreReader& store, const Query& query, const ShardCel
   const Stopwatch compute;
   KdTreeOptions how{.threads = options.threads, .journal = &journal};
   if (only != nullptr) how.only = [only](std::uint32_t cell) { return only->contains(cell); };
-  HitSet hits = run_kdtree(store, query, how, progress);
+  KdTreeStatistics counted;
+  HitSet hits = run_kdtree(store, query, how, progress, &counted);
   report.seconds.compute = report.seconds.search = compute.seconds();
-  return {{std::move(hits), ClearanceSet()}, options.memory_bytes - kept - result};
+  return {{std::move(hits), ClearanceSet(), {}, counted.ignored_points},
+          options.memory_bytes - kept - result};
 }
 
 }  // namespace clearway

@@ -45,6 +45,8 @@ PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query
       memory_bytes_(memory_bytes),
       kind_(kind),
       only_(only),
+      ignored_(store, asked),
+      masked_(asked.ignores_points()),
       trees_(searched, kind.needs().threads - kind.needs().waiting_threads),
       building_bytes_(tree_building_bytes(asked)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
@@ -91,15 +93,16 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   const PoseReach& reach = kind_.build_index(trees_, size.bytes);
   const double indexed = clock.seconds();
   cells_ = plan(store_, reach);
-  if (only_ != nullptr) {
-    std::erase_if(cells_, [&](const PlannedCell& cell) { return !only_->contains(cell.cell); });
-  }
+  std::erase_if(cells_, [&](const PlannedCell& cell) {
+    return (only_ != nullptr && !only_->contains(cell.cell)) || ignored_.holds(cell.cell);
+  });
   index_seconds_ += indexed;
   plan_seconds_ += clock.seconds() - indexed;
   kind_.resolve_devices();
   const std::uint64_t planned = planned_bytes();
   const std::uint64_t most_poses = most_poses_of(trees_.motion, cells_);
-  for (const SlotLayout& layout : layouts(kind_.needs(), smallest_page_bytes(store_, cells_))) {
+  for (const SlotLayout& layout :
+       layouts(kind_.needs(), smallest_page_bytes(store_, cells_, masked_))) {
     if (fits(layout, planned, building, most_poses)) {
       fits(as_needed(layout), planned, building, most_poses);
       return true;
@@ -111,7 +114,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
 
 /// No more of it than the plan's pages fill; they stay the same.
 SlotLayout PageBudget::as_needed(const SlotLayout& layout) const {
-  const auto pages = paginate(store_, cells_, layout.page_bytes, layout.cells);
+  const auto pages = paginate(store_, cells_, layout.page_bytes, layout.cells, masked_);
   SlotLayout needed{.slots = 1, .page_bytes = 0, .cells = 1};
   for (const PlannedPage& page : pages) {
     needed.page_bytes = std::max(needed.page_bytes, page.shape.bytes());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/page/page_engine.hpp"
+#include "core/query/ignored_points.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 #include "search/shard/shard_cells.hpp"
@@ -48,6 +49,8 @@ class PageBudget {
   const std::uint64_t memory_bytes_;
   PageEngineKind& kind_;
   const ShardCells* only_;
+  const IgnoredPoints ignored_;
+  const bool masked_;  ///< pages have masks
   const QueryTrees trees_;
   const std::uint64_t building_bytes_;  ///< of the trees
   const std::uint64_t kept_bytes_;      ///< to the end of the run, but for the journal

@@ -86,8 +86,8 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
   SearchJournal& journal = open_journal();
   std::vector<PlannedCell>& cells = budget.cells();
   std::erase_if(cells, [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
-  const std::vector<PlannedPage> pages =
-      paginate(store, cells, budget.layout().page_bytes, budget.layout().cells);
+  const std::vector<PlannedPage> pages = paginate(store, cells, budget.layout().page_bytes,
+                                                  budget.layout().cells, query.ignores_points());
   report.pages = pages.size();
   std::vector<PageEngine*> lanes;
   for (const auto& engine : engines) {

@@ -1,6 +1,7 @@
 #include "search/run_journal.hpp"
 
 #include "clearway/error.hpp"
+#include "core/query/ignored_text.hpp"
 #include "core/util/format.hpp"
 #include "io/result/verify_result.hpp"
 #include "io/system/xxh64.hpp"
@@ -17,6 +18,14 @@ std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
 /// A journal of version 0.1.0 has "yes" between poses too: its ways did not include their ends.
 std::string first_pose_text(const ResultHeader& header) {
   return header.has_poses_of_ways() ? "closed way" : yes_or_no(header.first_pose);
+}
+
+std::string classes_text(const ResultHeader& header) {
+  std::string text;
+  for (const std::uint8_t value : header.ignore_classes) {
+    text += (text.empty() ? "" : " ") + std::to_string(value);
+  }
+  return text.empty() ? "none" : text;
 }
 
 std::string work_text(const JournalledWork& work) {
@@ -48,6 +57,10 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
   if (header.part) {
     identity.emplace_back("shard", to_string(header.part->shard));
     identity.emplace_back("division", hash_text(header.part->division));
+  }
+  if (header.ignores_points()) {
+    identity.emplace_back("ignored_classes", classes_text(header));
+    identity.emplace_back("ignored_boxes", boxes_text(header.ignore_boxes));
   }
   if (header.model_triangles > 0) {
     identity.emplace_back("model_as", header.model_solids > 0 ? "solid" : "surface");
@@ -124,8 +137,26 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
     if (read_ || !unwanted_.empty()) remove_file(path_);
     return true;
   }
+  if (options_.resume) refuse_other_part(header);
   pending_.refuse_existing();
   return false;
+}
+
+/// A part in the place of a result, another part, or a result in the place of a part.
+void RunJournal::refuse_other_part(const ResultHeader& header) const {
+  const auto words = [](const std::optional<ResultPart>& part) {
+    return part ? in_words(part->shard) : std::string("the whole result");
+  };
+  std::string found;
+  try {
+    found = words(ResultReader(output_, Parts::kAccepted).header().part);
+  } catch (const Error&) {
+    return;  // nothing is there, or no result
+  }
+  if (found == words(header.part)) return;
+  throw UsageError(
+      output_.string() + ": is " + found + ", and " + words(header.part) + " is asked for",
+      Remedy::kOtherPart);
 }
 
 bool RunJournal::is_of(const StoreReader& store, const ResultHeader& header) const {

@@ -52,6 +52,7 @@ class RunJournal {
 
  private:
   bool is_of(const StoreReader& store, const ResultHeader& header) const;
+  void refuse_other_part(const ResultHeader& header) const;
 
   PendingFile& pending_;
   const std::filesystem::path& output_;

@@ -18,6 +18,7 @@
 #include "search/choice/device_estimate.hpp"
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
+#include "search/ignored/count_ignored.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/cuda_kind.hpp"
 #include "search/kinds/grid_kind.hpp"
@@ -78,6 +79,7 @@ class Search {
     }
     check_sizes(query_);
     warn_of_query(store_, query_, log_);
+    warn_of_ignored(store_, header_, header_.ignored, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
   }
 
@@ -88,6 +90,7 @@ class Search {
     report_.model_solids = solid_count(query_);
     report_.poses = query_.poses.size();
     report_.cells_total = store_.cells().size();
+    report_.ignored = header_.ignored;
   }
 
   /// Of a shard, which cells it has.
@@ -97,6 +100,7 @@ class Search {
     shard_.emplace(store_, query_, *options_.shard, threads_or_all(options_.threads),
                    options_.memory_bytes);
     header_.part = shard_->part();
+    report_.shard = options_.shard;
     report_.shard_share = shard_->share();
   }
 
@@ -216,6 +220,7 @@ class Search {
 
   void publish(const Found& found) {
     const Stopwatch write;
+    describe_part();
     try {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
@@ -228,9 +233,21 @@ class Search {
     journal_.remove_after_publication();
     const StoreReader::Touched touched = store_.touched();
     report_.cells_read = touched.cells;
+    report_.ignored_looked_at = found.result.ignored_points;
     report_.bytes_read = touched.bytes;
     report_profile(found.result.profile);
     report_.seconds.write = write.seconds();
+  }
+
+  /// What merging parts asks of them: how an answer that is not exact was computed, and what was
+  /// warned of.
+  void describe_part() {
+    if (!header_.part) return;
+    header_.part->warnings = report_.warnings;
+    if (header_.is_exact()) return;
+    header_.part->device = name_of(report_.device);
+    header_.part->field_voxel = report_.field_voxel;
+    header_.part->grid_cell = report_.grid_cell;
   }
 
   void report_written(const WrittenResult& written) {

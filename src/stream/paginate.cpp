@@ -24,8 +24,8 @@ std::optional<PageShape> with_cell(PageShape shape, const PackedCloud& cloud,
 
 }  // namespace
 
-PageShape page_shape(const PackedCloud& cloud, std::span<const PlannedCell> cells) {
-  PageShape shape{.blocks_per_cell = cloud.blocks_per_cell()};
+PageShape page_shape(const PackedCloud& cloud, std::span<const PlannedCell> cells, bool masked) {
+  PageShape shape{.blocks_per_cell = cloud.blocks_per_cell(), .masked = masked};
   for (const PlannedCell& cell : cells) {
     const std::optional<PageShape> longer = with_cell(shape, cloud, cell);
     if (!longer) throw ResourceError("cells with too many motion nodes for one page");
@@ -34,16 +34,17 @@ PageShape page_shape(const PackedCloud& cloud, std::span<const PlannedCell> cell
   return shape;
 }
 
-std::uint64_t smallest_page_bytes(const PackedCloud& cloud, std::span<const PlannedCell> cells) {
+std::uint64_t smallest_page_bytes(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                                  bool masked) {
   std::uint64_t bytes = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    bytes = std::max(bytes, page_shape(cloud, cells.subspan(i, 1)).bytes());
+    bytes = std::max(bytes, page_shape(cloud, cells.subspan(i, 1), masked).bytes());
   }
   return bytes;
 }
 
 std::vector<PlannedPage> paginate(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                                  std::uint64_t page_bytes, std::uint32_t most_cells) {
+                                  std::uint64_t page_bytes, std::uint32_t most_cells, bool masked) {
   std::vector<PlannedPage> pages;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!pages.empty() && pages.back().shape.cells < most_cells) {
@@ -54,11 +55,11 @@ std::vector<PlannedPage> paginate(const PackedCloud& cloud, std::span<const Plan
         continue;
       }
     }
-    pages.push_back({i, page_shape(cloud, cells.subspan(i, 1))});
+    pages.push_back({i, page_shape(cloud, cells.subspan(i, 1), masked)});
     if (pages.back().shape.bytes() > page_bytes) {
       throw ResourceError("a page of " + std::to_string(page_bytes) +
                           " bytes is too small for these cells, expected at least " +
-                          std::to_string(smallest_page_bytes(cloud, cells)));
+                          std::to_string(smallest_page_bytes(cloud, cells, masked)));
     }
   }
   return pages;

@@ -19,17 +19,20 @@ struct PlannedPage {
   }
 };
 
-/// Of the page that these cells fill. Throws ResourceError where their motion nodes are too many
-/// for any page.
-PageShape page_shape(const PackedCloud& cloud, std::span<const PlannedCell> cells);
+/// Of the page that these cells fill. masked: with masks, as where points are ignored. Throws
+/// ResourceError where their motion nodes are too many for any page.
+PageShape page_shape(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                     bool masked = false);
 
 /// The smallest page that holds any one of the cells, with its motion nodes, bytes; 0 for none.
-std::uint64_t smallest_page_bytes(const PackedCloud& cloud, std::span<const PlannedCell> cells);
+std::uint64_t smallest_page_bytes(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                                  bool masked = false);
 
 /// Divides the cells, in their order, into pages of at most `page_bytes` and `most_cells` (not 0),
 /// each as full as can be. A pure function; reads no points. Throws ResourceError naming the
 /// smallest page where a cell does not fit.
 std::vector<PlannedPage> paginate(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                                  std::uint64_t page_bytes, std::uint32_t most_cells);
+                                  std::uint64_t page_bytes, std::uint32_t most_cells,
+                                  bool masked = false);
 
 }  // namespace clearway

@@ -49,6 +49,7 @@ class FreeSlots {
 /// What the lanes share: pages are taken in their order by whichever lane has a slot for one.
 struct Pages {
   const PackedCloud& cloud;
+  const IgnoredPoints ignored;
   const std::span<const PlannedCell> cells;
   const std::span<const PlannedPage> pages;
   Progress& progress;
@@ -56,6 +57,7 @@ struct Pages {
   SearchJournal* const journal;
   std::vector<PageTimes> times = std::vector<PageTimes>(pages.size());
   std::atomic<std::size_t> next = 0;
+  std::atomic<std::uint64_t> ignored_points = 0;
 
   std::span<const PlannedCell> cells_of(std::size_t page) const { return pages[page].of(cells); }
 };
@@ -129,7 +131,10 @@ class Lane {
   void start(PageInFlight page) {
     Interval& time = pages_.times[page.page].read;
     time.begin = Clock::now();
-    stage_page(pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot));
+    std::uint64_t ignored = 0;
+    stage_page(pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot), pages_.ignored,
+               ignored);
+    pages_.ignored_points += ignored;
     time.end = Clock::now();
     engine_.start(page.slot, pages_.pages[page.page].shape);
     started_[page.slot] = true;
@@ -189,11 +194,12 @@ SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> ce
   const ThreadLimit limit(threads);
   progress.begin("search", points_of(cloud, cells), "points");
   const Clock::time_point begin = Clock::now();
-  Pages shared{cloud, cells, pages, progress, answer, journal};
+  Pages shared{cloud, IgnoredPoints(cloud, query), cells, pages, progress, answer, journal};
   tbb::task_arena(threads).execute([&] { run_lanes(shared, engines); });
   times = stage_times(shared.times);
   times.total = std::chrono::duration<double>(Clock::now() - begin).count();
   progress.end();
+  answer.ignored_points = shared.ignored_points;
   return answer;
 }
 

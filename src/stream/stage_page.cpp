@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <vector>
 
 #include "stream/paginate.hpp"
 
@@ -39,13 +40,22 @@ class Section {
 
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                      std::span<std::byte> page) {
-  const PageShape shape = page_shape(cloud, cells);
+  std::uint64_t none = 0;
+  return stage_page(cloud, cells, page, IgnoredPoints(cloud, {}), none);
+}
+
+PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                     std::span<std::byte> page, const IgnoredPoints& ignored,
+                     std::uint64_t& ignored_points) {
+  const PageShape shape = page_shape(cloud, cells, ignored.any());
   assert(shape.bytes() <= page.size());
   Section headers(page, 0, shape.nodes_at());
   Section nodes(page, shape.nodes_at(), shape.blocks_at());
-  Section blocks(page, shape.blocks_at(), shape.payload_at());
+  Section blocks(page, shape.blocks_at(), shape.masks_at());
+  Section masks(page, shape.masks_at(), shape.payload_at());
   Section payload(page, shape.payload_at(), shape.bytes());
   std::uint32_t first_node = 0;
+  std::vector<std::uint64_t> searched(shape.masked ? shape.blocks_per_cell : 0);
   for (const PlannedCell& planned : cells) {
     const Cell& cell = cloud.cells()[planned.cell];
     PageCell header{.cell = planned.cell,
@@ -65,6 +75,9 @@ PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cell
     nodes.append(std::span(planned.nodes));
     blocks.append(cloud.blocks().subspan(std::size_t{planned.cell} * shape.blocks_per_cell,
                                          shape.blocks_per_cell));
+    if (!shape.masked) continue;
+    ignored_points += ignored.mask(planned.cell, searched, [&] { return packed; });
+    masks.append(std::span<const std::uint64_t>(searched));
   }
   return shape;
 }

@@ -4,66 +4,13 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "api/api_scene.hpp"
+#include "api/shards.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 using Catch::Contains;
 
 namespace {
-
-class Shards {
- public:
-  explicit Shards(SearchOptions options = {}) : options_(std::move(options)) {
-    options_.threads = 2;
-    options_.overwrite = true;
-    options_.device = Device::kCpu;
-    Query& query = scene.query;
-    query.poses[50].translation[1] = 0.5;  // away from the wall, so that some poses meet nothing
-  }
-
-  /// The bytes of the search of everything.
-  std::string whole() {
-    options_.shard.reset();
-    search(Store(scene.folder / store), scene.query, scene.folder / "whole.h5", options_);
-    return bytes_of(scene.folder / "whole.h5");
-  }
-
-  std::vector<std::filesystem::path> parts(std::uint32_t count, const std::string& name = "part") {
-    std::vector<std::filesystem::path> out;
-    for (std::uint32_t number = 1; number <= count; ++number) {
-      options_.shard = Shard{number, count};
-      out.push_back(scene.folder / (name + std::to_string(number) + ".h5"));
-      search(Store(scene.folder / store), scene.query, out.back(), options_);
-    }
-    return out;
-  }
-
-  std::string merged(const std::vector<std::filesystem::path>& parts,
-                     const MergeOptions& options = {.overwrite = true}) {
-    report = merge(parts, scene.folder / "merged.h5", options);
-    return bytes_of(scene.folder / "merged.h5");
-  }
-
-  /// What merging is refused with.
-  std::string refusal(const std::vector<std::filesystem::path>& parts) {
-    try {
-      merge(parts, scene.folder / "merged.h5");
-    } catch (const InputError& error) {
-      CHECK(!std::filesystem::exists(scene.folder / "merged.h5"));
-      CHECK(!std::filesystem::exists(scene.folder / "merged.h5.partial"));
-      return error.what();
-    }
-    return {};
-  }
-
-  ApiScene scene;
-  std::string store = "wall.h5";
-  MergeReport report;
-
- private:
-  SearchOptions options_;
-};
 
 struct Mode {
   const char* name;
@@ -167,6 +114,7 @@ TEST_CASE("parts that are missing or there twice are refused by number") {
   const auto parts = shards.parts(7);
   const auto some = [&](const std::vector<std::size_t>& which) {
     std::vector<std::filesystem::path> out;
+    out.reserve(which.size());
     for (const std::size_t i : which) out.push_back(parts[i - 1]);
     return out;
   };

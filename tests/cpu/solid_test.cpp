@@ -107,6 +107,20 @@ TEST_CASE("solids of every kind") {
   scene.check();
 }
 
+TEST_CASE("ignored points are in no solid") {
+  SolidScene scene;
+  Query query = scene.query();
+  std::vector<std::uint8_t> classes(scene.points.size());
+  SECTION("by class") {
+    for (std::uint8_t& value : classes) value = static_cast<std::uint8_t>(below(scene.random, 3));
+    query.ignore_classes = {1};
+  }
+  SECTION("by box") { query.ignore_boxes = {{{-4, -3, -1}, {0.5, 4, 2}}}; }
+  const std::uint64_t left = check_engines(scene.points, classes, scene.quantisation, query);
+  CHECK(left > 0);
+  CHECK(left < scene.check());
+}
+
 TEST_CASE("random solids") {
 #ifdef CLEARWAY_SANITIZED
   constexpr std::uint64_t kScenes = 15;

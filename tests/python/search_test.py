@@ -16,6 +16,10 @@ class FindsWhatBruteForceFinds(SceneTest):
         self.expected = np.flatnonzero(self.first >= 0)
         self.assertGreater(len(self.expected), 50)
 
+    def far_query(self):
+        far = poses_along_x(2, 0.1) + [[0, 0, 0, 50], [0] * 4, [0] * 4, [0] * 4]
+        return clearway.Query(self.model, far, 0.1, first_pose=True, clearance=0.2)
+
     def test_every_engine(self):
         for engine in ("auto", "sweep", "kdtree", "grid"):
             with self.subTest(engine):
@@ -27,6 +31,22 @@ class FindsWhatBruteForceFinds(SceneTest):
                 self.assertEqual(report.device, "cpu")
                 if engine != "auto":
                     self.assertEqual(report.engine, engine)
+
+    def test_ignored_boxes(self):
+        box = clearway.Box((0, -1, -1), (3, 1, 1))
+        inside = np.all((self.points >= (0, -1, -1)) & (self.points <= (3, 1, 1)), axis=1)
+        report = self.search(query=self.query(ignore_boxes=[box]))
+        result = clearway.Result(self.folder / "out.h5")
+        np.testing.assert_array_equal(result.source(), self.expected[~inside[self.expected]])
+        self.assertEqual(result.parameters().ignore_boxes, [box])
+        self.assertEqual(result.ignored().points, np.count_nonzero(inside))
+        self.assertEqual(report.ignored.in_boxes, [np.count_nonzero(inside)])
+        self.assertLessEqual(report.ignored_looked_at, report.ignored.points)
+
+    def test_ignored_classes_of_a_store_without(self):
+        self.assertEqual(clearway.Store(self.folder / "site.h5").class_points(), {})
+        with self.assertRaisesRegex(clearway.UsageError, "have no classes"):
+            self.search(query=self.query(ignore_classes=[2]))
 
     def test_gpu(self):
         try:
@@ -68,10 +88,7 @@ class FindsWhatBruteForceFinds(SceneTest):
         self.assertIsNone(result.profile())
 
     def test_an_empty_result(self):
-        query = clearway.Query(self.model, poses_along_x(2, 0.1) + [[0, 0, 0, 50], [0] * 4, [0] * 4,
-                                                                     [0] * 4], 0.1, first_pose=True,
-                               clearance=0.2)
-        report = self.search(query=query)
+        report = self.search(query=self.far_query())
         result = clearway.Result(self.folder / "out.h5")
         self.assertEqual(result.source().shape, (0,))
         self.assertEqual(result.xyz().shape, (0, 3))
@@ -94,8 +111,11 @@ class FindsWhatBruteForceFinds(SceneTest):
         query = self.query(first_pose=True, clearance=0.5, profile=0.5)
         self.search("whole.h5", query)
         parts = [self.folder / f"part{i}.h5" for i in range(1, 4)]
+        warned = self.search("far.h5", self.far_query()).warnings
         for i, part in enumerate(parts, 1):
-            self.search(part.name, query, shard=(i, 3))
+            one = self.search(part.name, query, shard=(i, 3), input_warnings=warned)
+            self.assertEqual(one.shard, (i, 3))
+            self.assertTrue(repr(one).startswith(f"<part {i} of 3: "), repr(one))
         with self.assertRaises(clearway.InputError) as caught:
             clearway.Result(parts[0])
         self.assertEqual(caught.exception.remedy, "merge")
@@ -104,8 +124,18 @@ class FindsWhatBruteForceFinds(SceneTest):
         self.assertEqual((self.folder / "merged.h5").read_bytes(),
                          (self.folder / "whole.h5").read_bytes())
         self.assertFalse(report.was_finished)
-        again = clearway.merge(parts, self.folder / "merged.h5", resume=True)
+        self.assertEqual(report.length_unit,
+                         clearway.Store(self.folder / "site.h5").length_unit())
+        self.assertEqual([(w.code, w.text, w.numbers, w.parts)
+                          for w in report.warnings[:len(warned)]],
+                         [(w.code, w.text, w.numbers, 3) for w in warned])
+        self.assertIn("out-of-reach", repr(report))
+        told = []
+        again = clearway.merge(parts, self.folder / "merged.h5", resume=True, message=told.append)
         self.assertTrue(again.was_finished)
+        self.assertIn("(in all parts)", told[0].text)
+        with self.assertRaises(clearway.InputError):
+            clearway.merge(parts, self.folder / "merged.h5", overwrite=True, strict=True)
         with self.assertRaises(clearway.InputError):
             clearway.merge(parts[1:], self.folder / "merged.h5", overwrite=True)
         for shard in ((0, 3), (4, 3)):

@@ -19,19 +19,20 @@ namespace {
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
 /// The sweep on the CPU, with other needs and memory where a test sets them.
-class MadeUpKind final : public CpuSweepKind {
+class MadeUpKind final : public CpuSweepKindOf<Vec3> {
  public:
-  using CpuSweepKind::CpuSweepKind;
+  using Base = CpuSweepKindOf<Vec3>;
+  using Base::Base;
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override {
-    return on_host ? on_host(layout) : CpuSweepKind::host_bytes(layout, most_poses);
+    return on_host ? on_host(layout) : Base::host_bytes(layout, most_poses);
   }
   std::uint64_t device_bytes(const SlotLayout& layout) const override {
     return on_device ? on_device(layout) : 0;
   }
   PageEngines make(const SlotLayout& layout) override {
     if (is_never_made) throw ResourceError("not made");
-    return CpuSweepKind::make(layout);
+    return Base::make(layout);
   }
   PageEngineNeeds& changed_needs() { return needs_; }
 

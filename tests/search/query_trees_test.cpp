@@ -27,7 +27,7 @@ TEST_CASE("trees built with several threads are those of one") {
   REQUIRE(one.model.size() == many.model.size());
   bool same = one.model.spacing() == many.model.spacing();
   for (std::uint32_t i = 0; i < one.model.size(); ++i) {
-    const Vec3 &a = one.model.point(i), &b = many.model.point(i);
+    const Vec3 &a = one.model.element(i), &b = many.model.element(i);
     same &= a.x == b.x && a.y == b.y && a.z == b.z;
   }
   CHECK(same);

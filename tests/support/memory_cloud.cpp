@@ -59,6 +59,19 @@ MemoryCloud::MemoryCloud(std::span<const Quantum> points, const Quantisation& qu
   tree_ = build_cell_tree(top_, cells_);
 }
 
+MemoryCloud::MemoryCloud(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
+                         const Quantisation& quantisation, const MemoryCloudOptions& options)
+    : MemoryCloud(points, quantisation, options) {
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    std::vector<std::uint8_t> values(cell_points_);
+    for (std::uint32_t i = 0; i < cell_points_; ++i) {
+      const std::uint32_t point = std::min(i, cells_[cell].count - 1);
+      values[i] = classes[sources_[cell * cell_entries() + point]];
+    }
+    append_packed_chunk<std::uint8_t>(values, classes_.emplace_back());
+  }
+}
+
 /// Splits by planes in the middle of the longest side, so that cells of many buckets are short.
 void MemoryCloud::add_top(std::span<Point> points, std::uint64_t bucket_points) {
   const std::size_t self = top_.size();

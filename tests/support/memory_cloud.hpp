@@ -25,6 +25,9 @@ class MemoryCloud final : public PackedCloud {
  public:
   MemoryCloud(std::span<const Quantum> points, const Quantisation& quantisation,
               const MemoryCloudOptions& options = {});
+  /// The same; classes: of the points.
+  MemoryCloud(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
+              const Quantisation& quantisation, const MemoryCloudOptions& options = {});
 
   std::uint64_t point_count() const override { return point_count_; }
   std::uint32_t cell_points() const override { return cell_points_; }
@@ -36,6 +39,11 @@ class MemoryCloud final : public PackedCloud {
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                        std::span<std::byte> to) const override;
+
+  bool has_classes() const override { return !classes_.empty(); }
+  PackedChunk<std::uint8_t> classes(std::uint32_t cell) const override {
+    return {classes_[cell], cell_points_};
+  }
 
   std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const override {
     return source(std::uint64_t{cell} * cell_entries() + index);
@@ -69,6 +77,7 @@ class MemoryCloud final : public PackedCloud {
   std::vector<BlockBox> blocks_;
   std::vector<std::uint64_t> sources_;
   std::vector<std::array<std::vector<std::byte>, 3>> chunks_;
+  std::vector<std::vector<std::byte>> classes_;  ///< a chunk a cell
   std::uint32_t damaged_cell_ = 0xffffffff;
 };
 

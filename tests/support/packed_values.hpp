@@ -20,8 +20,9 @@ std::vector<Value> values_of_span(std::size_t count, std::make_unsigned_t<Value>
     return static_cast<Unsigned>(
         std::uniform_int_distribution<std::uint64_t>(0, std::uint64_t{most})(random));
   };
-  const Unsigned room = std::numeric_limits<Unsigned>::max() - span;
-  const Unsigned least = static_cast<Unsigned>(std::numeric_limits<Value>::min()) + above(room);
+  const auto room = static_cast<Unsigned>(std::numeric_limits<Unsigned>::max() - span);
+  const auto least =
+      static_cast<Unsigned>(static_cast<Unsigned>(std::numeric_limits<Value>::min()) + above(room));
   std::vector<Value> values(count);
   for (Value& value : values) value = static_cast<Value>(least + above(span));
   const std::size_t at = random() % count;

@@ -71,6 +71,17 @@ std::string conversion_refusal(const ConversionOptions& options) {
   return {};
 }
 
+/// Of a store with classes, by source.
+inline std::vector<std::uint8_t> classes_by_source(const StoreReader& store) {
+  std::vector<std::uint8_t> classes(store.metadata().input_points);
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    const auto packed = store.classes(cell);
+    const auto sources = store.sources(cell);
+    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) classes[sources[i]] = packed[i];
+  }
+  return classes;
+}
+
 struct StoredPoint {
   std::uint64_t source;
   Quantum q;

@@ -8,13 +8,16 @@
 
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "cli/support/sources_json.hpp"
 #include "cli/support/standard_output.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/util/format.hpp"
 #include "io/inspect/file_kind.hpp"
 #include "io/inspect/inspect_points.hpp"
 #include "io/journal/journal.hpp"
 #include "io/result/result.hpp"
+#include "io/store/class_names.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/file.hpp"
 #include "io/system/xxh64.hpp"
@@ -35,6 +38,19 @@ ordered_json bounds_of(const StoreReader& store) {
   return box_json(position_box(store.quantisation(), store.tree()[0].box));
 }
 
+/// Those that points have, with their ASPRS names; null where the points have no classes.
+ordered_json classes_json(const StoreMetadata& metadata) {
+  if (!metadata.classes) return nullptr;
+  ordered_json classes = ordered_json::array();
+  for (std::size_t i = 0; i < metadata.classes->points.size(); ++i) {
+    const std::uint64_t points = metadata.classes->points[i];
+    if (points == 0) continue;
+    classes.push_back(
+        {{"class", i}, {"name", class_name(static_cast<std::uint8_t>(i))}, {"points", points}});
+  }
+  return classes;
+}
+
 ordered_json describe(const StoreReader& store) {
   const StoreMetadata& m = store.metadata();
   std::uint64_t packed = 0;
@@ -52,6 +68,7 @@ ordered_json describe(const StoreReader& store) {
           {"bounds", bounds_of(store)},
           {"length_unit", to_string(m.unit)},
           {"crs_wkt", m.crs_wkt},
+          {"classes", classes_json(m)},
           {"points_hash", hash_text(m.points_hash)},
           {"fingerprint", hash_text(store.fingerprint())},
           {"sources", sources_json(m)}};
@@ -83,6 +100,10 @@ ordered_json describe(const ResultReader& result) {
                            {"environment_hash", hash_text(h.environment_hash)},
                            {"model_hash", hash_text(h.model_hash)},
                            {"trajectory_hash", hash_text(h.trajectory_hash)}};
+  if (h.ignores_points()) {
+    description["ignored"] = ignored_json(h, h.ignored);
+    if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);
+  }
   if (h.tolerance > 0) {
     description["tolerance"] = h.tolerance;
     description["engine"] = h.engine;
@@ -91,6 +112,13 @@ ordered_json describe(const ResultReader& result) {
     description["kind"] = "part of a result";
     description["shard"] = to_string(h.part->shard);
     description["division"] = hash_text(h.part->division);
+    description["store"] = hash_text(h.part->store);
+    if (!h.is_exact()) {
+      description["device"] = h.part->device;
+      description["field_voxel"] = h.part->field_voxel;
+      description["grid_cell"] = h.part->grid_cell;
+    }
+    description["warnings"] = h.part->warnings.size();
   }
   if (h.float_precision) description["precision"] = "float";
   if (h.has_poses_of_ways()) {
@@ -205,7 +233,14 @@ std::string text_of(const ordered_json& description) {
   for (const auto& [key, value] : description.items()) width = std::max(width, key.size());
   std::string text;
   for (const auto& [key, value] : description.items()) {
-    if (key == "sources") {
+    if (key == "classes" && value.is_array()) {
+      for (const auto& one : value) {
+        const auto name = one["name"].get<std::string>();
+        text += fmt::format("{:<{}}  {}{}: {}\n", "class", width, one["class"].get<unsigned>(),
+                            name.empty() ? "" : " (" + name + ")",
+                            counted(one["points"].get<std::uint64_t>(), "point"));
+      }
+    } else if (key == "sources") {
       for (const auto& source : value) {
         text += fmt::format("{:<{}}  {} ({} bytes, xxh64 {}){}\n", "source", width,
                             source["name"].get<std::string>(), source["bytes"].get<std::uint64_t>(),

@@ -16,10 +16,12 @@
 #include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
+#include "cli/support/warnings_json.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/result/result.hpp"
+#include "io/system/open_files.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -31,6 +33,13 @@ struct MergeCommand {
   bool fail_on_collision = false;
   bool json = false;
 };
+
+/// Those of runs, and in how many parts each is.
+nlohmann::ordered_json warnings_of(const MergeReport& report) {
+  nlohmann::ordered_json out = warnings_json({report.warnings.begin(), report.warnings.end()});
+  for (std::size_t i = 0; i < out.size(); ++i) out[i]["parts"] = report.warnings[i].parts;
+  return out;
+}
 
 nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& report,
                                const Verdict& verdict, double seconds) {
@@ -46,27 +55,24 @@ nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& r
   out["profile_poses"] = report.was_finished ? nlohmann::ordered_json(nullptr)
                                              : nlohmann::ordered_json(report.profile_poses);
   add_verdict(verdict, {}, out);
-  out["warnings"] = nullptr;  // not known here: the runs of the parts told theirs
+  out["warnings"] = warnings_of(report);
   out["seconds"] = seconds;
   return out;
 }
-
-/// Parts do not hold warnings. No all-clear without a word of them.
-constexpr const char* kRunsMayHaveWarned = ", unless the run of a part ended with warnings";
 
 /// Whether no point collides.
 bool run_merge(MergeCommand& options) {
   const Stopwatch total;
   ConsoleProgress progress;
-  options.merge.progress = [&](const ProgressUpdate& update) { progress.update(update); };
-  options.merge.stop = &stop_flag();
+  watch_call(options.merge, progress);
+  raise_open_files_limit(options.parts.size());
   const MergeReport report = merge(options.parts, options.output, options.merge);
   const ResultReader result(options.output);
   const ResultHeader& header = result.header();
   const Verdict verdict =
       report.was_finished ? verdict_of(result, {}) : verdict_of(report, header.float_precision);
-  const std::string sentence =
-      verdict_text(verdict, {}, symbol_of_unit(report.length_unit), kRunsMayHaveWarned);
+  const std::string sentence = verdict_text(verdict, {}, symbol_of_unit(report.length_unit),
+                                            caveat_of(report.warnings.size()));
   spdlog::info("{}: {} {}; {}", options.output.string(),
                report.was_finished ? "is there already, of" : "merged",
                counted(report.parts, "part"),
@@ -98,12 +104,15 @@ void add_merge(CLI::App& program, int& exit_code) {
       command->add_flag("--force", options->merge.overwrite, "Overwrite an existing result");
   command->add_flag("--resume", options->merge.resume, "Leave a result of the same parts as it is")
       ->excludes(force);
+  command->add_flag("--strict", options->merge.strict,
+                    "Refuse to merge where the run of a part warned of anything (exit code 3)");
   command->add_flag("--fail-on-collision", options->fail_on_collision,
                     "Exit with code 1 where a point collides");
   command->add_flag("--json", options->json, "Print one JSON object about the result");
   command->footer(
       "The result has the bytes of the run without --shard. It refuses parts of different runs,\n"
-      "parts that are missing or there twice, and damaged ones.\n"
+      "parts that are missing or there twice, and damaged ones. Warnings of their runs are\n"
+      "repeated, each once.\n"
       "Example: clearway merge part-*.h5 -o out.h5");
   command->callback([options, &exit_code] {
     run_stoppable(options->output, kStartsAgain, [&] {

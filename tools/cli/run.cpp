@@ -20,6 +20,7 @@
 #include "cli/support/standard_output.hpp"
 #include "cli/support/warnings_json.hpp"
 #include "cli/verdict.hpp"
+#include "core/query/ignored_text.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -114,6 +115,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["clearance_points"] = report.clearance_points;
   out["profile_poses"] = report.profile_poses;
   add_verdict(answer.verdict, answer.labels, out);
+  out["ignored"]["looked_at"] = known(searched, report.ignored_looked_at);
   out["shard_share"] = nullptr;
   if (report.shard_share) out["shard_share"] = *report.shard_share;
   out["engine"] = known(searched, name_of(report.engine));
@@ -140,35 +142,31 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   return out;
 }
 
-/// No all-clear where something was warned of.
-std::string caveat(const SearchReport& report) {
-  const std::size_t count = report.warnings.size();
-  if (count == 0) return "";
-  return ", but see the " + (count == 1 ? "warning" : std::to_string(count) + " warnings") +
-         " above";
-}
-
 void log_report(const SearchReport& report, const RunOptions& options, const std::string& unit,
                 double seconds) {
   const std::string output = options.output.string();
   if (report.was_finished) {
     spdlog::info("{}: is the finished result of this query already; nothing to do{}", output,
-                 caveat(report));
+                 caveat_of(report.warnings.size()));
     return;
   }
-  const std::string part =
-      options.search.shard ? "part " + to_string(*options.search.shard) + ": " : "";
+  const std::string part = options.search.shard ? in_words(*options.search.shard) + ": " : "";
   const std::string found = part + found_text(report.colliding_points, report.environment_points);
   const std::string how =
       fmt::format("engine {} on {}, {:.2f} s", name_of(report.engine), report.device_name, seconds);
   const bool doubtful = !report.warnings.empty();
   spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
+  if (options.query.ignores_points()) {
+    spdlog::info("{} in the whole environment, {} of them in the cells that were searched",
+                 ignored_text(options.query, report.ignored),
+                 format_count(report.ignored_looked_at));
+  }
   if (options.query.clearance > 0) {
     spdlog::info("{} within the clearance of {} {}",
                  counted(report.clearance_points, "point is", "points are"),
                  options.query.clearance, unit);
   }
-  if (doubtful) spdlog::info("{}{}", found, caveat(report));
+  if (doubtful) spdlog::info("{}{}", found, caveat_of(report.warnings.size()));
 }
 
 /// Warnings of the inputs are told at once, and go into the report with those of the search.
@@ -217,12 +215,21 @@ void prepare_device(const SearchOptions& options) {
   if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
 }
 
+/// A part without a colliding point does not say that there is none.
+void refuse_judging_part(const RunOptions& options) {
+  if (!options.search.shard || !options.fail_on_collision) return;
+  throw UsageError(
+      "--fail-on-collision: one part does not tell whether a point collides; clearway merge "
+      "--fail-on-collision tells it of all parts");
+}
+
 /// Whether no point collides.
 bool run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
   ConsoleProgress progress;
   watch_call(options.search, progress);
+  refuse_judging_part(options);
   refuse_overwriting(options.output, {options.environment, options.model, options.trajectory});
   model_options_of(options);
   check_search(options.query, options.output, options.search);
@@ -247,8 +254,9 @@ bool run(RunOptions& options) {
   log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   answer.verdict = find_verdict(report, query, options);
-  const std::string sentence = verdict_text(answer.verdict, answer.labels,
-                                            symbol_of_unit(store.length_unit()), caveat(report));
+  const std::string sentence =
+      verdict_text(answer.verdict, answer.labels, symbol_of_unit(store.length_unit()),
+                   caveat_of(report.warnings.size()));
   if (options.json) {
     spdlog::info("{}", sentence);
     print(text_of_json(json_of(report, options, answer, program)));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "io/formats/text/text_number.hpp"
@@ -50,6 +51,29 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
+void add_ignored(CLI::App& command, QueryParameters& query) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--ignore-class",
+          [&query](const std::vector<std::string>& lists) {
+            query.ignore_classes = parse_classes(lists);
+          },
+          "Leave points of these classes out of the search, for example 2,7 or 3-5; of a store "
+          "with classes")
+      ->allow_extra_args(false)
+      ->type_name("N,...");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--ignore-box",
+          [&query](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) query.ignore_boxes.push_back(parse_box(text));
+          },
+          "Leave points in this box out of the search: its least and its greatest x, y and z, in "
+          "the environment's coordinates; may be given several times")
+      ->allow_extra_args(false)
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+}
+
 void add_query(CLI::App& command, RunOptions& options) {
   command.add_flag("--first-pose", options.query.first_pose,
                    "Also report the first pose that touches each colliding point, counted from 0");
@@ -67,6 +91,7 @@ void add_query(CLI::App& command, RunOptions& options) {
       command, "--tolerance", options.query.tolerance,
       "Faster: may decide wrongly for points within this distance of the radius, for example "
       "0.001; engine sweep only");
+  add_ignored(command, options.query);
 }
 
 /// An option that takes the name of one of the values.

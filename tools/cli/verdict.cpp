@@ -5,6 +5,9 @@
 #include <algorithm>
 
 #include "clearway/result.hpp"
+#include "cli/ignored/ignored_options.hpp"
+#include "core/query/ignored_points.hpp"
+#include "core/query/ignored_text.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "io/result/result_rows.hpp"
@@ -120,6 +123,8 @@ Verdict verdict_of_found(const Report& report, const QueryParameters& query, boo
   Verdict out;
   out.colliding_points = report.colliding_points;
   out.query = query;
+  sort_ignored(out.query);
+  out.ignored = report.ignored;
   out.float_precision = float_precision;
   out.first = answer_place(report.first_place, false);
   out.least_clearance = answer_place(report.least_clearance, true);
@@ -144,6 +149,7 @@ Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
   Verdict out;
   out.colliding_points = result.collisions();
   out.query = result.header();
+  out.ignored = result.header().ignored;
   if (result.header().part) out.shard = result.header().part->shard;
   out.float_precision = result.header().float_precision;
   if (result.header().first_pose) out.first = first_place(result);
@@ -159,17 +165,27 @@ std::string found_text(std::uint64_t colliding_points, std::uint64_t environment
                      colliding_points == 1 ? "collides" : "collide");
 }
 
+std::string caveat_of(std::size_t warnings) {
+  if (warnings == 0) return "";
+  return ", but see the " + (warnings == 1 ? "warning" : std::to_string(warnings) + " warnings") +
+         " above";
+}
+
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat) {
   const std::string limit = fmt::format("{} {}", verdict.query.radius, unit);
   std::string text;
   if (verdict.shard) text = in_words(*verdict.shard) + ": ";
+  const bool ignores = verdict.query.ignores_points();
+  const std::string ignored =
+      ignores ? ", with " + ignored_text(verdict.query, verdict.ignored) : "";
   if (verdict.is_clear()) {
-    text += "clear: no environment point is closer than " + limit + " to the model on its way";
+    text += "clear" + ignored + ": no " + (ignores ? "other" : "environment") +
+            " point is closer than " + limit + " to the model on its way";
   } else if (!verdict.is_conflict()) {
-    text += "no point of this part is closer than " + limit + " to the model on its way";
+    text += "no point of this part is closer than " + limit + " to the model on its way" + ignored;
   } else {
-    text += "conflict: " + format_count(verdict.colliding_points) +
+    text += "conflict" + ignored + ": " + format_count(verdict.colliding_points) +
             (verdict.colliding_points == 1 ? " point is" : " points are") + " closer than " +
             limit + " to the model on its way";
     if (verdict.first) {
@@ -189,6 +205,7 @@ std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const
 
 void add_verdict(const Verdict& verdict, const PoseLabels& labels, ordered_json& out) {
   out["verdict"] = verdict.is_clear() ? "clear" : verdict.is_conflict() ? "conflict" : "unknown";
+  out["ignored"] = ignored_json(verdict.query, verdict.ignored);
   out["shard"] = verdict.shard ? ordered_json(to_string(*verdict.shard)) : ordered_json(nullptr);
   out["least_clearance"] = place_json(verdict.least_clearance, labels);
   out["least_profile"] = place_json(verdict.least_profile, labels);

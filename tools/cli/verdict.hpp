@@ -27,6 +27,7 @@ struct AnswerPlace {
 struct Verdict {
   std::uint64_t colliding_points = 0;
   QueryParameters query{};
+  IgnoredPointCounts ignored{};
   std::optional<Shard> shard{};  ///< where it is the answer of one part: never clear
   bool float_precision = false;
   std::optional<AnswerPlace> first;            ///< with first poses: at the smallest, least source
@@ -54,12 +55,15 @@ Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses);
 /// "3 of 2,001 environment points collide"
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points);
 
+/// ", but see the 2 warnings above": no all-clear where something was warned of. Empty without.
+std::string caveat_of(std::size_t warnings);
+
 /// One sentence, without what `caveat` adds before its end. unit: of lengths, "m".
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat);
 
-/// Adds the keys verdict ("unknown" of a part without colliding points), shard, least_clearance,
-/// least_profile and first_place.
+/// Adds the keys verdict ("unknown" of a part without colliding points), shard, ignored,
+/// least_clearance, least_profile and first_place.
 void add_verdict(const Verdict& verdict, const PoseLabels& labels, nlohmann::ordered_json& out);
 
 }  // namespace clearway::tool

@@ -54,6 +54,11 @@ Range<std::uint64_t> range_of(const std::uint64_t* values, std::size_t n) {
   return find_range(values, n);
 }
 
+CLEARWAY_SIMD_CLONES
+Range<std::uint8_t> range_of(const std::uint8_t* values, std::size_t n) {
+  return find_range(values, n);
+}
+
 constexpr unsigned kMostJoinedBits = 57;  // with 7 pending bits they fill a word
 
 /// Packs values in `minbits` bits, most significant bit first.
@@ -191,7 +196,9 @@ void append_packed_chunk(std::span<const Value> values, std::vector<std::byte>& 
 
 template class PackedChunk<std::int32_t>;
 template class PackedChunk<std::uint64_t>;
+template class PackedChunk<std::uint8_t>;
 template void append_packed_chunk(std::span<const std::int32_t>, std::vector<std::byte>&);
 template void append_packed_chunk(std::span<const std::uint64_t>, std::vector<std::byte>&);
+template void append_packed_chunk(std::span<const std::uint8_t>, std::vector<std::byte>&);
 
 }  // namespace clearway

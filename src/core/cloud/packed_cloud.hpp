@@ -52,6 +52,12 @@ class PackedCloud {
   /// the cell is damaged.
   virtual std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const = 0;
 
+  /// Whether points have classes; otherwise all have class 0.
+  virtual bool has_classes() const { return false; }
+  /// The packed classes of a cell, in the order of its points. Only where has_classes(). Thread
+  /// safe. Throws InputError where the cell is damaged.
+  virtual PackedChunk<std::uint8_t> classes(std::uint32_t /*cell*/) const { return {}; }
+
   std::uint32_t blocks_per_cell() const {
     return static_cast<std::uint32_t>(divide_up(cell_points(), kBlockPoints));
   }

@@ -76,7 +76,7 @@ void ModelTreeOf<Element>::divide(const Part& part) {
 template <typename Element>
 bool ModelTreeOf<Element>::within(std::uint32_t begin, std::uint32_t end, std::size_t node,
                                   const Box& box, double squared_radius, std::size_t most,
-                                  std::vector<Element>& out) const requires(!kIsTriangle<Element>) {
+                                  std::vector<Element>& out) const {
   if (begin == end || least_squared_distance(boxes_[node], box) > squared_radius) return true;
   if (end - begin <= kLeafElements) {
     for (std::uint32_t i = begin; i < end; ++i) {

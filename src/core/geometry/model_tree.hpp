@@ -33,10 +33,11 @@ class ModelTreeOf {
 
   Nearest nearest(const Vec3& x, std::uint32_t guess = 0) const { return ref().nearest(x, guess); }
 
-  /// The elements with a computed squared distance to the box of at most `squared_radius` (which is
-  /// a number), into `out`, replaced; false, and some of them, where they are more than `most`.
+  /// The elements with a computed squared distance to the box, of triangles of their own boxes, of
+  /// at most `squared_radius` (which is a number), into `out`, replaced; false, and some of them,
+  /// where they are more than `most`.
   bool within(const Box& box, double squared_radius, std::size_t most,
-              std::vector<Element>& out) const requires(!kIsTriangle<Element>) {
+              std::vector<Element>& out) const {
     out.clear();
     return within(0, size(), 0, box, squared_radius, most, out);
   }
@@ -60,8 +61,7 @@ class ModelTreeOf {
   static std::size_t last_node(std::uint32_t elements);
   double median_leaf_diagonal() const;
   bool within(std::uint32_t begin, std::uint32_t end, std::size_t node, const Box& box,
-              double squared_radius, std::size_t most, std::vector<Element>& out) const
-      requires(!kIsTriangle<Element>);
+              double squared_radius, std::size_t most, std::vector<Element>& out) const;
 
   std::vector<Element> elements_;
   std::vector<Box> boxes_;  // of node i; children 2 i + 1 and 2 i + 2

@@ -15,7 +15,7 @@ inline std::vector<Triangle> triangles_of(std::span<const Vec3> vertices,
   std::vector<Triangle> triangles;
   triangles.reserve(indices.size());
   for (const auto& [a, b, c] : indices) {
-    triangles.push_back({vertices[a], vertices[b], vertices[c]});
+    triangles.emplace_back(vertices[a], vertices[b], vertices[c]);
   }
   return triangles;
 }
@@ -32,6 +32,11 @@ inline Box box_of(std::span<const Triangle> triangles) {
     }
   }
   return box;
+}
+
+/// A lower bound: to the triangle's box.
+inline double least_squared_distance(const Box& box, const Triangle& t) {
+  return least_squared_distance(box, box_of(std::span<const Triangle>(&t, 1)));
 }
 
 /// By what elements are divided along an axis; for triangles three times their middle.

@@ -9,10 +9,7 @@ namespace clearway {
 /// The stored position of point `index` of a cell, as the predicate takes it.
 CLEARWAY_HD inline Vec3 position_of(const GridSceneView& scene, const GridPageView& page,
                                     std::uint32_t cell, std::uint32_t index) {
-  const PageCell& stored = page.page.cell(cell);
-  return position(scene.quantisation, page.page.value(stored.chunks[0], index),
-                  page.page.value(stored.chunks[1], index),
-                  page.page.value(stored.chunks[2], index));
+  return page.page.position(scene.quantisation, page.page.cell(cell), index);
 }
 
 /// A position rebased to the cell's origin and rounded to float.
@@ -27,7 +24,7 @@ CLEARWAY_HD inline std::uint32_t sort_key(const GridSceneView& scene, const Grid
                                           std::uint32_t slot) {
   const std::uint32_t cell = slot / scene.slots, index = slot % scene.slots;
   const GridCell& grid = page.cells[cell];
-  if (index >= grid.count) return page.page.shape.cells * scene.bucket_count;
+  if (!page.page.is_searched(cell, index)) return page.page.shape.cells * scene.bucket_count;
   const std::uint32_t first = cell * scene.bucket_count;
   if (grid.exact_only) return first;
   const GridPoint p = rebased(grid, position_of(scene, page, cell, index), index);
@@ -43,7 +40,7 @@ CLEARWAY_HD inline void place_point(const GridSceneView& scene, const GridPageVi
   const std::uint32_t key = keys[at];
   const std::uint32_t cell = order[at] / scene.slots, index = order[at] % scene.slots;
   const GridCell& grid = page.cells[cell];
-  if (index >= grid.count || grid.exact_only) return;
+  if (grid.exact_only || !page.page.is_searched(cell, index)) return;
   const GridPoint p = rebased(grid, position_of(scene, page, cell, index), index);
   page.points[at] = p;
   if (at == 0 || keys[at - 1] != key) page.buckets[key].begin = at;

@@ -180,7 +180,7 @@ CLEARWAY_HD inline void search_point(const GridSceneView& scene, const GridPageV
   ++statistics.points_moved;
   if (grid.exact_only) {
     for (std::uint32_t i = 0; i < grid.count; ++i) {
-      if (!is_wanted(scene, page, cell, i, pose)) continue;
+      if (!page.page.is_searched(cell, i) || !is_wanted(scene, page, cell, i, pose)) continue;
       ++statistics.exact_tests;
       if (is_hit(scene, page, cell, i, pose, model_point, m)) {
         mark_hit(scene, page, cell, i, pose);

@@ -9,8 +9,9 @@
 
 /// A page: one run of bytes that holds what an engine needs of some planned cells, the same on the
 /// host and on a device. Layout: PageCell[cells], motion nodes uint32[nodes], BlockBox[cells *
-/// blocks_per_cell], then the packed payloads, each section on kPageAlignment bytes, kPagePadding
-/// zero bytes at the end, so that a decoder may read whole words past a payload.
+/// blocks_per_cell], where points are ignored masks uint64[cells * blocks_per_cell], then the
+/// packed payloads, each section on kPageAlignment bytes, kPagePadding zero bytes at the end, so
+/// that a decoder may read whole words past a payload.
 namespace clearway {
 
 inline constexpr std::size_t kPageAlignment = 16;
@@ -40,6 +41,7 @@ struct PageShape {
   std::uint32_t blocks_per_cell = 0;
   std::uint32_t nodes = 0;
   std::uint64_t payload_bytes = 0;  ///< of all chunks
+  bool masked = false;              ///< some points may be ignored: a word a block says which
 
   CLEARWAY_HD static constexpr std::uint64_t aligned(std::uint64_t bytes) {
     return divide_up(bytes, kPageAlignment) * kPageAlignment;
@@ -50,8 +52,12 @@ struct PageShape {
   CLEARWAY_HD constexpr std::uint64_t blocks_at() const {
     return nodes_at() + aligned(std::uint64_t{nodes} * sizeof(std::uint32_t));
   }
-  CLEARWAY_HD constexpr std::uint64_t payload_at() const {
+  CLEARWAY_HD constexpr std::uint64_t masks_at() const {
     return blocks_at() + aligned(std::uint64_t{cells} * blocks_per_cell * sizeof(BlockBox));
+  }
+  CLEARWAY_HD constexpr std::uint64_t payload_at() const {
+    const std::uint64_t words = masked ? std::uint64_t{cells} * blocks_per_cell : 0;
+    return masks_at() + aligned(words * sizeof(std::uint64_t));
   }
   CLEARWAY_HD constexpr std::uint64_t bytes() const {
     return aligned(payload_at() + payload_bytes + kPagePadding);
@@ -74,6 +80,28 @@ struct PageRef {
   CLEARWAY_HD const BlockBox* blocks(std::uint32_t index) const {
     return reinterpret_cast<const BlockBox*>(begin + shape.blocks_at()) +
            std::uint64_t{index} * shape.blocks_per_cell;
+  }
+  /// Which points of a block there are to search, a bit each: none behind the cell's last.
+  CLEARWAY_HD std::uint64_t searched(std::uint32_t index, std::uint32_t block) const {
+    if (shape.masked) {
+      return reinterpret_cast<const std::uint64_t*>(
+          begin + shape.masks_at())[std::uint64_t{index} * shape.blocks_per_cell + block];
+    }
+    const std::uint32_t first = block * kBlockPoints, count = cell(index).count;
+    if (first >= count) return 0;
+    return count - first >= kBlockPoints ? ~std::uint64_t{0}
+                                         : ~std::uint64_t{0} >> (kBlockPoints - (count - first));
+  }
+  /// Whether point `point` of a cell is among them.
+  CLEARWAY_HD bool is_searched(std::uint32_t index, std::uint32_t point) const {
+    if (!shape.masked) return point < cell(index).count;
+    return (searched(index, point / kBlockPoints) >> (point % kBlockPoints) & 1) != 0;
+  }
+  /// Where point `index` of a cell is.
+  CLEARWAY_HD Vec3 position(const Quantisation& quantisation, const PageCell& cell,
+                            std::uint32_t index) const {
+    return clearway::position(quantisation, value(cell.chunks[0], index),
+                              value(cell.chunks[1], index), value(cell.chunks[2], index));
   }
   /// Stored integer `index` < the cloud's cell_points of a chunk.
   CLEARWAY_HD std::int32_t value(const PageChunk& chunk, std::uint32_t index) const;

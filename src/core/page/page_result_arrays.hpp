@@ -9,7 +9,8 @@ namespace clearway {
 /// What a query asks for beside the colliding points.
 struct ResultParts {
   bool first_pose, clearance;
-  bool profile = false;  ///< as a device lists it
+  bool profile = false;           ///< as a device lists it
+  std::uint64_t facts_ahead = 0;  ///< of it that there is room for beside one a block
 };
 
 /// The arrays of a PageResult of so many blocks in a run of bytes; those not asked for are empty.
@@ -18,7 +19,7 @@ struct PageResultArrays {
       : hits(run.add<std::uint64_t>(blocks)),
         clearances(run.add<Clearance>(parts.clearance ? blocks * kBlockPoints : 0)),
         first_poses(run.add<std::uint32_t>(parts.first_pose ? blocks * kBlockPoints : 0)),
-        facts(run.add<ProfileFact>(parts.profile ? blocks + kFactsAhead : 0)),
+        facts(run.add<ProfileFact>(parts.profile ? blocks + parts.facts_ahead : 0)),
         fact_counts(run.add<ProfileCounts>(parts.profile ? 1 : 0)) {}
 
   /// What was found in the first `blocks` of them, in the run at `begin`.
@@ -36,10 +37,6 @@ struct PageResultArrays {
   ArrayPlace<std::uint32_t> first_poses;
   ArrayPlace<ProfileFact> facts;
   ArrayPlace<ProfileCounts> fact_counts;
-
- private:
-  /// Facts that there is room for beside one a block. Most poses of a cell have one or none.
-  static constexpr std::uint64_t kFactsAhead = 1024;
 };
 
 }  // namespace clearway

@@ -47,6 +47,16 @@ class HitSet {
     std::fill_n(words_.begin() + static_cast<std::ptrdiff_t>(first), count, 0);
   }
 
+  /// Takes the marks 64 * word + i of all set bits i away, and their first poses. Not while others
+  /// mark these.
+  void forget(std::uint64_t word, std::uint64_t bits) {
+    words_[word] &= ~bits;
+    if (!has_first_pose_) return;
+    for (unsigned i = 0; i < 64; ++i) {
+      if ((bits >> i & 1) != 0) earliness_[64 * word + i] = 0;
+    }
+  }
+
   bool contains(std::uint64_t entry) const { return (words_[entry / 64] >> (entry % 64) & 1) != 0; }
   std::uint64_t word(std::uint64_t index) const { return words_[index]; }
   std::uint64_t word_now(std::uint64_t index) {

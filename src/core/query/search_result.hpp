@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/query/clearance_set.hpp"
 #include "core/query/hit_set.hpp"
 #include "core/query/profile_set.hpp"
@@ -11,6 +13,8 @@ struct SearchResult {
   HitSet hits;
   ClearanceSet clearances;  ///< without entries unless asked for
   ProfileSet profile = {};  ///< without poses unless asked for
+  /// Of the cells that were searched, those of a journal not included.
+  std::uint64_t ignored_points = 0;
 };
 
 }  // namespace clearway

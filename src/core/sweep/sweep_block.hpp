@@ -40,7 +40,7 @@ class SweepBlock {
 
   CLEARWAY_HD void search() {
     clear_result();
-    if (job_.first_point(block_) >= cell_.count) return;
+    if (job_.searched(block_) == 0) return;
     const std::uint32_t per_cell = job_.page.shape.blocks_per_cell;
     const BlockBox& code = job_.page.blocks(block_ / per_cell)[block_ % per_cell];
     const Box box = position_box(job_.quantisation, decode_block_box(cell_.box, code));
@@ -120,10 +120,8 @@ class SweepBlock {
   }
 
   CLEARWAY_HD void mark_all() {
-    const std::uint32_t left = cell_.count - job_.first_point(block_);
-    const std::uint32_t none = left < kBlockPoints ? kBlockPoints - left : 0;
     Warp::each([&](std::uint32_t lane) {
-      if (lane == 0) job_.hits[block_] = ~std::uint64_t{0} >> none;
+      if (lane == 0) job_.hits[block_] = job_.searched(block_);
     });
   }
 
@@ -141,7 +139,7 @@ class SweepBlock {
   }
 
   CLEARWAY_HD std::uint32_t halves() const {
-    return job_.first_point(block_) + kWarpLanes < cell_.count ? 2 : 1;
+    return job_.searched(block_) >> kWarpLanes != 0 ? 2 : 1;
   }
 
   CLEARWAY_HD void empty_queue() {

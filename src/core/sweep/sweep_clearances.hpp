@@ -29,7 +29,7 @@ class SweepClearances {
     const double limit = rounded_product(job_.sweep.clearance, job_.sweep.clearance);
     const double touching = rounded_product(job_.sweep.radius, job_.sweep.radius);
     const std::uint32_t closer = Warp::ballot([&](std::uint32_t lane) {
-      if (begin + lane >= cell_.count) return false;
+      if (!job_.is_searched(block_, first_ + lane)) return false;
       ++statistics_[lane].points_tested;
       Clearance& answer = job_.clearances[block_ * kBlockPoints + first_ + lane];
       // Pose 0, so that a tie with the limit is no improvement.

@@ -24,10 +24,8 @@ class SweepHits {
   CLEARWAY_HD void search_half(std::uint32_t half, const SweepSubtrees& subtrees, bool defer) {
     defer_ = defer;
     const std::uint32_t first = half * kWarpLanes;
-    if (job_.first_point(first / kBlockPoints) + first % kBlockPoints >=
-        job_.cell_of_block(first / kBlockPoints).count) {
-      return;
-    }
+    const std::uint64_t points = job_.searched(first / kBlockPoints) >> (first % kBlockPoints);
+    if (static_cast<std::uint32_t>(points) == 0) return;
     Warp::each([&](std::uint32_t lane) { load(lane, first + lane); });
     look_at_tops<Warp>(
         subtrees, ways_, [&](std::uint32_t lane) { return wanted_[lane]; },
@@ -70,9 +68,7 @@ class SweepHits {
     wanted_[lane] = false;
     if (slot == SweepWork::kNone) return;
     const std::uint32_t block = slot / kBlockPoints;
-    const std::uint32_t index = job_.first_point(block) + slot % kBlockPoints;
-    const PageCell& cell = job_.cell_of_block(block);
-    if (index >= cell.count) return;
+    if (!job_.is_searched(block, slot % kBlockPoints)) return;
     if (job_.sweep.first_pose) {
       best_[lane] = job_.first_poses[slot];
     } else if ((job_.hits[block] >> (slot % kBlockPoints) & 1) != 0) {
@@ -80,7 +76,8 @@ class SweepHits {
     }
     wanted_[lane] = true;
     ++statistics_[lane].points_tested;
-    points_[lane] = job_.point(cell, index);
+    points_[lane] =
+        job_.point(job_.cell_of_block(block), job_.first_point(block) + slot % kBlockPoints);
   }
 
   CLEARWAY_HD void hit(std::uint32_t lane, std::uint32_t pose) {

@@ -100,9 +100,17 @@ struct SweepPageOf {
   CLEARWAY_HD std::uint32_t first_point(std::uint32_t block) const {
     return block % page.shape.blocks_per_cell * kBlockPoints;
   }
+  /// Of a block's points those to be searched, as bits.
+  CLEARWAY_HD std::uint64_t searched(std::uint32_t block) const {
+    const std::uint32_t per_cell = page.shape.blocks_per_cell;
+    return page.searched(block / per_cell, block % per_cell);
+  }
+  CLEARWAY_HD bool is_searched(std::uint32_t block, std::uint32_t bit) const {
+    const std::uint32_t per_cell = page.shape.blocks_per_cell;
+    return page.is_searched(block / per_cell, block % per_cell * kBlockPoints + bit);
+  }
   CLEARWAY_HD Vec3 point(const PageCell& cell, std::uint32_t index) const {
-    return position(quantisation, page.value(cell.chunks[0], index),
-                    page.value(cell.chunks[1], index), page.value(cell.chunks[2], index));
+    return page.position(quantisation, cell, index);
   }
 };
 

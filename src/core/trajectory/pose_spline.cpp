@@ -126,14 +126,21 @@ PoseCurve PoseSpline::between(std::size_t i) const {
   curve.rotation_ = from.rotation;
   curve.stretch_ = from.stretch;
   curve.stretch_change_ = to.stretch - from.stretch;
-  curve.moves_[0] = third * start.linear;
-  curve.moves_[2] = third * end.linear;
-  curve.moves_[1] =
-      position_of(poses_[i + 1]) - curve.position_ - curve.moves_[0] - curve.moves_[2];
+  curve.moves_ = positions(i).moves_;
   curve.turns_[0] = third * start.angular;
   curve.turns_[2] = third * end.angular;
   curve.turns_[1] = logarithm(exponential(curve.turns_[0]).conjugate() * from.rotation.conjugate() *
                               to.rotation * exponential(curve.turns_[2]).conjugate());
+  return curve;
+}
+
+PositionCurve PoseSpline::positions(std::size_t i) const {
+  const double third = spans_[i] / 3;
+  PositionCurve curve;
+  curve.moves_[0] = third * velocities_[i].linear;
+  curve.moves_[2] = third * velocities_[i + 1].linear;
+  curve.moves_[1] =
+      position_of(poses_[i + 1]) - position_of(poses_[i]) - curve.moves_[0] - curve.moves_[2];
   return curve;
 }
 

@@ -10,6 +10,21 @@
 
 namespace clearway {
 
+/// The positions of a PoseCurve alone.
+class PositionCurve {
+ public:
+  /// Metres a unit of the parameter, 0 <= t <= 1.
+  Eigen::Vector3d velocity(double t) const {
+    const double rest = 1 - t;
+    return 3 * (rest * rest * moves_[0] + 2 * t * rest * moves_[1] + t * t * moves_[2]);
+  }
+
+ private:
+  friend class PoseSpline;
+
+  std::array<Eigen::Vector3d, 3> moves_;  ///< metres
+};
+
 /// The way from one pose to the next: a cubic in position, a cumulative cubic in rotation
 /// (docs/design/trajectory.md).
 class PoseCurve {
@@ -41,6 +56,8 @@ class PoseSpline {
   /// From pose i to pose i + 1. Throws InputError where one mirrors the model and the other does
   /// not.
   PoseCurve between(std::size_t i) const;
+  /// The positions of `between(i)`, also where the poses mirror by turns.
+  PositionCurve positions(std::size_t i) const;
 
  private:
   /// Change a unit of the parameter.

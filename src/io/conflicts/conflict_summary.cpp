@@ -3,6 +3,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/query/ignored_text.hpp"
 #include "io/conflicts/json_text.hpp"
 #include "io/system/xxh64.hpp"
 
@@ -51,6 +52,10 @@ std::string summary_json(const ConflictFile& file) {
   out.add_length("radius", header.radius);
   out.add_length("clearance", header.clearance);
   out.add("between_poses", header.between_poses ? "true" : "false");
+  if (header.ignores_points()) {
+    out.add_count("ignored_points", header.ignored.points);
+    out.add("ignored", json_string(ignored_text(header)));
+  }
   out.add_length("gap", file.options.gap);
   out.add_count("min_points", file.options.min_points);
   out.add_length("split", file.options.split);

@@ -164,7 +164,7 @@ class Conversion {
     progress_.begin("distribute", counted.points, "points");
     Distribution distribution(tree, in_memory_ ? std::nullopt : std::optional(folder_),
                               static_cast<std::size_t>(threads_));
-    distribute(environment, counted.points_hash, lattice, tree, places, distribution, threads_,
+    distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
                clocks_, progress_);
     progress_.end();
     environment.refuse_changed();  // the sources' hashes too are of what was converted
@@ -198,7 +198,8 @@ class Conversion {
                         .crs_wkt = environment.crs_wkt(),
                         .points_hash = counted.points_hash,
                         .sources = std::move(sources),
-                        .source_points = {}};
+                        .source_points = {},
+                        .classes = counted.classes};
     if (environment.files().size() > 1) {
       report_.metadata.source_points = environment.points_of_files();
       report_.metadata.source_points.resize(report_.metadata.sources.size());  // files of poses
@@ -210,10 +211,13 @@ class Conversion {
     report_.offset = {quanta.offset[0], quanta.offset[1], quanta.offset[2]};
   }
 
+  std::uint64_t of_unit() const { return unit_bytes(report_.metadata.classes.has_value()); }
+
   /// Of the memory, beside the cells' index: at least a unit.
   std::uint64_t bytes_for_units() const {
-    const std::uint64_t others = kBaseBytes + report_.cells * kCellBytes;
-    const std::uint64_t least = others + kUnitBytes;
+    const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? 20 : 0);  // their index
+    const std::uint64_t others = kBaseBytes + report_.cells * of_cell;
+    const std::uint64_t least = others + of_unit();
     if (options_.memory_bytes < least) {
       throw ResourceError(format_size(options_.memory_bytes) + " of memory is too little: " +
                               std::to_string(report_.cells) + " cells need at least " +
@@ -230,9 +234,9 @@ class Conversion {
     report_.cells = top.empty() ? 0 : top[0].cell_count;
     const std::uint64_t waiting = points * sizeof(DistributedPoint);
     units_in_flight_ = std::min(units, static_cast<std::size_t>(threads_) + 1);
-    in_memory_ = bytes_for_units() >= waiting + units_in_flight_ * kUnitBytes &&
+    in_memory_ = bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
                  waiting <= most_waiting_bytes();
-    units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / kUnitBytes, 1,
+    units_in_flight_ = std::clamp<std::size_t>(bytes_for_units() / of_unit(), 1,
                                                std::max<std::size_t>(1, units_in_flight_));
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
     check_disk(folder_, {points, padded, in_memory_ ? 0 : points});

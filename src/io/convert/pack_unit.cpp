@@ -35,6 +35,9 @@ class Unit {
   std::uint64_t source(const BucketPoint& p) const {
     return loaded_.points[p.index].source_index();
   }
+  std::uint8_t point_class(const BucketPoint& p) const {
+    return loaded_.points[p.index].point_class();
+  }
   std::span<BucketPoint> points() { return {points_.get(), loaded_.count}; }
 
  private:
@@ -62,8 +65,16 @@ void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
   for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
 }
 
+/// As the store keeps them; behind the points, the last one's repeat.
+void pack_classes(const Unit& unit, std::span<const BucketPoint> points, std::uint32_t cell_points,
+                  PackedCell& cell) {
+  std::vector<std::uint8_t> classes(cell_points, unit.point_class(points.back()));
+  for (std::size_t i = 0; i < points.size(); ++i) classes[i] = unit.point_class(points[i]);
+  append_packed_chunk<std::uint8_t>(classes, cell.classes);
+}
+
 PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
-                     std::uint32_t cell_points) {
+                     std::uint32_t cell_points, bool has_classes) {
   PackedCell cell;
   append_boxes(points, cell);
   std::vector<std::int32_t> values(cell_points);
@@ -76,6 +87,7 @@ PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
   std::vector<std::uint64_t> sources(cell_points, unit.source(points.back()));
   for (std::size_t i = 0; i < points.size(); ++i) sources[i] = unit.source(points[i]);
   append_packed_chunk<std::uint64_t>(sources, cell.chunks[3]);
+  if (has_classes) pack_classes(unit, points, cell_points, cell);
   hash_chunks(cell);
   return cell;
 }
@@ -120,21 +132,27 @@ struct OrderedUnit::State {
   StageClocks& clocks;
   Unit unit;
   std::uint32_t cell_points;
+  bool has_classes;
   std::vector<std::span<const BucketPoint>> cells;
   std::size_t next = 0;
 };
 
 OrderedUnit::OrderedUnit(Distribution& distribution, std::size_t unit, const SplitTree& tree,
-                         const Lattice& lattice, const Quantisation& quantisation,
-                         std::uint32_t cell_points, UnitBuffers& buffers, StageClocks& clocks)
-    : state_(new State{clocks, {distribution, unit, buffers, clocks}, cell_points, {}}) {
+                         const Lattice& lattice, const StoreMetadata& metadata,
+                         UnitBuffers& buffers, StageClocks& clocks)
+    : state_(new State{clocks,
+                       {distribution, unit, buffers, clocks},
+                       metadata.cell_points,
+                       metadata.classes.has_value(),
+                       {}}) {
+  const std::uint32_t cell_points = metadata.cell_points;
   Unit& loaded = state_->unit;
   UnitBuffers::Buffer scratch = buffers.take();
   for (const std::span<BucketPoint> bucket :
        UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
     const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
-    order_bucket(bucket, {scratch.get() + first, bucket.size()}, cell_points, quantisation.scale,
-                 clocks);
+    order_bucket(bucket, {scratch.get() + first, bucket.size()}, cell_points,
+                 metadata.quantisation.scale, clocks);
     for (std::size_t at = 0; at < bucket.size(); at += cell_points) {
       state_->cells.emplace_back(
           bucket.subspan(at, std::min<std::size_t>(cell_points, bucket.size() - at)));
@@ -156,7 +174,8 @@ std::vector<PackedCell> OrderedUnit::pack_next() {
     const ParallelScope scope;
     const auto pack = piece_of(scope, [&](std::size_t i) {
       const auto running = state.clocks.measure(Stage::kPack);
-      packed[i] = pack_cell(state.unit, state.cells[first + i], state.cell_points);
+      packed[i] =
+          pack_cell(state.unit, state.cells[first + i], state.cell_points, state.has_classes);
     });
     scope.begin();
     tbb::parallel_for(std::size_t{0}, packed.size(), pack);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -42,6 +44,35 @@ class PointsHash {
   Xxh64Stream quanta_;
   Xxh64Stream sources_;
   std::uint64_t expected_ = 0;  ///< source index of the next point when none is dropped
+};
+
+/// What classes the stored points have, in source order: XXH64 of a byte a point.
+class ClassesHash {
+ public:
+  void add(const QuantaBatch& batch) {
+    if (batch.classes.empty()) {
+      zeros_ += batch.quanta.size();  // hashed only where a class follows
+      return;
+    }
+    add_zeros();
+    hash_.update(std::as_bytes(std::span(batch.classes)));
+  }
+
+  std::uint64_t digest() {
+    add_zeros();
+    return hash_.digest();
+  }
+
+ private:
+  void add_zeros() {
+    static constexpr std::array<std::byte, 4096> kZeros{};
+    for (; zeros_ > 0; zeros_ -= std::min<std::uint64_t>(zeros_, kZeros.size())) {
+      hash_.update(std::span(kZeros).first(std::min<std::uint64_t>(zeros_, kZeros.size())));
+    }
+  }
+
+  Xxh64Stream hash_;
+  std::uint64_t zeros_ = 0;  ///< points of class 0 that came last
 };
 
 }  // namespace clearway

@@ -25,6 +25,7 @@ struct QuantaBatch {
   std::uint64_t first_source = 0;  ///< source index of the batch's first input point
   std::vector<std::array<std::int32_t, 3>> quanta;
   std::vector<std::uint32_t> offsets;  ///< source - first_source, empty where it is the position
+  std::vector<std::uint8_t> classes;   ///< of the points; empty where all have class 0
 
   std::uint64_t records = 0;  ///< input points
   std::uint64_t non_finite_points = 0;

@@ -54,8 +54,7 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
   });
   const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
     auto flying = std::make_shared<UnitInFlight>();
-    flying->rest.emplace(distribution, unit, tree, lattice, metadata.quantisation,
-                         metadata.cell_points, buffers, clocks);
+    flying->rest.emplace(distribution, unit, tree, lattice, metadata, buffers, clocks);
     flying->packed = flying->rest->pack_next();
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;

@@ -38,6 +38,8 @@ struct PointBatch {
   /// Indices into positions, ascending, of records without a point (a beam without a return). Their
   /// positions are NaN. They keep their number in the file, and are no error.
   std::vector<std::uint32_t> absent;
+  /// A class a point, as ASPRS numbers them. Empty where the format has none.
+  std::vector<std::uint8_t> classes;
 
   std::size_t size() const { return quanta.size() + positions.size(); }
 };

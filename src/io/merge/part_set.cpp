@@ -7,6 +7,7 @@
 #include "core/util/number_ranges.hpp"
 #include "io/result/compare_results.hpp"
 #include "io/system/input_error.hpp"
+#include "io/system/open_files.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway {
@@ -27,6 +28,24 @@ ResultReader open_part(const std::filesystem::path& file) {
 std::string environment_text(const ResultHeader& header) {
   return std::to_string(header.environment_points) + " points, hash " +
          hash_text(header.environment_hash);
+}
+
+/// How an answer was computed, where that may change it: with a tolerance, or in floats alone.
+std::string difference_of_means(const ResultReader& part, const ResultReader& other) {
+  const ResultPart &a = *part.header().part, &b = *other.header().part;
+  const bool floats = part.header().float_precision;
+  std::string differs;
+  const auto compare = [&](const char* what, const std::string& in_a, const std::string& in_b) {
+    if (differs.empty() && in_a != in_b) differs = std::string(what) + in_a + ", not " + in_b;
+  };
+  compare("the device ", a.device, b.device);
+  compare("a model field with a voxel of ", shown(a.field_voxel) + " m",
+          shown(b.field_voxel) + " m");
+  compare("a grid cell of ", shown(a.grid_cell) + " m", shown(b.grid_cell) + " m");
+  if (differs.empty()) return "";
+  return "was computed in another way than " + other.name() + ": with " + differs + ". " +
+         (floats ? "In single precision" : "With a tolerance") +
+         " the answer depends on it; run all parts in the same way";
 }
 
 /// Why they are not parts of one result; empty where they are.
@@ -52,7 +71,7 @@ std::string difference_of(const ResultReader& part, const ResultReader& other) {
     return "divides the work otherwise than " + other.name() +
            ": the stores differ, or the versions of clearway; run the parts with the same";
   }
-  return "";
+  return a.is_exact() ? "" : difference_of_means(part, other);
 }
 
 /// "2", "2, 5-7"; after many numbers "...".
@@ -87,6 +106,7 @@ void refuse_missing(const std::vector<ResultReader>& parts) {
 
 PartSet::PartSet(const std::vector<std::filesystem::path>& files) {
   if (files.empty()) throw UsageError("no parts to merge");
+  require_open_files(files.size(), "to merge " + std::to_string(files.size()) + " parts");
   for (const std::filesystem::path& file : files) {
     parts_.push_back(open_part(file));
     const std::string differs = difference_of(parts_.back(), parts_.front());
@@ -102,6 +122,25 @@ PartSet::PartSet(const std::vector<std::filesystem::path>& files) {
   refuse_missing(parts_);
   header_ = parts_.front().header();
   header_.part.reset();
+}
+
+std::vector<PartWarning> PartSet::warnings() const {
+  const auto is_same = [](const Message& a, const Message& b) {
+    return a.code == b.code && a.text == b.text;
+  };
+  std::vector<PartWarning> all;
+  for (const ResultReader& part : parts_) {
+    std::vector<Message> told;  // of this part, each once
+    for (const Message& warning : part.header().part->warnings) {
+      const auto same = [&](const Message& other) { return is_same(warning, other); };
+      if (std::ranges::any_of(told, same)) continue;
+      told.push_back(warning);
+      auto known = std::ranges::find_if(all, same);
+      if (known == all.end()) known = all.insert(all.end(), PartWarning{warning, 0});
+      ++known->parts;
+    }
+  }
+  return all;
 }
 
 std::uint64_t PartSet::collisions() const {

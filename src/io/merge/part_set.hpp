@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "clearway/merge.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -11,12 +12,14 @@ namespace clearway {
 class PartSet {
  public:
   /// Throws InputError, with the names of files, unless they are the parts of one result, each
-  /// once.
+  /// once; ResourceError where the process may not open as many files.
   explicit PartSet(const std::vector<std::filesystem::path>& files);
 
   const std::vector<ResultReader>& parts() const { return parts_; }
   /// Of the result that they make.
   const ResultHeader& header() const { return header_; }
+  /// Of the runs of the parts, each once, in the order of the parts.
+  std::vector<PartWarning> warnings() const;
   std::uint64_t collisions() const;
   std::uint64_t clearances() const;
 

@@ -2,6 +2,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
+#include "core/query/ignored_text.hpp"
 #include "io/result/result_cursor.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/xxh64.hpp"
@@ -37,6 +38,18 @@ std::string tolerance_text(const ResultHeader& header) {
 std::string first_pose_text(const ResultHeader& header) {
   if (!header.first_pose) return "not asked for";
   return header.ways_without_ends ? "asked for, as version 0.1.0 defined them" : "asked for";
+}
+
+std::string ignored_lists_text(const ResultHeader& header) {
+  if (!header.ignores_points()) return "none";
+  std::string text;
+  if (!header.ignore_classes.empty()) {
+    QueryParameters classes;
+    classes.ignore_classes = header.ignore_classes;
+    text = ignored_text(classes) + " of classes with hash " + hash_text(header.classes_hash);
+  }
+  if (header.ignore_boxes.empty()) return text;
+  return text + (text.empty() ? "" : ", ") + "boxes " + boxes_text(header.ignore_boxes);
 }
 
 class Merge {
@@ -152,6 +165,7 @@ std::vector<QueryDifference> query_differences(const ResultHeader& a, const Resu
          b.between_poses ? "between poses" : "at poses only");
   differ("tolerance", tolerance_text(a), tolerance_text(b));
   differ("precision", a.float_precision ? "float" : "exact", b.float_precision ? "float" : "exact");
+  differ("ignored points", ignored_lists_text(a), ignored_lists_text(b));
   differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
   differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
   return out;

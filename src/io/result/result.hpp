@@ -6,8 +6,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/ignored.hpp"
+#include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
 #include "clearway/vec3.hpp"
@@ -18,11 +21,22 @@
 namespace clearway {
 
 /// What makes a result one part of several.
+// NOLINTNEXTLINE(bugprone-exception-escape): of messages that are moved
 struct ResultPart {
   Shard shard;
   std::uint64_t division = 0;  ///< hash of which cells of which store are in which part
+  std::uint64_t store = 0;     ///< its fingerprint
   std::string length_unit;     ///< of the store: for what merge() says
-  friend bool operator==(const ResultPart&, const ResultPart&) = default;
+  /// What the answer depends on where it is not exact; otherwise empty and 0. Metres.
+  std::string device = {};
+  double field_voxel = 0, grid_cell = 0;
+  std::vector<Message> warnings = {};  ///< of the run that wrote it
+
+  /// Of the same work: how it was done, and what was warned of, are not compared.
+  friend bool operator==(const ResultPart& a, const ResultPart& b) {
+    return a.shard == b.shard && a.division == b.division && a.store == b.store &&
+           a.length_unit == b.length_unit;
+  }
 };
 
 /// What a result says of its query: a function of the source points, the model, the trajectory
@@ -46,10 +60,15 @@ struct ResultHeader : QueryParameters {
   /// Of a surface, whose corners the model's points are; 0: the points are the model.
   std::uint64_t model_triangles = 0;
   std::uint64_t model_solids = 0;  ///< parts of it with an inside; then distances may be below 0
-  /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances.
+  IgnoredPointCounts ignored{};  ///< of ignore_classes and ignore_boxes, as sort_ignored() has them
+  std::uint64_t classes_hash = 0;  ///< of all points; 0 where no class is ignored
+  /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances. Version
+  /// 4 ignores points.
   std::uint32_t version = 3;
 
   bool has_poses_of_ways() const { return first_pose && between_poses; }
+  /// Whether floats or a tolerance decided: then it depends on how it was computed.
+  bool is_exact() const { return tolerance == 0 && !float_precision; }
   bool has_model_box() const { return version >= 3; }
   bool has_clearance_xyz() const { return version >= 3; }
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;

@@ -5,6 +5,8 @@
 
 #include "clearway/error.hpp"
 #include "io/result/as_numbers.hpp"
+#include "io/result/ignored_lists.hpp"
+#include "io/result/part_warnings.hpp"
 #include "io/result/result_names.hpp"
 #include "io/system/input_error.hpp"
 
@@ -26,10 +28,11 @@ bool read_format(const hdf5::Id& file, const std::string& name) {
 
 std::uint32_t read_version(const hdf5::Id& file, const std::string& name) {
   const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
-  if (version < names::kOldestVersion || version > names::kVersion) {
+  if (version < names::kOldestVersion || version > names::kIgnoringVersion) {
     throw InputError(name + ": attribute 'version' is " + std::to_string(version) + ", expected " +
                      std::to_string(names::kOldestVersion) + " to " +
-                     std::to_string(names::kVersion) + "; another release of clearway wrote it");
+                     std::to_string(names::kIgnoringVersion) +
+                     "; another release of clearway wrote it");
   }
   if (!hdf5::has_attribute(file, "complete", name) ||
       hdf5::read_number<std::uint8_t>(file, "complete", name) != 1) {
@@ -79,14 +82,43 @@ void read_profile_distance(const hdf5::Id& file, const std::string& name, double
   refuse(name, "attribute 'profile' is " + shown(profile) + ", expected a length, or 0 for none");
 }
 
-ResultPart read_part(const hdf5::Id& file, const std::string& name) {
+/// Of what is not exact, how it was computed.
+void read_means(const hdf5::Id& file, const std::string& name, const ResultHeader& header,
+                ResultPart& part) {
+  if (header.is_exact()) return;
+  part.device = hdf5::read_text_attribute(file, names::kDevice, name);
+  part.field_voxel = hdf5::read_number<double>(file, names::kFieldVoxel, name);
+  part.grid_cell = hdf5::read_number<double>(file, names::kGridCell, name);
+}
+
+ResultPart read_part(const hdf5::Id& file, const std::string& name, const ResultHeader& header) {
   const auto shard = hdf5::read_attribute<std::uint32_t>(file, names::kShard, 2, name);
   ResultPart part{{shard[0], shard[1]},
                   hdf5::read_number<std::uint64_t>(file, names::kDivision, name),
+                  hdf5::read_number<std::uint64_t>(file, names::kStore, name),
                   hdf5::read_text_attribute(file, names::kLengthUnit, name)};
-  if (part.shard.is_valid()) return part;
-  refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
-                   std::to_string(Shard::kMost));
+  if (!part.shard.is_valid()) {
+    refuse(name, "attribute 'shard' is " + to_string(part.shard) + ", expected a part of at most " +
+                     std::to_string(Shard::kMost));
+  }
+  read_means(file, name, header, part);
+  part.warnings = read_warnings(file, name);
+  return part;
+}
+
+void write_part(const hdf5::Id& file, const ResultHeader& header) {
+  const ResultPart& part = *header.part;
+  const std::uint32_t shard[]{part.shard.number, part.shard.count};
+  hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
+  hdf5::write_number(file, names::kDivision, part.division);
+  hdf5::write_number(file, names::kStore, part.store);
+  hdf5::write_attribute(file, names::kLengthUnit, part.length_unit);
+  if (!header.is_exact()) {
+    hdf5::write_attribute(file, names::kDevice, part.device);
+    hdf5::write_number(file, names::kFieldVoxel, part.field_voxel);
+    hdf5::write_number(file, names::kGridCell, part.grid_cell);
+  }
+  write_warnings(file, part.warnings);
 }
 
 }  // namespace
@@ -95,7 +127,8 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   const Vec3 model_box[2] = {header.model_box.lo, header.model_box.hi};
   hdf5::write_attribute(file, "format",
                         std::string(header.part ? names::kPartFormat : names::kFormat));
-  hdf5::write_number(file, "version", names::kVersion);
+  hdf5::write_number(file, "version",
+                     header.ignores_points() ? names::kIgnoringVersion : names::kVersion);
   hdf5::write_number(file, "environment_points", header.environment_points);
   hdf5::write_number(file, "environment_hash", header.environment_hash);
   hdf5::write_number(file, "model_points", header.model_points);
@@ -125,11 +158,8 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.model_solids > 0) {
     hdf5::write_number(file, names::kModelSolids, header.model_solids);
   }
-  if (!header.part) return;
-  const std::uint32_t shard[]{header.part->shard.number, header.part->shard.count};
-  hdf5::write_attribute(file, names::kShard, std::span<const std::uint32_t>(shard));
-  hdf5::write_number(file, names::kDivision, header.part->division);
-  hdf5::write_attribute(file, names::kLengthUnit, header.part->length_unit);
+  if (header.ignores_points()) write_ignored(file, header);
+  if (header.part) write_part(file, header);
 }
 
 ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
@@ -167,9 +197,10 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     read_model_box(file, name, header.model_box);
     read_profile_distance(file, name, header.profile);
   }
+  if (header.version == names::kIgnoringVersion) read_ignored(file, name, header);
   if (is_part) {
     if (header.version < 3) refuse(name, "is a part of version 2, which has none");
-    header.part = read_part(file, name);
+    header.part = read_part(file, name, header);
   }
   return header;
 }

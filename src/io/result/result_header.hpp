@@ -7,7 +7,7 @@
 
 namespace clearway {
 
-/// The attributes of a new result but its hashes and `complete`.
+/// The attributes of a new result but its hashes and `complete`, and what it ignores.
 void write_result_header(const hdf5::Id& file, const ResultHeader& header);
 
 /// Throws InputError where the file is not a complete result, or is damaged. name: of the file.

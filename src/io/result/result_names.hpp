@@ -8,6 +8,7 @@ namespace clearway::result_names {
 inline constexpr const char* kFormat = "clearway result";
 inline constexpr const char* kPartFormat = "clearway part";  // not for who looks for a result
 inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kIgnoringVersion = 4;  // of a result that ignores points
 inline constexpr std::uint32_t kOldestVersion = 2;
 
 inline constexpr const char* kGroup = "collisions";
@@ -37,7 +38,26 @@ inline constexpr const char* kModelSolids = "model_solids";        // only with 
 
 inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
 inline constexpr const char* kDivision = "division";
+inline constexpr const char* kStore = "store";
 inline constexpr const char* kLengthUnit = "length_unit";
+inline constexpr const char* kDevice = "device";  // of parts that are not exact, with one of
+inline constexpr const char* kFieldVoxel = "field_voxel";
+inline constexpr const char* kGridCell = "grid_cell";
+inline constexpr const char* kWarningsGroup = "warnings";  // of parts only: a group each, from 0
+inline constexpr const char* kWarningCount = "count";
+inline constexpr const char* kCode = "code";
+inline constexpr const char* kMessage = "message";
+inline constexpr const char* kNumberNames = "names";  // a line each; only where there are numbers
+inline constexpr const char* kNumbers = "numbers";
+
+inline constexpr const char* kIgnoredPoints = "ignored_points";  // with what follows, in version 4
+inline constexpr const char* kIgnoredHash = "ignored_hash";      // of the group's datasets
+inline constexpr const char* kClassesHash = "classes_hash";      // where classes are ignored
+inline constexpr const char* kIgnoredGroup = "ignored";
+inline constexpr const char* kClassesIgnored = "classes";
+inline constexpr const char* kClassPoints = "class_points";
+inline constexpr const char* kBoxes = "boxes";  // a row each: least x, y, z, greatest x, y, z
+inline constexpr const char* kBoxPoints = "box_points";
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";

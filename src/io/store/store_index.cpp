@@ -211,10 +211,14 @@ StoreIndex read_index(const hdf5::Id& file, std::uint64_t file_bytes, const std:
   const std::uint64_t blocks_per_cell = divide_up(index.metadata.cell_points, kBlockPoints);
   index.blocks = read_blocks(file, index.cells.count.size() * blocks_per_cell, name, hashes);
   index.top = read_tree(file, name, hashes);
+  if (has_class_index(file)) {
+    index.classes = read_class_index(file, name, index.cells.count.size(), index.metadata);
+  }
   if (hashes.digest() != hdf5::read_number<std::uint64_t>(file, "index_hash", name)) {
     refuse(name, "its index of cells is damaged (its hash is not the one recorded)");
   }
   check_cells(index, file_bytes, name);
+  index.classes.check(file_bytes, name);
   return index;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cloud/packed_cloud.hpp"
+#include "io/store/class_index.hpp"
 #include "io/store/store_layout.hpp"
 #include "io/store/store_metadata.hpp"
 
@@ -14,6 +15,7 @@ namespace clearway {
 struct StoreIndex {
   StoreMetadata metadata;
   CellIndex cells;
+  ClassIndex classes;  ///< empty where the store has none
   std::vector<TopNode> top;
   std::vector<BlockBox> blocks;  ///< the same number for every cell
 };

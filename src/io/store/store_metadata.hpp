@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +21,13 @@ struct SourceFile {
   friend bool operator==(const SourceFile&, const SourceFile&) = default;
 };
 
+/// The classes of all points of a store.
+struct StoreClasses {
+  std::uint64_t hash = 0;                   ///< XXH64 of a byte a point, in source order
+  std::array<std::uint64_t, 256> points{};  ///< of each class
+  friend bool operator==(const StoreClasses&, const StoreClasses&) = default;
+};
+
 /// What a store says of itself besides its cells (docs/design/store-format.md).
 struct StoreMetadata {
   std::uint64_t point_count = 0;
@@ -34,6 +42,7 @@ struct StoreMetadata {
   /// Source points of each of them, 0 for files of poses. Empty where the scan is one, and in
   /// stores of 0.1.0.
   std::vector<std::uint64_t> source_points = {};
+  std::optional<StoreClasses> classes = {};  ///< where any point has a class above 0
 
   /// Of one of the sources, where that is known.
   std::optional<std::uint64_t> points_of_source(std::size_t source) const {

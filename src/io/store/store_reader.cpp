@@ -27,7 +27,8 @@ StoreReader::StoreReader(const std::filesystem::path& path)
       tree_(build_cell_tree(index_.top, cells_)),
       checked_(cells_.size()),
       read_(cells_.size()),
-      sources_checked_(cells_.size()) {}
+      sources_checked_(cells_.size()),
+      classes_checked_(index_.classes.address.size()) {}
 
 std::span<const std::byte> StoreReader::checked_chunk(std::uint32_t cell, int dataset) const {
   const std::size_t i = 4 * std::size_t{cell} + static_cast<std::size_t>(dataset);
@@ -43,21 +44,24 @@ void StoreReader::check_hash(std::uint32_t cell, int dataset,
                              std::span<const std::byte> bytes) const {
   const std::size_t i = 4 * std::size_t{cell} + static_cast<std::size_t>(dataset);
   if (xxh64(bytes) == index_.cells.xxh64[i]) return;
-  refuse(name(), "cell " + std::to_string(cell) + ": the packed bytes of '" +
-                     kPointDatasets[dataset] + "' at byte " +
-                     std::to_string(index_.cells.address[i]) +
+  refuse_damaged(cell, kPointDatasets[dataset], index_.cells.address[i]);
+}
+
+void StoreReader::refuse_damaged(std::uint32_t cell, const char* dataset,
+                                 std::uint64_t byte) const {
+  refuse(name(), "cell " + std::to_string(cell) + ": the packed bytes of '" + dataset +
+                     "' at byte " + std::to_string(byte) +
                      " are damaged (their hash is not the one recorded)");
 }
 
 /// bytes: whose hash is right, or was once (a file that is written to while in use).
 template <typename Number>
-PackedChunk<Number> StoreReader::chunk(std::uint32_t cell, int dataset,
+PackedChunk<Number> StoreReader::chunk(std::uint32_t cell, const char* dataset,
                                        std::span<const std::byte> bytes) const {
   try {
     return {bytes, cell_points()};
   } catch (const InputError& error) {
-    refuse(name(),
-           "cell " + std::to_string(cell) + ": '" + kPointDatasets[dataset] + "': " + error.what());
+    refuse(name(), "cell " + std::to_string(cell) + ": '" + dataset + "': " + error.what());
   }
 }
 
@@ -65,7 +69,7 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates(std::uint32_t 
   std::array<PackedChunk<std::int32_t>, 3> chunks;
   for (int axis = 0; axis < 3; ++axis) {
     chunks[static_cast<std::size_t>(axis)] =
-        chunk<std::int32_t>(cell, axis, checked_chunk(cell, axis));
+        chunk<std::int32_t>(cell, kPointDatasets[axis], checked_chunk(cell, axis));
   }
   std::atomic_ref(checked_[cell]).store(1, std::memory_order_release);
   return chunks;
@@ -75,13 +79,13 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::peek(std::uint32_t cell) c
   std::array<PackedChunk<std::int32_t>, 3> chunks;
   for (int axis = 0; axis < 3; ++axis) {
     chunks[static_cast<std::size_t>(axis)] =
-        chunk<std::int32_t>(cell, axis, checked_chunk(cell, axis));
+        chunk<std::int32_t>(cell, kPointDatasets[axis], checked_chunk(cell, axis));
   }
   return chunks;
 }
 
 PackedChunk<std::uint64_t> StoreReader::sources(std::uint32_t cell) const {
-  return chunk<std::uint64_t>(cell, 3, checked_chunk(cell, 3));
+  return chunk<std::uint64_t>(cell, kPointDatasets[3], checked_chunk(cell, 3));
 }
 
 std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) const {
@@ -92,7 +96,19 @@ std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) co
   }
   const std::size_t i = 4 * std::size_t{cell} + 3;
   const auto bytes = map_.bytes().subspan(index_.cells.address[i], index_.cells.bytes[i]);
-  return chunk<std::uint64_t>(cell, 3, bytes)[index];
+  return chunk<std::uint64_t>(cell, kPointDatasets[3], bytes)[index];
+}
+
+PackedChunk<std::uint8_t> StoreReader::classes(std::uint32_t cell) const {
+  const ClassIndex& index = index_.classes;
+  const auto bytes = map_.bytes().subspan(index.address[cell], index.bytes[cell]);
+  const std::atomic_ref checked(classes_checked_[cell]);
+  if (checked.load(std::memory_order_acquire) == 0) {
+    if (xxh64(bytes) != index.xxh64[cell])
+      refuse_damaged(cell, kClassOfPoints, index.address[cell]);
+    checked.store(1, std::memory_order_release);
+  }
+  return chunk<std::uint8_t>(cell, kClassOfPoints, bytes);
 }
 
 std::uint64_t StoreReader::packed_bytes(std::uint32_t cell) const {
@@ -117,7 +133,7 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::read_packed(std::uint32_t 
   for (int axis = 0; axis < 3; ++axis) {
     const auto part = parts[static_cast<std::size_t>(axis)];
     check_hash(cell, axis, part);
-    chunks[static_cast<std::size_t>(axis)] = chunk<std::int32_t>(cell, axis, part);
+    chunks[static_cast<std::size_t>(axis)] = chunk<std::int32_t>(cell, kPointDatasets[axis], part);
   }
   std::atomic_ref(read_[cell]).store(1, std::memory_order_relaxed);
   return chunks;
@@ -135,6 +151,7 @@ std::uint64_t StoreReader::fingerprint() const {
   add(metadata().quantisation.scale);
   add(metadata().quantisation.offset);
   add(metadata().crs_wkt);
+  if (has_classes()) add(index_.classes.xxh64);
   return hash.digest();
 }
 
@@ -153,7 +170,8 @@ std::uint64_t StoreReader::allocated_bytes() const {
   return bytes(index_.cells.count) + bytes(index_.cells.box) + bytes(index_.cells.address) +
          bytes(index_.cells.bytes) + bytes(index_.cells.xxh64) + bytes(index_.top) + bytes(cells_) +
          bytes(tree_) + bytes(index_.blocks) + bytes(checked_) + bytes(read_) +
-         bytes(sources_checked_);
+         bytes(sources_checked_) + bytes(index_.classes.address) + bytes(index_.classes.bytes) +
+         bytes(index_.classes.xxh64) + bytes(classes_checked_);
 }
 
 }  // namespace clearway

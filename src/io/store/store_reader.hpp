@@ -32,6 +32,11 @@ class StoreReader final : public PackedCloud {
   /// The packed source indices of a cell, checked against their hash.
   PackedChunk<std::uint64_t> sources(std::uint32_t cell) const;
 
+  /// The packed classes of a cell, checked against their hash at the first call for it. Only where
+  /// has_classes().
+  PackedChunk<std::uint8_t> classes(std::uint32_t cell) const override;
+  bool has_classes() const override { return metadata().classes.has_value(); }
+
   // PackedCloud
   std::uint64_t point_count() const override { return metadata().point_count; }
   std::uint32_t cell_points() const override { return metadata().cell_points; }
@@ -63,8 +68,10 @@ class StoreReader final : public PackedCloud {
   std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
   void check_hash(std::uint32_t cell, int dataset, std::span<const std::byte> bytes) const;
   template <typename Number>
-  PackedChunk<Number> chunk(std::uint32_t cell, int dataset,
+  PackedChunk<Number> chunk(std::uint32_t cell, const char* dataset,
                             std::span<const std::byte> bytes) const;
+  [[noreturn]] void refuse_damaged(std::uint32_t cell, const char* dataset,
+                                   std::uint64_t byte) const;
 
   MappedFile map_;
   StoreIndex index_;
@@ -74,6 +81,7 @@ class StoreReader final : public PackedCloud {
   mutable std::vector<std::uint8_t> checked_;
   mutable std::vector<std::uint8_t> read_;  ///< per cell: 1 when they were read past the map
   mutable std::vector<std::uint8_t> sources_checked_;  ///< per cell: 1 when they were, of the map
+  mutable std::vector<std::uint8_t> classes_checked_;  ///< likewise; empty without classes
 };
 
 }  // namespace clearway

@@ -11,6 +11,7 @@
 #include "core/cloud/kd_order.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/hdf5/hdf5.hpp"
+#include "io/store/class_index.hpp"
 #include "io/store/store_layout.hpp"
 #include "io/system/file.hpp"
 #include "io/system/growing_file.hpp"
@@ -91,7 +92,9 @@ struct StoreWriter::State {
   std::uint64_t promised_cells;
   hdf5::Id file;
   std::array<hdf5::Id, 4> points;
+  hdf5::Id classes;  ///< none where the store has none
   CellIndex index;
+  ClassIndex class_index;
   File blocks;  ///< rows of /blocks/box, spooled: too many to keep in memory
   std::uint64_t block_rows = 0;
   std::optional<GrowingFile> growth;
@@ -124,8 +127,9 @@ struct StoreWriter::State {
   }
 
   /// Writes a packed chunk at the end of the file; gives its address.
-  std::uint64_t write_chunk(int dataset, std::uint64_t cell, std::span<const std::byte> bytes) {
-    const hid_t id = points[static_cast<std::size_t>(dataset)].get();
+  std::uint64_t write_chunk(const hdf5::Id& dataset, std::uint64_t cell,
+                            std::span<const std::byte> bytes) {
+    const hid_t id = dataset.get();
     haddr_t address = 0;
     hdf5::check(H5Fget_eoa(file.get(), &address), path.string() + ": HDF5 end of file");
     const std::array<hsize_t, 2> at{cell, 0};
@@ -141,28 +145,52 @@ struct StoreWriter::State {
     return address;
   }
 
-  void confirm_address(const File& reread, std::size_t chunk) const {
-    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(index.bytes[chunk]);
-    const std::span<std::byte> read(bytes.get(), index.bytes[chunk]);
-    reread.read_at(index.address[chunk], read);
-    if (xxh64(read) == index.xxh64[chunk]) return;
-    throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(chunk / 4) +
+  void write_classes(const PackedCell& packed, std::uint64_t cell) {
+    class_index.address.push_back(write_chunk(classes, cell, packed.classes));
+    class_index.bytes.push_back(static_cast<std::uint32_t>(packed.classes.size()));
+    class_index.xxh64.push_back(packed.classes_xxh64);
+  }
+
+  struct WrittenChunk {
+    std::size_t cell;
+    std::uint64_t address;
+    std::uint32_t bytes;
+    std::uint64_t hash;
+  };
+
+  /// Those of x, y, z and source, then those of classes.
+  WrittenChunk written(std::size_t chunk) const {
+    const std::size_t points_end = index.bytes.size();
+    if (chunk < points_end) {
+      return {chunk / 4, index.address[chunk], index.bytes[chunk], index.xxh64[chunk]};
+    }
+    const std::size_t cell = chunk - points_end;
+    return {cell, class_index.address[cell], class_index.bytes[cell], class_index.xxh64[cell]};
+  }
+
+  void confirm_address(const File& reread, const WrittenChunk& chunk) const {
+    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(chunk.bytes);
+    const std::span<std::byte> read(bytes.get(), chunk.bytes);
+    reread.read_at(chunk.address, read);
+    if (xxh64(read) == chunk.hash) return;
+    throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(chunk.cell) +
                         " read back differs from what was written at byte " +
-                        std::to_string(index.address[chunk]));
+                        std::to_string(chunk.address));
   }
 
   void confirm_addresses() const {
     const File reread = File::open_for_reading(path);
     const ParallelScope scope;
     const auto confirm =
-        piece_of(scope, [&](std::size_t chunk) { confirm_address(reread, chunk); });
+        piece_of(scope, [&](std::size_t chunk) { confirm_address(reread, written(chunk)); });
     scope.begin();
-    tbb::parallel_for(std::size_t{0}, index.bytes.size(), confirm);
+    tbb::parallel_for(std::size_t{0}, index.bytes.size() + class_index.bytes.size(), confirm);
   }
 };
 
 void hash_chunks(PackedCell& packed) {
   for (std::size_t i = 0; i < packed.chunks.size(); ++i) packed.xxh64[i] = xxh64(packed.chunks[i]);
+  if (!packed.classes.empty()) packed.classes_xxh64 = xxh64(packed.classes);
 }
 
 StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
@@ -172,7 +200,9 @@ StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata&
                        .promised_cells = cells,
                        .file = {},
                        .points = {},
+                       .classes = {},
                        .index = {},
+                       .class_index = {},
                        .blocks = File::create_temporary(folder_of(path)),
                        .growth = {},
                        .hashes = {}}) {
@@ -192,6 +222,11 @@ void StoreWriter::create(std::uint64_t cells) {
   }
   state_->points[3] =
       create_packed<std::uint64_t>(group, kPointDatasets[3], cells, metadata.cell_points);
+  if (!metadata.classes) return;
+  state_->class_index.reserve(cells);
+  const hdf5::Id classes = hdf5::create_group(state_->file, kClasses);
+  state_->classes =
+      create_packed<std::uint8_t>(classes, kClassOfPoints, cells, metadata.cell_points);
 }
 
 StoreWriter::~StoreWriter() {
@@ -207,10 +242,12 @@ void StoreWriter::append(const PackedCell& packed) {
   if (cell >= state.promised_cells) throw std::logic_error("more cells than promised");
   for (int i = 0; i < 4; ++i) {
     const std::vector<std::byte>& chunk = packed.chunks[static_cast<std::size_t>(i)];
-    index.address.push_back(state.write_chunk(i, cell, chunk));
+    index.address.push_back(
+        state.write_chunk(state.points[static_cast<std::size_t>(i)], cell, chunk));
     index.bytes.push_back(static_cast<std::uint32_t>(chunk.size()));
     index.xxh64.push_back(packed.xxh64[static_cast<std::size_t>(i)]);
   }
+  if (state.metadata.classes) state.write_classes(packed, cell);
   index.count.push_back(packed.cell.count);
   index.box.insert(index.box.end(), packed.cell.box.lo, packed.cell.box.lo + 3);
   index.box.insert(index.box.end(), packed.cell.box.hi, packed.cell.box.hi + 3);
@@ -244,6 +281,10 @@ void StoreWriter::write_index(const std::vector<TopNode>& tree) {
     const hdf5::Id group = hdf5::create_group(state.file, "tree");
     hdf5::write_dataset<std::uint32_t>(group, "nodes", nodes, 3);
     state.hashes.add(nodes);
+  }
+  if (state.metadata.classes) {
+    write_class_index(state.file, *state.metadata.classes, state.class_index);
+    state.classes.close(state.path.string() + ": cannot write");
   }
   hdf5::write_number(state.file, "index_hash", state.hashes.digest());
   hdf5::write_number(state.file, "complete", std::uint32_t{1});

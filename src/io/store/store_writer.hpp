@@ -18,6 +18,8 @@ struct PackedCell {
   std::vector<BlockBox> blocks;                  ///< one for each block with points
   std::array<std::vector<std::byte>, 4> chunks;  ///< x, y, z, source; each of cell_points values
   std::array<std::uint64_t, 4> xxh64{};          ///< of the chunks, see hash_chunks()
+  std::vector<std::byte> classes;                ///< a chunk too; empty where the store has none
+  std::uint64_t classes_xxh64 = 0;
 };
 
 /// Fills in the hashes; on the threads that pack, as the writer has only one.

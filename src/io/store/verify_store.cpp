@@ -49,6 +49,14 @@ class Verification {
     store_.sources(cell).decode(0, sources_);
     check_boxes(cell);
     check_order(cell);
+    if (store_.has_classes()) check_classes(cell);
+  }
+
+  /// Behind all cells: throws InputError where the classes are not as many as the store says.
+  void check_class_counts() const {
+    if (store_.has_classes() && class_points_ != store_.metadata().classes->points) {
+      throw InputError(store_.name() + ": its classes have other numbers of points than it says");
+    }
   }
 
  private:
@@ -98,8 +106,22 @@ class Verification {
     }
   }
 
+  void check_classes(std::uint32_t cell) {
+    const std::uint32_t count = store_.cells()[cell].count;
+    classes_.resize(store_.cell_points());
+    store_.classes(cell).decode(0, classes_);
+    for (std::uint32_t i = 0; i < count; ++i) ++class_points_[classes_[i]];
+    const std::uint8_t last = classes_[count - 1];
+    const auto repeats = [last](std::uint8_t value) { return value == last; };
+    if (!std::all_of(classes_.begin() + count, classes_.end(), repeats)) {
+      fail(cell, "the padding of its classes is not that of its last point");
+    }
+  }
+
   const StoreReader& store_;
   SeenSources seen_;
+  std::vector<std::uint8_t> classes_;
+  std::array<std::uint64_t, 256> class_points_{};
   std::array<std::vector<std::int32_t>, 3> values_;
   std::vector<std::uint64_t> sources_;
 };
@@ -118,6 +140,13 @@ std::vector<std::string> verify_store(const StoreReader& store, Progress& progre
       faults.emplace_back(fault.what());
     }
     progress.advance(store.cells()[cell].count);
+  }
+  if (faults.empty()) {
+    try {
+      verification.check_class_counts();
+    } catch (const InputError& fault) {
+      faults.emplace_back(fault.what());
+    }
   }
   progress.end();
   return faults;

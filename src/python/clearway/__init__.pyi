@@ -83,6 +83,7 @@ class Store:
     def cell_count(self) -> int: ...
     def box(self) -> Box: ...
     def crs_wkt(self) -> str: ...
+    def class_points(self) -> dict[int, int]: ...
     def length_unit(self) -> str: ...
     path: Final[_Path]
 
@@ -95,11 +96,14 @@ class Query:
     clearance: float
     profile: float
     tolerance: float
+    ignore_classes: list[int]
+    ignore_boxes: list[Box]
     allow_non_rigid: bool
     def __init__(
         self, model: ArrayLike = ..., poses: ArrayLike = ..., radius: float = 0.0, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
-        profile: float = 0.0, tolerance: float = 0.0, allow_non_rigid: bool = False,
+        profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
+        ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
     ) -> None: ...
 class QueryParameters:
     radius: Final[float]
@@ -108,6 +112,12 @@ class QueryParameters:
     clearance: Final[float]
     profile: Final[float]
     tolerance: Final[float]
+    ignore_classes: Final[list[int]]
+    ignore_boxes: Final[list[Box]]
+class IgnoredPointCounts:
+    points: Final[int]
+    of_classes: Final[list[int]]
+    in_boxes: Final[list[int]]
 class SearchSeconds:
     total: Final[float]
     context: Final[float]
@@ -142,6 +152,8 @@ class SearchReport:
     colliding_points: Final[int]
     clearance_points: Final[int]
     profile_poses: Final[int]
+    ignored: Final[IgnoredPointCounts]
+    ignored_looked_at: Final[int]
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
@@ -151,6 +163,7 @@ class SearchReport:
     device_name: Final[str]
     engine_estimate: Final[EngineEstimate | None]
     estimate: Final[DeviceEstimate | None]
+    shard: Final[tuple[int, int] | None]
     shard_share: Final[float | None]
     searches: Final[int]
     tolerance: Final[ToleranceReport | None]
@@ -168,9 +181,13 @@ class SearchReport:
     pinned_bytes: Final[int]
     peak_device_bytes: Final[int]
     seconds: Final[SearchSeconds]
+class PartWarning(Message):
+    parts: Final[int]
+
 class MergeReport:
     was_finished: Final[bool]
     parameters: Final[QueryParameters]
+    length_unit: Final[str]
     parts: Final[int]
     environment_points: Final[int]
     model_points: Final[int]
@@ -178,9 +195,11 @@ class MergeReport:
     colliding_points: Final[int]
     clearance_points: Final[int]
     profile_poses: Final[int]
+    ignored: Final[IgnoredPointCounts]
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
+    warnings: Final[list[PartWarning]]
 
 class Clearances:
     source: Final[_Sources]
@@ -202,6 +221,7 @@ class Result:
     def __len__(self) -> int: ...
     def parameters(self) -> QueryParameters: ...
     def environment_points(self) -> int: ...
+    def ignored(self) -> IgnoredPointCounts: ...
     def poses(self) -> int: ...
     def source(self) -> _Sources: ...
     def xyz(self) -> _Doubles: ...
@@ -278,7 +298,8 @@ def search(
 def merge(
     parts: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, threads: int = 0,
     memory_bytes: int = 4294967296, overwrite: bool = False, resume: bool = False,
-    progress: _Progress | None = None, stop: _Stop | None = None,
+    strict: bool = False, progress: _Progress | None = None, message: _Tell | None = None,
+    stop: _Stop | None = None,
 ) -> MergeReport: ...
 def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,

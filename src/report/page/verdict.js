@@ -105,6 +105,10 @@ function cautions() {
   if (!query.exact) {
     out.push("The result is not exact: it was made with a tolerance or in single precision.");
   }
+  if (facts.ignored !== null) {
+    out.push(`The search ignored ${plural(facts.ignored.points, "point")} of the environment ` +
+             `(${facts.ignored.what}). The vehicle may touch them.`);
+  }
   if (conflicts && inputs.trajectory.length > 0 && conflicts.longest_group > 5 &&
       conflicts.longest_group > 0.5 * inputs.trajectory.length) {
     out.push(`One group of touching points goes along ${station(conflicts.longest_group)} of the ` +
@@ -141,7 +145,18 @@ function questionTable() {
     factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
-    factRow("Asked for", askedFor(query))));
+    factRow("Asked for", askedFor(query)),
+    page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored))));
+}
+
+/** What --ignore-class and --ignore-box left out of the search. */
+function ignoredText({ classes, boxes }) {
+  const parts = classes.map((c) => `class ${c.class}${c.name ? ` (${c.name})` : ""}: ` +
+                                   plural(c.points, "point"));
+  const corner = (p) => p.map((v) => String(v)).join(" ");
+  parts.push(...boxes.map((b) => `box ${corner(b.lo)} to ${corner(b.hi)}: ` +
+                                 plural(b.points, "point")));
+  return `${parts.join("; ")}.`;
 }
 
 /** What --model-above took from the model's file. */

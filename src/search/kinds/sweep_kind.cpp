@@ -125,4 +125,8 @@ std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Q
   return std::make_unique<CpuSweepKindOf<Vec3>>(store, query, options);
 }
 
+template class CpuSweepKindOf<Vec3>;
+template class CpuSweepKindOf<Triangle>;
+template class CpuSweepKindOf<SolidTriangle>;
+
 }  // namespace clearway

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cstring>
 #include <functional>
 
 #include "io/convert/count/count.hpp"
@@ -104,11 +105,19 @@ TEST_CASE("points are distributed only where they are those that were counted") 
   const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
   const auto distribute_again = [&] {
     Distribution distribution(tree, scans.folder / "", 2);
-    distribute(environment, counted.points_hash, lattice, tree, places, distribution, 2, clocks,
+    distribute(environment, counted.hashes(), lattice, tree, places, distribution, 2, clocks,
                progress);
     return distribution.take(0).count;
   };
   CHECK(distribute_again() == 2000);
+  std::string classed = bytes_of(scans.second);
+  std::uint32_t points_offset = 0;
+  std::memcpy(&points_offset, classed.data() + 96, sizeof points_offset);
+  classed[points_offset + 15] = 2;
+  const std::string before = bytes_of(scans.second);
+  put_bytes(scans.second, classed);
+  CHECK_THROWS_AS(distribute_again(), InputError);
+  put_bytes(scans.second, before);
   put_bytes(scans.second, bytes_of(scans.other));
   CHECK_THROWS_AS(distribute_again(), InputError);
 }

@@ -25,6 +25,7 @@ struct LasBytes {
   std::array<double, 3> offset{100, -200, 0};
   std::vector<std::array<std::int32_t, 3>> points{
       {1, 2, 3}, {-4, 5, -6}, {2147483647, -2147483647 - 1, 0}};
+  std::vector<std::uint8_t> bytes_of_class{};  ///< of the points, flags included; empty: any
   std::vector<Record> vlrs;
   std::vector<Record> evlrs;  ///< 1.4: any number; 1.3: one
 
@@ -72,9 +73,10 @@ struct LasBytes {
     }
     for (const Record& record : vlrs) append(bytes, record, 54);
     bytes.append(padding, 'p');
-    for (const auto& point : points) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
       std::string one(record_bytes(), 'r');
-      for (unsigned k = 0; k < 3; ++k) put(one, 4 * k, point[k]);
+      for (unsigned k = 0; k < 3; ++k) put(one, 4 * k, points[i][k]);
+      if (!bytes_of_class.empty()) put(one, format < 6 ? 15 : 16, bytes_of_class[i]);
       bytes += one;
     }
     for (const Record& record : evlrs) append(bytes, record, 60);

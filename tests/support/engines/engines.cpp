@@ -153,6 +153,40 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Q
   return colliding;
 }
 
+/// Which points a query ignores, by its own words.
+std::vector<bool> ignored_by(const Query& query, const std::vector<Vec3>& positions,
+                             std::span<const std::uint8_t> classes) {
+  std::vector<bool> ignored;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3& p = positions[i];
+    const bool by_class = std::ranges::count(query.ignore_classes, classes[i]) > 0;
+    const bool by_box = std::ranges::any_of(query.ignore_boxes, [&p](const Box& box) {
+      return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y &&
+             p.z >= box.lo.z && p.z <= box.hi.z;
+    });
+    ignored.push_back(by_class || by_box);
+  }
+  return ignored;
+}
+
+/// By brute force, as if the ignored points were not there.
+std::vector<NearestPoint> nearest_of_searched(const std::vector<Vec3>& positions,
+                                              const std::vector<bool>& ignored,
+                                              const Query& query) {
+  std::vector<Vec3> searched;
+  std::vector<std::uint64_t> sources;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (ignored[i]) continue;
+    searched.push_back(positions[i]);
+    sources.push_back(i);
+  }
+  std::vector<NearestPoint> nearest = nearest_points(searched, query);
+  for (NearestPoint& point : nearest) {
+    if (point.source < sources.size()) point.source = sources[point.source];
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::span<const Engine> engines() { return under_test; }
@@ -180,10 +214,22 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
 
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query) {
+  return check_engines(points, std::vector<std::uint8_t>(points.size()), quantisation, query);
+}
+
+std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
+                            const Quantisation& quantisation, const Query& query) {
   const auto environment = positions_of(points, quantisation);
-  const Expected expected(environment, query);
-  const Oracle least = brute_force_clearances(environment, query);
-  const std::vector<NearestPoint> nearest = nearest_points(environment, query);
+  const std::vector<bool> ignored = ignored_by(query, environment, classes);
+  Expected expected(environment, query);
+  Oracle least = brute_force_clearances(environment, query);
+  for (std::size_t i = 0; i < ignored.size(); ++i) {
+    if (!ignored[i]) continue;
+    expected.at_poses[i] = HitSet::kNever;
+    if (!query.is_surface()) expected.between_poses[i] = HitSet::kNever;
+    least[i] = {};
+  }
+  const std::vector<NearestPoint> nearest = nearest_of_searched(environment, ignored, query);
   std::uint64_t colliding = 0;
   double of_radius = 0.4;
   bool first_pose = false;
@@ -191,7 +237,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation&
   for (const MemoryCloudOptions& packing :
        {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
         MemoryCloudOptions{128, 500}}) {
-    const MemoryCloud cloud(points, quantisation, packing);
+    const MemoryCloud cloud(points, classes, quantisation, packing);
     colliding = check_packed(cloud, expected, query);
     check_clearances(cloud, least, expected.at_poses,
                      with_clearance(query, of_radius * query.radius, first_pose));

@@ -56,6 +56,11 @@ void test_only(std::vector<Engine> engines);
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query);
 
+/// The same of points with classes, some of which the query ignores, by class or box. Returns the
+/// number of points that collide at a pose and are not ignored.
+std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
+                            const Quantisation& quantisation, const Query& query);
+
 /// Only between poses, in one packing. Returns every point's first pose, or HitSet::kNever.
 std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
                                                const Quantisation& quantisation, Query query);

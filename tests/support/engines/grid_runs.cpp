@@ -51,12 +51,13 @@ HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run
   if (query.model.empty()) return HitSet(cloud.entry_count(), query.first_pose);
   const MotionTree motion(query.poses, ModelGroups(query.model).box());
   const std::vector<PlannedCell> cells = plan_everything(cloud, motion);
-  const std::uint64_t page_bytes = run.cells_a_page * smallest_page_bytes(cloud, cells);
+  const bool masked = query.ignores_points();
+  const std::uint64_t page_bytes = run.cells_a_page * smallest_page_bytes(cloud, cells, masked);
   const GridScene scene(query, motion, cloud, run.options);
   return run_pages(scene, page_bytes, [&](PageEngine& engine) {
     NoProgress progress;
     StageTimes times;
-    const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page);
+    const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page, masked);
     PageEngine* const engines[] = {&engine};
     return clearway::run_pages(cloud, cells, pages, engines, query, run.threads, progress, times)
         .hits;

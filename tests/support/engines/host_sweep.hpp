@@ -67,7 +67,13 @@ class HostSweepOf final : public PageEngine {
       ProfileTask<HostWarp, Element>(job, bests_.ref(), list, shared, statistics).search(task);
     }
     const std::lock_guard lock(mutex_);
-    profile_.complete(job.page, counts.facts, facts);
+    if (counts.facts > entries_) {
+      facts.clear();
+      profile_.search(job.page, bests_.ref(), facts);
+    } else {
+      facts.resize(counts.facts);
+      profile_.complete(job.page, facts);
+    }
     results_[slot].profile = facts;
   }
 

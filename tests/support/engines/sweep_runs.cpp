@@ -96,14 +96,15 @@ SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int thre
   const MotionTree motion(query.poses, model.box(), query.between_poses);
   const SweepFilterOf<Element> filter(query, motion, model, field, cloud);
   const std::vector<PlannedCell> cells = plan(cloud, filter);
+  const bool masked = asked.ignores_points();
   const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
-                          .page_bytes = 2 * smallest_page_bytes(cloud, cells),
+                          .page_bytes = 2 * smallest_page_bytes(cloud, cells, masked),
                           .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
   const std::unique_ptr<PageEngine> engine = make(filter, cloud, layout);
   PageEngine* const engines[] = {engine.get()};
   StageTimes times;
-  return run_pages(cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), engines,
-                   query, threads, progress, times);
+  const auto pages = paginate(cloud, cells, layout.page_bytes, layout.cells, masked);
+  return run_pages(cloud, cells, pages, engines, query, threads, progress, times);
 }
 
 }  // namespace

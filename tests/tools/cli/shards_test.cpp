@@ -47,13 +47,13 @@ struct Street {
 
 TEST_CASE("the verdict of a part is never clear") {
   const Street street;
-  const Outcome part = street.run("--shard 1/2 --radius 0.1 -o part1.h5 --fail-on-collision");
+  const Outcome part = street.run("--shard 1/2 --radius 0.1 -o part1.h5");
   INFO(part.err);
   CHECK(part.exit_code == 0);
   CHECK_THAT(part.out, Contains("part 1 of 2: no point of this part is closer than 0.1 m") &&
                            Contains("clearway merge gives the answer of all parts"));
   CHECK_THAT(part.out, !Contains("clear:"));
-  CHECK_THAT(part.err, Contains("part 1/2: 0 of 2,001 environment points collide"));
+  CHECK_THAT(part.err, Contains("part 1 of 2: 0 of 2,001 environment points collide"));
   const Outcome as_json = street.run("--shard 2/2 --radius 0.1 -o part2.h5 --json");
   const json report = json::parse(as_json.out);
   CHECK(report["verdict"] == "unknown");
@@ -66,7 +66,71 @@ TEST_CASE("the verdict of a part is never clear") {
   INFO(all.err);
   CHECK(all.exit_code == 0);
   CHECK_THAT(all.out, Contains("clear: no environment point is closer than 0.1 m") &&
-                          Contains("unless the run of a part ended with warnings"));
+                          Contains(", but see the 4 warnings above"));
+}
+
+TEST_CASE("whether a point collides is asked of all parts") {
+  const Street street;
+  const Outcome part = street.run("--shard 1/2 --radius 0.1 -o part1.h5 --fail-on-collision");
+  CHECK(part.exit_code == 2);
+  CHECK_THAT(part.err, Contains("clearway merge --fail-on-collision"));
+  CHECK(!std::filesystem::exists(street.folder / "part1.h5"));
+}
+
+TEST_CASE("a merge has the warnings of its runs") {
+  const Street street;
+  const std::string query = "--radius 0.001 ";
+  const Outcome whole = street.run(query + "-o whole.h5 --json");
+  const json run = json::parse(whole.out);
+  REQUIRE(!run["warnings"].empty());
+  street.make_parts(query);
+  const Outcome merged = street.program("merge part2.h5 part1.h5 -o out.h5 --json");
+  INFO(merged.err);
+  const json merge = json::parse(merged.out);
+  REQUIRE(merge["warnings"].size() == run["warnings"].size());
+  for (std::size_t i = 0; i < run["warnings"].size(); ++i) {
+    json expected = run["warnings"][i];
+    CHECK_THAT(merged.err, Contains(expected["message"].get<std::string>() + " (in all parts)"));
+    expected["parts"] = 2;
+    CHECK(merge["warnings"][i] == expected);
+  }
+  const std::string doubt = ", but see the ";
+  CHECK_THAT(whole.err, Contains(doubt));
+  const Outcome again = street.program("merge part2.h5 part1.h5 -o out.h5 --resume");
+  CHECK_THAT(again.out, Contains("clear: ") && Contains(doubt));
+  CHECK(bytes_of(street.folder / "out.h5") == bytes_of(street.folder / "whole.h5"));
+
+  const Outcome strict = street.program("merge part1.h5 part2.h5 -o strict.h5 --strict");
+  CHECK(strict.exit_code == 3);
+  CHECK_THAT(strict.err, Contains("strict: ") && Contains("no output was written"));
+  CHECK(!std::filesystem::exists(street.folder / "strict.h5"));
+}
+
+TEST_CASE("a merge may open as many files as it has parts") {
+  const Street street;
+  std::string parts;
+  for (int number = 1; number <= 30; ++number) {
+    const std::string part = "part" + std::to_string(number) + ".h5";
+    REQUIRE(street
+                .run("--radius 0.5 --shard " + std::to_string(number) + "/30 -o " + part +
+                     " --device cpu")
+                .exit_code == 0);
+    parts += part + " ";
+  }
+  const auto merge_with = [&](const std::string& limit, const std::string& output) {
+    const std::string command =
+        "'" CLEARWAY_PROGRAM "' merge " + parts + "-o " + output + " --threads 1";
+    return run_program_at("env", street.folder,
+                          "-C " + quoted(street.folder / "") + " bash -c \"ulimit " + limit +
+                              "; exec " + command + "\"");
+  };
+  const Outcome raised = merge_with("-Sn 24", "raised.h5");
+  INFO(raised.err);
+  CHECK(raised.exit_code == 0);
+  const Outcome refused = merge_with("-n 24", "refused.h5");
+  CHECK(refused.exit_code == 4);
+  CHECK_THAT(refused.err, Contains("to merge 30 parts needs") &&
+                              Contains("this process may open 24") && Contains("ulimit -n"));
 }
 
 TEST_CASE("a merge names the unit of the scan as its runs do") {
@@ -136,7 +200,11 @@ TEST_CASE("the journal of a shard is its own") {
   street.make_parts("--radius 0.5");
   const Outcome other = street.run("--radius 0.5 --shard 2/2 -o part1.h5 --resume");
   CHECK(other.exit_code == 2);
-  CHECK_THAT(other.err, Contains("part1.h5: exists already"));
+  CHECK_THAT(other.err, Contains("part1.h5: is part 1 of 2, and part 2 of 2 is asked for"));
+  const Outcome whole = street.run("--radius 0.5 -o part1.h5 --resume");
+  CHECK(whole.exit_code == 2);
+  CHECK_THAT(whole.err, Contains("part1.h5: is part 1 of 2, and the whole result is asked for") &&
+                            Contains("--shard") && Contains("--force"));
   const Outcome missing = street.program("merge part1.h5 nothing.h5 -o out.h5");
   CHECK(missing.exit_code > 2);
   CHECK_THAT(missing.err, Contains("nothing.h5"));

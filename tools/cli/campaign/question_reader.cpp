@@ -11,9 +11,11 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
 #include "io/formats/length_unit.hpp"
 #include "io/store/store_reader.hpp"
+#include "io/system/xxh64.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 
@@ -99,6 +101,11 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   options.trajectory_options.default_crs = store.header.crs_wkt;
   ResultHeader header = store.header;
   static_cast<QueryParameters&>(header) = options.query;
+  sort_ignored(header);
+  if (!header.ignore_classes.empty() && header.classes_hash == 0) {
+    throw InputError(file_.string() + ": query.ignore_classes: the points of " +
+                     run.environment.file.string() + " have no classes");
+  }
   const ReadModel& points = model(run, options);
   header.model_points = points.count;
   header.model_triangles = points.triangles;
@@ -109,7 +116,7 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   const std::uint32_t shards = named(run.environment.key, [&] {
     return estimate_.shards(options, points.box, points.count, poses.poses);
   });
-  return {campaign::question_of(header), store.unit, shards};
+  return {campaign::question_of(header), store.unit, shards, store.fingerprint};
 }
 
 void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
@@ -185,8 +192,10 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
     facts.header.environment_points = metadata.input_points;
     facts.header.environment_hash = metadata.points_hash;
     facts.header.crs_wkt = metadata.crs_wkt;
+    if (metadata.classes) facts.header.classes_hash = metadata.classes->hash;
     facts.metres = metres_of_unit(store.length_unit());
     facts.unit = short_unit(store.length_unit());
+    facts.fingerprint = hash_text(store.reader().fingerprint());
   });
   return facts;
 }

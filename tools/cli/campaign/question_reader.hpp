@@ -28,7 +28,7 @@ class QuestionReader {
   struct Environment {
     ResultHeader header;  ///< what a store says in it
     std::optional<double> metres;
-    std::string unit;
+    std::string unit, fingerprint;
   };
   struct ReadModel {
     std::uint64_t count = 0, triangles = 0, hash = 0;

@@ -85,13 +85,13 @@ std::deque<const campaign::Task*>::iterator TaskQueue::next_task() {
   });
 }
 
-/// Of a merge.
+/// Of a merge. To ask for it too early is wrong usage: to try again does not help by itself.
 void TaskQueue::check_shards(const campaign::Task& task) const {
   for (std::uint32_t number = 1; number <= task.shards; ++number) {
     const campaign::Task shard = campaign::shard_of(task, number);
     const auto state = campaign::read_state(campaign_ / shard.folder());
     if (campaign::is_done(shard, campaign_, state)) continue;
-    throw ResourceError(task.name() + ": waits for " + shard.name() + ", which is not done");
+    throw UsageError(task.name() + ": waits for " + shard.name() + ", which is not done");
   }
 }
 
@@ -99,16 +99,20 @@ void TaskQueue::begin(const campaign::Task& task) {
   try {
     const auto folder = campaign_ / task.folder();
     if (campaign::is_done(task, campaign_, campaign::read_state(folder))) return end(task);
-    check_shards(task);
+    // A run that has its result needs no parts.
+    const bool merged = task.shards > 0 && campaign::has_result(task, campaign_);
+    if (!merged) check_shards(task);
     const auto work = working_.emplace(working_.end(), TaskFolder(task, campaign_));
     try {
-      if (!work->folder.is_done()) return start_command(*work, 0);
+      if (!work->folder.is_done()) return start_command(*work, merged ? 1 : 0);
       end(task);
       working_.erase(work);
     } catch (const ResourceError&) {
       working_.erase(work);
       throw;
     }
+  } catch (const UsageError& error) {
+    fail(task, kWrongUsage, error.what());
   } catch (const InputError& error) {
     fail(task, kBadInput, error.what());
   } catch (const ResourceError& error) {

@@ -100,6 +100,9 @@ std::string advice_on(const Error& error) {
       return "; take --model-as points";
     case Remedy::kMerge:
       return "; clearway merge makes the result of all parts";
+    case Remedy::kOtherPart:
+      return "; give --shard as its run did, or another output. --force in the place of --resume "
+             "overwrites it";
   }
   return "";
 }

@@ -86,8 +86,11 @@ std::optional<ParsedLength> parse(std::string_view text) {
   return std::nullopt;
 }
 
-std::array<ParsedLength, 3> parse_three(const std::string& option, const std::string& text) {
-  std::array<ParsedLength, 3> out{};
+/// expected: for the error.
+template <std::size_t kCount>
+std::array<ParsedLength, kCount> parse_lengths(const std::string& option, const std::string& text,
+                                               const char* expected) {
+  std::array<ParsedLength, kCount> out{};
   std::vector<std::string_view> fields;
   split_fields(text, ',', fields);
   bool good = fields.size() == out.size();
@@ -97,9 +100,7 @@ std::array<ParsedLength, 3> parse_three(const std::string& option, const std::st
     if (good) out[k] = *length;
   }
   if (good) return out;
-  throw CLI::ValidationError(option, text +
-                                         ": expected three numbers of metres, for example "
-                                         "1.2,0,1.5, or with units, for example 120cm,0,1.5m");
+  throw CLI::ValidationError(option, text + ": expected " + expected);
 }
 
 /// Metres of the unit that well-known text names; 1 where it names none.
@@ -189,11 +190,30 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, Vec3
       .add_option_function<std::string>(
           name,
           [this, &lengths, name](const std::string& text) {
-            const auto parsed = parse_three(name, text);
+            const auto parsed = parse_lengths<3>(
+                name, text,
+                "three numbers of metres, for example 1.2,0,1.5, or with units, for example "
+                "120cm,0,1.5m");
             for (int k = 0; k < 3; ++k) set(lengths[k], parsed[static_cast<std::size_t>(k)]);
           },
           description)
       ->type_name("X,Y,Z");
+}
+
+CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
+                                std::optional<std::array<double, 2>>& lengths,
+                                const std::string& description) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [this, &lengths, name](const std::string& text) {
+            const auto parsed = parse_lengths<2>(
+                name, text, "two numbers of metres, for example 10,-10, or with units");
+            lengths.emplace();
+            for (std::size_t k = 0; k < 2; ++k) set((*lengths)[k], parsed[k]);
+          },
+          description)
+      ->type_name("A,B");
 }
 
 void LengthOptions::set(double& length, const ParsedLength& parsed) {

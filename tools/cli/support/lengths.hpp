@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -56,6 +57,10 @@ class LengthOptions {
   /// The same for three lengths X,Y,Z, which may be 0 or negative.
   CLI::Option* add(CLI::App& command, const std::string& name, Vec3& lengths,
                    const std::string& description);
+
+  /// The same for two lengths A,B, which may be 0 or negative and need not be given.
+  CLI::Option* add(CLI::App& command, const std::string& name,
+                   std::optional<std::array<double, 2>>& lengths, const std::string& description);
 
   /// Turns those that were given with a unit into units of `metres` metres.
   void convert(double metres) const;

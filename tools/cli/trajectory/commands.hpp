@@ -9,6 +9,7 @@ namespace clearway::tool {
 
 /// resample and thin.
 void add_trajectory_changes(CLI::App& trajectory);
+void add_trajectory_follow(CLI::App& trajectory);
 void add_trajectory_info(CLI::App& trajectory);
 
 }  // namespace clearway::tool

@@ -7,10 +7,11 @@ namespace clearway::tool {
 
 void add_trajectory(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
-      "trajectory", "Say what is in a trajectory, make it denser or sparser");
+      "trajectory", "Say what is in a trajectory, make it denser or sparser, follow it");
   command->require_subcommand(1);
   add_trajectory_info(*command);
   add_trajectory_changes(*command);
+  add_trajectory_follow(*command);
 }
 
 }  // namespace clearway::tool

@@ -79,15 +79,7 @@ void HostProfileOf<Element>::resolve(const PageRef& page, double limit, ProfileF
 }
 
 template <typename Element>
-void HostProfileOf<Element>::complete(const PageRef& page, std::uint32_t found,
-                                      std::vector<ProfileFact>& facts) {
-  if (found > facts.size()) {
-    facts.clear();
-    ProfileBestValues bests(sweep_);
-    search(page, bests.ref(), facts);
-    return;
-  }
-  facts.resize(found);
+void HostProfileOf<Element>::complete(const PageRef& page, std::vector<ProfileFact>& facts) {
   keep_least(page, false, facts);
   const double limit = rounded_product(sweep_.profile, sweep_.profile);
   for (ProfileFact& fact : facts) {

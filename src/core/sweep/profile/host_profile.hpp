@@ -63,10 +63,9 @@ class HostProfileOf {
   /// Finds the point with the smallest source among those of the fact's cell with the same d2.
   void resolve(const PageRef& page, double limit, ProfileFact& fact);
 
-  /// What a device found in a page: resolves ties, and searches the page where the device's list
-  /// of `facts` was too short for the `found` that it asked room for. A point that is far from the
-  /// best may be replaced by none.
-  void complete(const PageRef& page, std::uint32_t found, std::vector<ProfileFact>& facts);
+  /// Of what a device listed of a page keeps the best and resolves ties. A point that is far from
+  /// the best may be replaced by none.
+  void complete(const PageRef& page, std::vector<ProfileFact>& facts);
 
   SweepStatistics take_statistics();
 

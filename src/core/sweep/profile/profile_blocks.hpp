@@ -45,6 +45,8 @@ class ProfileBlocks {
   /// From here on those of a part of a cell, all open at level 0. Whether there are any.
   CLEARWAY_HD bool enter(std::uint32_t cell, std::uint32_t part) {
     cell_ = &page_.cell(cell);
+    index_ = cell;
+    first_block_ = part * kPartBlocks;
     first_ = page_.blocks(cell) + std::uint64_t{part} * kPartBlocks;
     const auto blocks = static_cast<std::uint32_t>(divide_up(cell_->count, kBlockPoints));
     if (part * kPartBlocks >= blocks) return false;
@@ -53,7 +55,7 @@ class ProfileBlocks {
     Warp::each([&](std::uint32_t lane) {
       const std::uint32_t first = lane * kWarpLanes;
       const std::uint32_t of_word = first < count_ ? count_ - first : 0;
-      shared_.open[0][lane] = of_word >= kWarpLanes ? ~0U : (1U << of_word) - 1;
+      shared_.open[0][lane] = with_points(first, of_word);
       if (of_word > 0) {
         shared_.words[lane] = sphere_of(first, of_word < kWarpLanes ? of_word : kWarpLanes);
       }
@@ -113,6 +115,17 @@ class ProfileBlocks {
   }
 
  private:
+  /// Of the `count` blocks from `first` on those that have points to search, as bits. The box of
+  /// another one says nothing of how near a point is.
+  CLEARWAY_HD std::uint32_t with_points(std::uint32_t first, std::uint32_t count) const {
+    if (!page_.shape.masked) return count >= kWarpLanes ? ~0U : (1U << count) - 1;
+    std::uint32_t blocks = 0;
+    for (std::uint32_t i = 0; i < count && i < kWarpLanes; ++i) {
+      if (page_.searched(index_, first_block_ + first + i) != 0) blocks |= 1U << i;
+    }
+    return blocks;
+  }
+
   CLEARWAY_HD Sphere sphere_of(std::uint32_t first, std::uint32_t count) const {
     QuantumBox box = decode_block_box(cell_->box, first_[first]);
     for (std::uint32_t i = first + 1; i < first + count; ++i) {
@@ -206,6 +219,8 @@ class ProfileBlocks {
 
   const PageCell* cell_ = nullptr;
   const BlockBox* first_ = nullptr;
+  std::uint32_t index_ = 0;        ///< of the cell, in the page
+  std::uint32_t first_block_ = 0;  ///< of the part, in the cell
   std::uint32_t count_ = 0;
   double delta_ = 0;
   std::uint32_t pose_ = 0;

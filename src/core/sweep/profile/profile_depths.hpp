@@ -32,10 +32,11 @@ class ProfileDepths {
         ties_(ties),
         statistics_(statistics) {}
 
-  /// As ProfileSearch was entered. first_point: of the part, in its cell; first_slot: in the page.
-  CLEARWAY_HD void enter(const PageCell& cell, std::uint32_t first_point,
-                         std::uint32_t first_slot) {
-    cell_ = &cell;
+  /// As ProfileSearch was entered. cell: in the page. first_point: of the part, in its cell;
+  /// first_slot: in the page.
+  CLEARWAY_HD void enter(std::uint32_t cell, std::uint32_t first_point, std::uint32_t first_slot) {
+    cell_ = &page_.cell(cell);
+    index_ = cell;
     first_point_ = first_point;
     first_slot_ = first_slot;
   }
@@ -127,10 +128,8 @@ class ProfileDepths {
     Warp::each([&](std::uint32_t lane) {
       least[lane] = kInfinity;
       const std::uint32_t index = first_point_ + begin + lane;
-      if (index >= cell_->count) return;
-      const Vec3 e =
-          position(quantisation_, page_.value(cell_->chunks[0], index),
-                   page_.value(cell_->chunks[1], index), page_.value(cell_->chunks[2], index));
+      if (!page_.is_searched(index_, index)) return;
+      const Vec3 e = page_.position(quantisation_, *cell_, index);
       ++statistics_[lane].point_tests;
       if (!may_be_inside(pose, e)) return;
       const double squared = squared_depth(sweep_, e, pose, statistics_[lane]);
@@ -164,6 +163,7 @@ class ProfileDepths {
   PerLane<SweepStatistics>& statistics_;
 
   const PageCell* cell_ = nullptr;
+  std::uint32_t index_ = 0;  ///< of it, in the page
   std::uint32_t first_point_ = 0, first_slot_ = 0;
   double bound_ = 0;                       ///< v above it do not matter at this pose
   double found_ = kInfinity;               ///< the least v found at the last pose

@@ -52,12 +52,13 @@ class ProfileSearch {
   /// From here on a part of a cell of the page is searched. Whether it has points.
   CLEARWAY_HD bool enter(std::uint32_t cell, std::uint32_t part) {
     cell_ = &page_.cell(cell);
+    index_ = cell;
     first_point_ = part * Blocks::kPartBlocks * kBlockPoints;
     first_slot_ = cell * page_.shape.blocks_per_cell * kBlockPoints + first_point_;
     has_guess_ = was_found_ = false;
     last_pose_ = kSweepNever;
     ties_.enter_cell(cell, *cell_);
-    if constexpr (kIsSolid<Element>) depths_.enter(*cell_, first_point_, first_slot_);
+    if constexpr (kIsSolid<Element>) depths_.enter(cell, first_point_, first_slot_);
     return blocks_.enter(cell, part);
   }
 
@@ -186,11 +187,9 @@ class ProfileSearch {
     std::uint32_t open = Warp::ballot([&](std::uint32_t lane) {
       least[lane] = kInfinity;
       const std::uint32_t index = first_point_ + begin + lane;
-      if (index >= cell_->count) return false;
+      if (!page_.is_searched(index_, index)) return false;
       ++statistics_[lane].point_tests;
-      e[lane] =
-          position(quantisation_, page_.value(cell_->chunks[0], index),
-                   page_.value(cell_->chunks[1], index), page_.value(cell_->chunks[2], index));
+      e[lane] = page_.position(quantisation_, *cell_, index);
       bounds[lane] = sweep_.field.bounds(sweep_.motion.inverse_poses[pose].apply(e[lane]));
       if (!blocks_.matters(0, bounds[lane].squared_lower)) return false;
       if (bounds[lane].near != ModelFieldRef::kNone) {
@@ -286,6 +285,7 @@ class ProfileSearch {
   Blocks blocks_;
 
   const PageCell* cell_ = nullptr;
+  std::uint32_t index_ = 0;                ///< of it, in the page
   std::uint32_t first_point_ = 0;          ///< of the part, in its cell
   std::uint32_t first_slot_ = 0;           ///< likewise, in the page
   double bound_ = 0;                       ///< d2 above it do not matter at this pose

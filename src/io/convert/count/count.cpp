@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <array>
 #include <map>
 
 #include "clearway/error.hpp"
@@ -20,8 +21,33 @@ constexpr unsigned kSourceShift = 20;          // coinciding points: ranges of 2
 /// What is made of a batch where nothing is.
 struct Nothing {};
 
-std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice, PointsHash& hash,
-                            InputSurvey& survey, std::uint64_t& points, Progress& progress) {
+/// How many points each class has.
+class ClassCounts {
+ public:
+  void add(const QuantaBatch& batch) {
+    for (const std::uint8_t value : batch.classes) ++points_[value];
+    if (batch.classes.empty()) points_[0] += batch.quanta.size();
+  }
+  void merge(const ClassCounts& other) {
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] += other.points_[i];
+  }
+  const std::array<std::uint64_t, 256>& points() const { return points_; }
+
+ private:
+  std::array<std::uint64_t, 256> points_{};
+};
+
+/// What the counting pass makes beside the bins.
+struct PassSums {
+  PointsHash points_hash;
+  ClassesHash classes_hash = {};
+  ClassCounts classes = {};
+  std::uint64_t points = 0;
+};
+
+std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice, PassSums& sums,
+                            InputSurvey& survey, Progress& progress) {
+  tbb::enumerable_thread_specific<ClassCounts> classes;
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
   for_each_batch<Nothing>(
@@ -31,15 +57,18 @@ std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice,
         survey.boxes.add(batch);
         BinCounter& counter = counters.local();
         for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
+        classes.local().add(batch);
         progress.advance(batch.quanta.size());
         return Nothing();
       },
       [&](const QuantaBatch& batch, Nothing&) {
-        hash.add(batch);
+        sums.points_hash.add(batch);
+        sums.classes_hash.add(batch);
         survey.places.add(batch);
-        points += batch.quanta.size();
+        sums.points += batch.quanta.size();
       },
       [](Nothing&) {});
+  for (const ClassCounts& counts : classes) sums.classes.merge(counts);
   BinCounter all(kFinestShift, kMostBins);
   for (const BinCounter& counter : counters) all.merge(counter);
   if (lattice.regular() && all.shift() > lattice.cube_bits()) {
@@ -133,13 +162,17 @@ CountedEnvironment count_environment(EnvironmentSource& environment, const Latti
                                      InputSurvey& survey, FileHashes& files, int threads,
                                      StageClocks& clocks, Progress& progress) {
   CountedEnvironment counted;
-  PointsHash hash(environment.quantisation());
+  PassSums sums{PointsHash(environment.quantisation())};
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  counted.bins = count_bins({environment, threads, &files, clocks, progress}, lattice, hash, survey,
-                            counted.points, progress);
+  counted.bins =
+      count_bins({environment, threads, &files, clocks, progress}, lattice, sums, survey, progress);
+  counted.points = sums.points;
   counted.input_points = environment.input_points();
-  counted.points_hash = hash.digest(counted.input_points);
+  counted.points_hash = sums.points_hash.digest(counted.input_points);
+  if (sums.classes.points()[0] < counted.points) {
+    counted.classes = {sums.classes_hash.digest(), sums.classes.points()};
+  }
   progress.end();
   for (;;) {
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);

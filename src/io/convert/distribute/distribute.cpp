@@ -40,11 +40,9 @@ class Grouper {
     }
     out.points.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-      const auto& q = batch.quanta[i];
-      const std::uint64_t source = batch.source(i);
-      out.points[ends[unit[i]]++] = {
-          {q[0], q[1], q[2]},
-          {static_cast<std::uint32_t>(source), static_cast<std::uint32_t>(source >> 32)}};
+      const std::uint8_t point_class = batch.classes.empty() ? std::uint8_t{0} : batch.classes[i];
+      out.points[ends[unit[i]]++] =
+          DistributedPoint::of(batch.quanta[i], batch.source(i), point_class);
     }
     return out;
   }
@@ -87,11 +85,13 @@ class Places {
 
 }  // namespace
 
-void distribute(EnvironmentSource& environment, std::uint64_t points_hash, const Lattice& lattice,
-                const SplitTree& tree, PlaceCounter& places, Distribution& distribution,
-                int threads, StageClocks& clocks, Progress& progress) {
+void distribute(EnvironmentSource& environment, const CountedHashes& counted,
+                const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
+                Distribution& distribution, int threads, StageClocks& clocks, Progress& progress) {
   const Grouper group(lattice, tree);
   PointsHash hash(environment.quantisation());
+  ClassesHash classes;
+  bool has_classes = false;
   Places order(environment, distribution);
   environment.rewind();
   for_each_batch<GroupedBatch>(
@@ -103,6 +103,8 @@ void distribute(EnvironmentSource& environment, std::uint64_t points_hash, const
       },
       [&](const QuantaBatch& batch, GroupedBatch& grouped) {
         hash.add(batch);
+        classes.add(batch);
+        has_classes |= !batch.classes.empty();
         order.assign(grouped);
       },
       [&](const GroupedBatch& grouped) {
@@ -113,7 +115,11 @@ void distribute(EnvironmentSource& environment, std::uint64_t points_hash, const
         progress.advance(grouped.points.size());
       });
   order.finish();
-  if (hash.digest(environment.input_points()) != points_hash) refuse_change(environment);
+  const bool same_classes =
+      has_classes ? classes.digest() == counted.classes : !counted.classes.has_value();
+  if (hash.digest(environment.input_points()) != counted.points || !same_classes) {
+    refuse_change(environment);
+  }
 }
 
 }  // namespace clearway

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cstdint>
-
 #include "core/util/progress.hpp"
 #include "io/convert/checks/same_place.hpp"
+#include "io/convert/count/count.hpp"
 #include "io/convert/distribute/distribution.hpp"
 #include "io/convert/inputs/environment_source.hpp"
 #include "io/convert/split_tree.hpp"
@@ -12,10 +11,10 @@
 namespace clearway {
 
 /// The distribution pass: puts every point to its unit's, in source order. Throws InputError when
-/// the input is not what was counted, ResourceError when the disk is full. points_hash: of what was
-/// counted. places: counts the points it was made for.
-void distribute(EnvironmentSource& environment, std::uint64_t points_hash, const Lattice& lattice,
-                const SplitTree& tree, PlaceCounter& places, Distribution& distribution,
-                int threads, StageClocks& clocks, Progress& progress);
+/// the input is not what was counted, ResourceError when the disk is full. places: counts the
+/// points it was made for.
+void distribute(EnvironmentSource& environment, const CountedHashes& counted,
+                const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
+                Distribution& distribution, int threads, StageClocks& clocks, Progress& progress);
 
 }  // namespace clearway

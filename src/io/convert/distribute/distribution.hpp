@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -13,12 +14,22 @@
 
 namespace clearway {
 
-/// A point on its way to its unit, 20 bytes.
+/// A point on its way to its unit, 20 bytes. No input has as many as 2^56 points: the highest byte
+/// of the source index is the point's class.
 struct DistributedPoint {
   std::int32_t q[3];
-  std::uint32_t source[2];  ///< low and high half of the source index
+  std::uint32_t source[2];  ///< low and high half of the source index, with the class
 
-  std::uint64_t source_index() const { return source[0] | std::uint64_t{source[1]} << 32; }
+  static DistributedPoint of(const std::array<std::int32_t, 3>& q, std::uint64_t source,
+                             std::uint8_t point_class) {
+    const auto high = static_cast<std::uint32_t>(source >> 32);
+    return {{q[0], q[1], q[2]},
+            {static_cast<std::uint32_t>(source), high | std::uint32_t{point_class} << 24}};
+  }
+  std::uint64_t source_index() const {
+    return source[0] | std::uint64_t{source[1] & 0x00FFFFFFU} << 32;
+  }
+  std::uint8_t point_class() const { return static_cast<std::uint8_t>(source[1] >> 24); }
 };
 static_assert(sizeof(DistributedPoint) == 20);
 

@@ -19,6 +19,7 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   batch.records = records.points.size();
   batch.quanta.clear();
   batch.offsets.clear();
+  batch.classes.clear();
   batch.non_finite_points = batch.absent_points = 0;
   batch.largest_change = 0;
   if (shifts_.empty() || !infos_[records.file].quantisation) {
@@ -26,7 +27,18 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   } else {
     append_kept(records, batch);
   }
+  keep_classes(records, batch);
   records.points = {};
+}
+
+/// Of the points that are left.
+void EnvironmentSource::keep_classes(RecordBatch& records, QuantaBatch& out) {
+  std::vector<std::uint8_t>& classes = records.points.classes;
+  const auto is_set = [](std::uint8_t value) { return value != 0; };
+  if (std::none_of(classes.begin(), classes.end(), is_set)) return;
+  for (std::size_t i = 0; i < out.offsets.size(); ++i) classes[i] = classes[out.offsets[i]];
+  classes.resize(out.quanta.size());
+  out.classes = std::move(classes);
 }
 
 void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) const {

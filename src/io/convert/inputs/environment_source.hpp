@@ -95,6 +95,7 @@ class EnvironmentSource {
   void read_piece(RecordBatch& records, PieceBytes* bytes) const;
   void append_kept(RecordBatch& records, QuantaBatch& out) const;
   void append_rounded(const RecordBatch& records, QuantaBatch& out) const;
+  static void keep_classes(RecordBatch& records, QuantaBatch& out);
   [[noreturn]] void refuse_beyond_quanta(std::size_t file) const;
 
   EnvironmentOptions options_;

@@ -11,7 +11,10 @@ namespace {
 class SpooledReader final : public PointReader {
  public:
   SpooledReader(std::unique_ptr<PointReader> stream, const std::filesystem::path& folder)
-      : info_(stream->info()), stream_(std::move(stream)), file_(File::create_temporary(folder)) {}
+      : info_(stream->info()),
+        stream_(std::move(stream)),
+        file_(File::create_temporary(folder)),
+        classes_(File::create_temporary(folder)) {}
 
   const CloudInfo& info() const override { return info_; }
 
@@ -33,6 +36,7 @@ class SpooledReader final : public PointReader {
       return false;
     }
     file_.write(std::as_bytes(std::span(batch.quanta)));
+    classes_.write(std::as_bytes(std::span(batch.classes)));
     spooled_ += batch.quanta.size();
     return true;
   }
@@ -41,6 +45,8 @@ class SpooledReader final : public PointReader {
     batch.positions.clear();
     batch.quanta.resize(std::min<std::uint64_t>(kBatchPoints, spooled_ - next_));
     file_.read_at(next_ * sizeof(Quanta), std::as_writable_bytes(std::span(batch.quanta)));
+    batch.classes.resize(batch.quanta.size());
+    classes_.read_at(next_, std::as_writable_bytes(std::span(batch.classes)));
     next_ += batch.quanta.size();
     return !batch.quanta.empty();
   }
@@ -48,6 +54,7 @@ class SpooledReader final : public PointReader {
   CloudInfo info_;
   std::unique_ptr<PointReader> stream_;  // gone once read to its end
   File file_;
+  File classes_;  ///< a byte a point: streams are LAS, which has them
   std::uint64_t spooled_ = 0;
   std::uint64_t next_ = 0;
 };

@@ -8,7 +8,7 @@
 namespace clearway {
 
 /// Makes a stream of integer points (LAS from standard input) readable more than once: the first
-/// reading spools 12 bytes a point into a temporary file in `folder`, later ones read that.
+/// reading spools 13 bytes a point into temporary files in `folder`, later ones read these.
 std::unique_ptr<PointReader> spool(std::unique_ptr<PointReader> stream,
                                    const std::filesystem::path& folder);
 

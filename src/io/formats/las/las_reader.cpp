@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/cloud/kd_order.hpp"
+#include "io/formats/las/las_class.hpp"
 #include "io/formats/las/las_header.hpp"
 #include "io/formats/las/las_records.hpp"
 #include "io/formats/laz/laz_reader.hpp"
@@ -41,13 +42,14 @@ class LasReader final : public PointReader {
   bool read(PointBatch& batch) override {
     batch.positions.clear();
     batch.quanta.clear();
+    batch.classes.clear();
     const std::size_t most = InputBuffer::kCapacity / header_.record_bytes;
     while (batch.quanta.size() < kBatchPoints) {
       const auto wanted =
           std::min<std::uint64_t>({most, kBatchPoints - batch.quanta.size(), points_ - next_});
       const auto bytes = wanted > 0 ? take_records(wanted) : take_more_records();
       if (bytes.empty()) break;
-      append(bytes, batch.quanta);
+      append(bytes, batch);
       next_ += wanted > 0 ? wanted : 1;
     }
     if (batch.quanta.empty()) finish();
@@ -69,7 +71,8 @@ class LasReader final : public PointReader {
     read.bytes = std::make_unique_for_overwrite<std::byte[]>(read.count);
     input_.read_at(read.first, read.span());
     batch.quanta.clear();
-    append(read.span(), batch.quanta);
+    batch.classes.clear();
+    append(read.span(), batch);
     if (bytes) *bytes = std::move(read);
   }
 
@@ -122,15 +125,20 @@ class LasReader final : public PointReader {
     return bytes;
   }
 
-  void append(std::span<const std::byte> bytes,
-              std::vector<std::array<std::int32_t, 3>>& out) const {
+  void append(std::span<const std::byte> bytes, PointBatch& out) const {
     const std::size_t stride = header_.record_bytes;
     const std::size_t records = bytes.size() / stride;
-    out.resize(out.size() + records);
-    auto* point = &out[out.size() - records];
+    out.quanta.resize(out.quanta.size() + records);
+    out.classes.resize(out.quanta.size());
+    auto* point = &out.quanta[out.quanta.size() - records];
+    auto* of_point = &out.classes[out.classes.size() - records];
+    const LasClassField field = las_class_field(header_.point_format);
     const std::byte* record = bytes.data();
     const std::byte* const end = record + bytes.size();
-    for (; record != end; record += stride) std::memcpy(point++, record, sizeof *point);
+    for (; record != end; record += stride) {
+      std::memcpy(point++, record, sizeof *point);
+      *of_point++ = field.of(record);
+    }
   }
 
   void finish() {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 
 #include "io/formats/input_buffer.hpp"
 #include "io/formats/laz/coding/byte_window.hpp"
@@ -12,6 +12,18 @@
 namespace clearway::laz {
 
 using Quanta = std::array<std::int32_t, 3>;
+
+/// Room for points and, in the same order, their classes; each has `count`.
+struct PointRoom {
+  Quanta* quanta = nullptr;
+  std::uint8_t* classes = nullptr;
+  std::size_t count = 0;
+
+  PointRoom first(std::size_t points) const { return {quanta, classes, points}; }
+  PointRoom behind(std::size_t points) const {
+    return {quanta + points, classes + points, count - points};
+  }
+};
 
 /// Some points, compressed on their own.
 struct Chunk {
@@ -29,7 +41,7 @@ class ChunkDecoder {
   /// Before the first point of a chunk of one point or more. The input must outlive its use.
   virtual void begin(const InputBuffer& input, const Chunk& chunk) = 0;
   /// The next points of the chunk; no more than it has left.
-  virtual void decode(std::span<Quanta> points) = 0;
+  virtual void decode(PointRoom points) = 0;
   /// Behind its last point: whether the chunk ends where it should. Returns where it ends.
   virtual std::uint64_t finish() = 0;
 };

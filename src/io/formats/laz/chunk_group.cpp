@@ -29,8 +29,7 @@ bool ChunkGroups::takes(const Chunk& chunk) const {
   return !one_at_a_time_ && chunk.points <= kMostPointsOfChunk;
 }
 
-void ChunkGroups::decode_alone(const InputBuffer& input, const Chunk& chunk,
-                               std::span<Quanta> points) {
+void ChunkGroups::decode_alone(const InputBuffer& input, const Chunk& chunk, PointRoom points) {
   ChunkDecoder& decoder = *decoders_.local();
   decoder.begin(input, chunk);
   decoder.decode(points);
@@ -47,10 +46,14 @@ std::size_t ChunkGroups::decode(const InputBuffer& input, std::span<const Chunk>
   }
   const std::size_t taken = begins.size() - 1;
   points_.resize(begins.back());
+  classes_.resize(begins.back());
   std::vector<std::optional<DamagedChunk>> damages(taken);
   const auto decode_one = [&](std::size_t i) {
     try {
-      decode_alone(input, chunks[i], std::span(points_).subspan(begins[i], chunks[i].points));
+      decode_alone(
+          input, chunks[i],
+          PointRoom{points_.data(), classes_.data(), points_.size()}.behind(begins[i]).first(
+              chunks[i].points));
     } catch (const DamagedChunk& damage) {
       damages[i] = damage;
     }

@@ -25,12 +25,14 @@ class ChunkGroups {
   std::size_t decode(const InputBuffer& input, std::span<const Chunk> chunks, std::size_t first,
                      std::size_t count);
   /// Decodes one chunk that takes() accepts, several threads at once. Throws DamagedChunk.
-  void decode_alone(const InputBuffer& input, const Chunk& chunk, std::span<Quanta> points);
+  void decode_alone(const InputBuffer& input, const Chunk& chunk, PointRoom points);
   std::span<const Quanta> points() const { return points_; }
+  std::span<const std::uint8_t> classes() const { return classes_; }  ///< of the points
 
  private:
   bool one_at_a_time_;
   std::vector<Quanta> points_;
+  std::vector<std::uint8_t> classes_;
   tbb::enumerable_thread_specific<std::unique_ptr<ChunkDecoder>> decoders_;
 };
 

@@ -1,6 +1,9 @@
 // Point formats 6 to 10: the attributes of a chunk's points lie in layers of their own, so only
-// those of the coordinates are read.
+// those of the coordinates and of the class are read.
+#include <array>
+
 #include "io/formats/byte_load.hpp"
+#include "io/formats/las/las_class.hpp"
 #include "io/formats/laz/chunk_decoder.hpp"
 #include "io/formats/laz/items/point14.hpp"
 
@@ -36,12 +39,13 @@ class LayeredDecoder final : public ChunkDecoder {
     // The window's bytes move with the next take().
     std::array<std::byte, kPointBytes> point;
     std::copy_n(record.begin(), kPointBytes, point.begin());
+    class_ = las_class_field(6).of(point.data());
     const auto points = take_number(cursor);
     if (points != chunk.points) {
       throw DamagedChunk{"holds " + std::to_string(points) + " points by its own count, but " +
                          std::to_string(chunk.points) + " by the header and the chunk table"};
     }
-    const std::array<std::uint64_t, 2> sizes = take_sizes(cursor);
+    const std::array<std::uint64_t, 3> sizes = take_sizes(cursor);
     const std::uint64_t layers = plane_.window.position(cursor);
     end_ = layers + layers_bytes_;
     if (end_ > chunk.end) {
@@ -55,25 +59,27 @@ class LayeredDecoder final : public ChunkDecoder {
     point_.begin(point.data(), sizes[1] > 0);
     plane_.open(input, layers, sizes[0]);
     heights_.open(input, layers + sizes[0], sizes[1]);
+    classes_.open(input, layers + sizes[0] + sizes[1], sizes[2]);
     has_heights_ = sizes[1] > 0;
+    has_classes_ = sizes[2] > 0;
   }
 
-  void decode(std::span<Quanta> points) override {
-    if (is_first_ && !points.empty()) {
-      points.front() = first_;
-      points = points.subspan(1);
+  void decode(PointRoom points) override {
+    if (is_first_ && points.count > 0) {
+      points.quanta[0] = first_;
+      points.classes[0] = class_;
+      points = points.behind(1);
       is_first_ = false;
     }
-    if (points.empty()) return;
-    ArithmeticDecoder plane = plane_.decoder, heights = heights_.decoder;
-    for (Quanta& point : points) {
-      plane.move_to(plane_.window.ahead(plane.cursor()));
-      if (has_heights_) heights.move_to(heights_.window.ahead(heights.cursor()));
-      point = point_.next(plane, heights);
+    if (points.count == 0) return;
+    if (has_classes_) {
+      run<true>(points);
+    } else {
+      run<false>(points);
+      std::fill_n(points.classes, points.count, class_);
     }
-    plane_.decoder = plane;
-    heights_.decoder = heights;
-    if (plane.damaged() || (has_heights_ && heights.damaged())) {
+    if (plane_.decoder.damaged() || (has_heights_ && heights_.decoder.damaged()) ||
+        (has_classes_ && classes_.decoder.damaged())) {
       throw DamagedChunk{"holds bits that no encoder writes"};
     }
   }
@@ -82,6 +88,7 @@ class LayeredDecoder final : public ChunkDecoder {
     if (has_more_) {
       plane_.check();
       if (has_heights_) heights_.check();
+      if (has_classes_) classes_.check();
     }
     return end_;
   }
@@ -90,13 +97,31 @@ class LayeredDecoder final : public ChunkDecoder {
   static constexpr std::size_t kPointBytes = 30;
   static constexpr std::ptrdiff_t kReserve = 16;
 
+  template <bool kHasClasses>
+  void run(PointRoom points) {
+    ArithmeticDecoder plane = plane_.decoder, heights = heights_.decoder;
+    ArithmeticDecoder classes = classes_.decoder;
+    for (std::size_t i = 0; i < points.count; ++i) {
+      plane.move_to(plane_.window.ahead(plane.cursor()));
+      if (has_heights_) heights.move_to(heights_.window.ahead(heights.cursor()));
+      points.quanta[i] = point_.next(plane, heights);
+      if constexpr (kHasClasses) {
+        classes.move_to(classes_.window.ahead(classes.cursor()));
+        points.classes[i] = point_.next_class(classes);
+      }
+    }
+    plane_.decoder = plane;
+    heights_.decoder = heights;
+    classes_.decoder = classes;
+  }
+
   std::uint32_t take_number(const std::byte*& cursor) {
     return load<std::uint32_t>(plane_.window.take(cursor, 4).data());
   }
 
-  /// The sizes of the first two layers. Leaves that of all in layers_bytes_.
-  std::array<std::uint64_t, 2> take_sizes(const std::byte*& cursor) {
-    std::array<std::uint64_t, 2> sizes{};
+  /// The sizes of the first three layers. Leaves that of all in layers_bytes_.
+  std::array<std::uint64_t, 3> take_sizes(const std::byte*& cursor) {
+    std::array<std::uint64_t, 3> sizes{};
     layers_bytes_ = 0;
     for (std::uint32_t i = 0; i < scheme_.layers; ++i) {
       const std::uint32_t size = take_number(cursor);
@@ -107,12 +132,13 @@ class LayeredDecoder final : public ChunkDecoder {
   }
 
   Scheme scheme_;
-  Layer plane_, heights_;
+  Layer plane_, heights_, classes_;
   Point14 point_;
   Quanta first_{};
+  std::uint8_t class_ = 0;  ///< of the first point, and of all without the layer
   std::uint64_t layers_bytes_ = 0;
   std::uint64_t end_ = 0;
-  bool is_first_ = false, has_more_ = false, has_heights_ = false;
+  bool is_first_ = false, has_more_ = false, has_heights_ = false, has_classes_ = false;
 };
 
 }  // namespace

@@ -15,6 +15,13 @@ using laz::Chunk;
 using laz::Quanta;
 using laz::Scheme;
 
+/// The batch's points from `first` on, of which there are to be `count`.
+laz::PointRoom room_in(PointBatch& batch, std::size_t first, std::size_t count) {
+  batch.quanta.resize(first + count);
+  batch.classes.resize(first + count);
+  return {batch.quanta.data() + first, batch.classes.data() + first, count};
+}
+
 /// Of a file with a chunk table.
 class TabledReader final : public PointReader {
  public:
@@ -32,10 +39,13 @@ class TabledReader final : public PointReader {
   bool read(PointBatch& batch) override {
     batch.positions.clear();
     batch.quanta.clear();
+    batch.classes.clear();
     while (batch.quanta.size() < kBatchPoints) {
       if (!ready_.empty()) {
         const auto part = ready_.first(std::min(ready_.size(), kBatchPoints - batch.quanta.size()));
+        const auto classes = groups_.classes().last(ready_.size()).first(part.size());
         batch.quanta.insert(batch.quanta.end(), part.begin(), part.end());
+        batch.classes.insert(batch.classes.end(), classes.begin(), classes.end());
         ready_ = ready_.subspan(part.size());
       } else if (next_ == chunks_.size()) {
         break;
@@ -65,8 +75,7 @@ class TabledReader final : public PointReader {
 
   void read_piece(std::size_t piece, PointBatch& batch, PieceBytes* bytes) override {
     const std::span<const Chunk> chunks = chunks_of(piece);
-    batch.quanta.resize(points_of_piece(piece));
-    std::span<Quanta> room(batch.quanta);
+    laz::PointRoom room = room_in(batch, 0, points_of_piece(piece));
     for (const Chunk& chunk : chunks) {
       try {
         groups_.decode_alone(input_, chunk, room.first(chunk.points));
@@ -74,7 +83,7 @@ class TabledReader final : public PointReader {
         const auto index = static_cast<std::uint64_t>(&chunk - chunks_.data());
         laz::refuse_chunk(input_.name(), index, chunks_.size(), damage);
       }
-      room = room.subspan(chunk.points);
+      room = room.behind(chunk.points);
     }
     if (!bytes) return;
     bytes->first = chunks.front().begin;
@@ -119,8 +128,7 @@ class TabledReader final : public PointReader {
       }
       const std::size_t before = batch.quanta.size();
       const auto points = std::min<std::uint64_t>(kBatchPoints - before, left_);
-      batch.quanta.resize(before + points);
-      stream_->decode(std::span(batch.quanta).subspan(before));
+      stream_->decode(room_in(batch, before, points));
       left_ -= points;
       if (left_ > 0) return;
       stream_->finish();
@@ -160,10 +168,9 @@ class UntabledReader final : public PointReader {
   bool read(PointBatch& batch) override {
     batch.positions.clear();
     const auto points = std::min<std::uint64_t>(kBatchPoints, bytes_.points - read_);
-    batch.quanta.resize(points);
     try {
-      for (std::span<Quanta> room(batch.quanta); !room.empty();) {
-        room = room.subspan(read_chunk(room));
+      for (laz::PointRoom room = room_in(batch, 0, points); room.count > 0;) {
+        room = room.behind(read_chunk(room));
       }
     } catch (const laz::DamagedChunk& damage) {
       laz::refuse_chunk(input_.name(), chunk_, 0, damage);
@@ -181,7 +188,7 @@ class UntabledReader final : public PointReader {
   static constexpr std::uint64_t kPointerBytes = 8;
 
   /// Reads some points of the current chunk, or of the next one. Returns their number.
-  std::size_t read_chunk(std::span<Quanta> room) {
+  std::size_t read_chunk(laz::PointRoom room) {
     if (left_ == 0) {
       left_ = bytes_.points - read_;
       if (scheme_.chunk_points && scheme_.chunks != Scheme::Chunks::kNone) {
@@ -189,7 +196,7 @@ class UntabledReader final : public PointReader {
       }
       decoder_->begin(input_, {position_, bytes_.end, left_, false});
     }
-    const auto points = std::min<std::uint64_t>(room.size(), left_);
+    const auto points = std::min<std::uint64_t>(room.count, left_);
     decoder_->decode(room.first(points));
     read_ += points;
     left_ -= points;

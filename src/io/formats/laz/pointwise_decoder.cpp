@@ -2,6 +2,7 @@
 // to be decoded.
 #include <optional>
 
+#include "io/formats/las/las_class.hpp"
 #include "io/formats/laz/chunk_decoder.hpp"
 #include "io/formats/laz/items/gps_time11.hpp"
 #include "io/formats/laz/items/other_items.hpp"
@@ -76,6 +77,7 @@ class PointwiseDecoder final : public ChunkDecoder {
         window_.open(input, chunk.begin, chunk.end, static_cast<std::ptrdiff_t>(most_bytes_));
     const auto record = window_.take(cursor, record_bytes_);
     first_ = load<Quanta>(record.data());
+    first_class_ = las_class_field(0).of(record.data());
     point_.begin(record.data());
     others_.begin();
     is_first_ = true;
@@ -84,10 +86,11 @@ class PointwiseDecoder final : public ChunkDecoder {
     decoder_ = ArithmeticDecoder(window_.ahead(cursor));
   }
 
-  void decode(std::span<Quanta> points) override {
-    if (is_first_ && !points.empty()) {
-      points.front() = first_;
-      points = points.subspan(1);
+  void decode(PointRoom points) override {
+    if (is_first_ && points.count > 0) {
+      points.quanta[0] = first_;
+      points.classes[0] = first_class_;
+      points = points.behind(1);
       is_first_ = false;
     }
     if (has_others_) {
@@ -110,11 +113,12 @@ class PointwiseDecoder final : public ChunkDecoder {
   static constexpr std::size_t kPointBytes = 20;
 
   template <bool kHasOthers>
-  void run(std::span<Quanta> points) {
+  void run(PointRoom points) {
     ArithmeticDecoder decoder = decoder_;
-    for (Quanta& point : points) {
+    for (std::size_t i = 0; i < points.count; ++i) {
       decoder.move_to(window_.ahead(decoder.cursor()));
-      point = point_.next(decoder);
+      points.quanta[i] = point_.next(decoder);
+      points.classes[i] = point_.point_class();
       if constexpr (kHasOthers) decoder = others_.skip(decoder);
     }
     decoder_ = decoder;
@@ -128,6 +132,7 @@ class PointwiseDecoder final : public ChunkDecoder {
   Point point_;
   OtherItems others_;
   Quanta first_{};
+  std::uint8_t first_class_ = 0;
   bool is_first_ = false;
   bool ends_there_ = true;
   std::uint64_t end_ = 0;

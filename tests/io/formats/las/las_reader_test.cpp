@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/convert/inputs/spooled_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/reader_fixture.hpp"
 
@@ -77,6 +78,27 @@ TEST_CASE("coordinates of every version and point format are read as stored") {
       open_las_stream(File::open_for_reading(path), std::filesystem::temp_directory_path());
   CHECK(read_all(*from_stream).quanta == las.points);
   CHECK_THROWS_AS(from_stream->rewind(), ResourceError);
+}
+
+TEST_CASE("classes of every point format are read, without the flags of formats 0 to 5") {
+  ReaderScratch scratch;
+  LasBytes las;
+  las.minor = 4;
+  las.format = GENERATE(range(0u, 11u));
+  las.bytes_of_class = {2, 0xE0 | 7, 200};
+  const bool flags = las.format < 6;
+  const std::vector<std::uint8_t> expected{2, static_cast<std::uint8_t>(flags ? 7 : 0xE7),
+                                           static_cast<std::uint8_t>(flags ? 200 & 31 : 200)};
+  const auto path = scratch.write("a.las", las.build());
+  CHECK(read_all(path).classes == expected);
+  PointBatch piece;
+  open_point_file(path)->read_piece(0, piece, nullptr);
+  CHECK(piece.classes == expected);
+  const auto spooled =
+      spool(open_las_stream(File::open_for_reading(path), scratch.folder()), scratch.folder());
+  CHECK(read_all(*spooled).classes == expected);
+  spooled->rewind();
+  CHECK(read_all(*spooled).classes == expected);
 }
 
 TEST_CASE("points of many batches arrive in order") {

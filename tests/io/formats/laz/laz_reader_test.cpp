@@ -22,9 +22,13 @@ void check_reads(const LazBytes& laz) {
   const auto reader = open_point_file(path);
   CHECK(reader->info().declared_points == laz.points.size());
   CHECK(*reader->info().quantisation == Quantisation{{0.001, 0.01, 0.1}, {100, -200, 0}});
-  CHECK(read_all(*reader).quanta == expected);
+  const ReadCloud read = read_all(*reader);
+  CHECK(read.quanta == expected);
+  CHECK(read.classes == classes_of(laz));
   reader->rewind();
-  CHECK(read_all(*reader).quanta == expected);
+  const ReadCloud again = read_all(*reader);
+  CHECK(again.quanta == expected);
+  CHECK(again.classes == classes_of(laz));
   const auto stream = open_las_stream(File::open_for_reading(path), scratch.folder());
   CHECK(stream->can_rewind());
   CHECK(read_all(*stream).quanta == expected);
@@ -60,6 +64,12 @@ TEST_CASE("LAZ holds the integers of its points, in every format and division in
     laz.chunked = false;
   }
   SECTION("no points") { laz.points.clear(); }
+  SECTION("one class in each chunk") {
+    laz.chunks = {500};
+    for (std::size_t i = 0; i < laz.points.size(); ++i) {
+      laz.points[i].classification = static_cast<std::uint8_t>(i / 500 + 1);
+    }
+  }
   check_reads(laz);
 }
 

@@ -10,7 +10,7 @@
 namespace clearway::test {
 
 /// Builds LAZ files of point formats 0 to 3 and 6 to 8, as LasBytes does LAS, with an encoder of
-/// its own. What an attribute's layer holds is not compressed: the reader passes over it.
+/// its own. What another attribute's layer holds is not compressed: the reader passes over it.
 struct LazBytes {
   enum class Table { kAtPoints, kAtEnd, kNone };
 
@@ -123,7 +123,10 @@ struct LazBytes {
     const std::string height = coder.height.finish();
     add(sizes, static_cast<std::uint32_t>(height.size()));
     bytes += height;
-    for (unsigned i = 2; i < layers; ++i) {
+    const std::string classes = coder.classes_change ? coder.classes.finish() : "";
+    add(sizes, static_cast<std::uint32_t>(classes.size()));
+    bytes += classes;
+    for (unsigned i = 3; i < layers; ++i) {
       add(sizes, std::uint32_t{i % 4});
       bytes.append(i % 4, 'l');
     }

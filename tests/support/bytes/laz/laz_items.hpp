@@ -144,7 +144,7 @@ class ColourCoder {
   std::vector<SymbolCoder> bytes_ = std::vector<SymbolCoder>(6, SymbolCoder(256));
 };
 
-/// The layers of POINT14 that hold coordinates. Only returns of a pulse of up to two.
+/// The layers of POINT14 that hold coordinates and classes. Only returns of a pulse of up to two.
 class Point14Coder {
  public:
   explicit Point14Coder(const LazPoint& first) : current_(first.channel) { start(current_, first); }
@@ -175,11 +175,17 @@ class Point14Coder {
     const unsigned map = 2 * (point.returns * (point.returns - 1) / 2 + point.number - 1);
     channel->position.encode(plane, height, last, point, map + (time ? 1 : 0),
                              point.returns - point.number);
+    const unsigned single = point.number == 1 && point.returns == 1 ? 1 : 0;
+    classes.symbol(
+        channel->classes.try_emplace((last.classification & 31u) * 2 + single, 256u).first->second,
+        point.classification);
+    classes_change = classes_change || point.classification != last.classification;
     channel->last = point;
     channel->time_changed = time;
   }
 
-  ArithmeticEncoder plane, height;
+  ArithmeticEncoder plane, height, classes;
+  bool classes_change = false;  ///< otherwise their layer is left out
 
  private:
   struct Channel {
@@ -188,6 +194,7 @@ class Point14Coder {
     std::vector<SymbolCoder> changed = std::vector<SymbolCoder>(8, SymbolCoder(128));
     SymbolCoder next_channel{3}, number_same_time{13};
     std::map<unsigned, SymbolCoder> returns, number;
+    CodersByValue classes;
     PositionCoder position;
   };
 

@@ -51,6 +51,15 @@ inline std::vector<std::array<std::int32_t, 3>> positions_of(const std::vector<L
   return positions;
 }
 
+inline std::vector<std::uint8_t> classes_of(const LazBytes& laz) {
+  std::vector<std::uint8_t> classes;
+  for (const LazPoint& point : laz.points) {
+    classes.push_back(
+        static_cast<std::uint8_t>(point.classification & (laz.las.format < 6 ? 31 : 255)));
+  }
+  return classes;
+}
+
 constexpr unsigned kLazFormats[] = {0, 1, 2, 3, 6, 7, 8};
 
 }  // namespace clearway::test

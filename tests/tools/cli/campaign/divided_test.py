@@ -5,7 +5,10 @@ divided_test.py PROGRAM
 """
 
 import json
+import os
 import pathlib
+import shutil
+import subprocess
 import tempfile
 import time
 
@@ -53,7 +56,7 @@ def plan_has_shards_and_merges(test):
 
 def merge_waits(test):
     done = run(test, "--task", test.merge)
-    expect(done.returncode == 4 and "waits for v00/r00/0.1/shards/1" in done.stderr, done.stderr)
+    expect(done.returncode == 2 and "waits for v00/r00/0.1/shards/1" in done.stderr, done.stderr)
     expect(status(test.path)["missing"] == len(test.tasks), "it left a state")
     expect(run(test, "--task", f"0-{test.merge - 1}").returncode == 0, "the shards")
     look = status(test.path)
@@ -94,6 +97,86 @@ def finished_ones_stay(test):
     expect(before == after, "a finished result was made again")
 
 
+def finished_runs_need_no_shards(test):
+    for shards in test.path.glob("runs/*/*/*/shards"):
+        shutil.rmtree(shards)
+    look = status(test.path)
+    expect(look["done"] == len(test.tasks), f"{look}")
+    expect(program("campaign", "status", test.path, "--missing") == "", "missing")
+    expect(run(test, "--all").returncode == 0, "all of it")
+    expect(run(test, "--task", 0).returncode == 0, "a shard")
+    expect(not list(test.path.glob("runs/**/shards/*/part.h5")), "a shard was searched in vain")
+    folder = test.path / test.tasks[test.merge]["folder"]
+    table = (folder / "conflicts.csv").read_bytes()
+    (folder / "conflicts.csv").unlink()
+    done = run(test, "--all")
+    expect(done.returncode == 0, done.stderr)
+    expect((folder / "conflicts.csv").read_bytes() == table, "the output again")
+    expect(not list(test.path.glob("runs/**/part.h5")), "shards were searched for an output")
+
+
+def new_store_has_shards_of_its_own(test):
+    """A store that is built anew between the shards of a run has the same points in other cells."""
+    plan(test, "rebuilt", DIVIDED)
+    test.path = test.work / "rebuilt"
+    store, kept = test.work / "site.h5", test.work / "kept.h5"
+    expect(run(test, "--task", 0).returncode == 0, "a shard of the old store")
+    store.rename(kept)
+    program("convert", test.work / "hall/environment.las", "--cell-points", 1100, "-o", store)
+    done = run(test, "--task", 1)
+    expect(done.returncode == 3 and "an input has changed" in done.stderr, done.stderr)
+    done = plan(test, "rebuilt", DIVIDED)
+    expect(done.returncode == 2 and "is another plan" in done.stderr, done.stderr)
+    expect(outcome("campaign", "plan", test.work / "campaign.json", "-o", test.path,
+                   "--force").returncode == 0, "the plan of the new store")
+    look = status(test.path)
+    expect(look["done"] == 0, f"a shard of the old store counts: {look}")
+    done = run(test, "--all")
+    expect(done.returncode == 0, done.stderr)
+    for whole in (test.work / "whole").glob("runs/*/*/*/out.h5"):
+        divided = test.path / whole.relative_to(test.work / "whole")
+        expect(whole.read_bytes() == divided.read_bytes(), "the result of the new store")
+    store.unlink()
+    kept.rename(store)
+
+
+def merges_need_no_gpu(test):
+    """A campaign for GPUs is planned without one."""
+    done = plan(test, "gpus", {**DIVIDED, "device": "cuda"})
+    if done.returncode != 0:  # of a build without CUDA
+        expect("cuda" in done.stderr.lower(), done.stderr)
+        return
+    tasks = [json.loads(line.rstrip(",")) for line in
+             (test.work / "gpus/plan.json").read_text().splitlines()[1:-1]]
+    for task in tasks:
+        device = "--device=cpu" if "shards" in task else "--device=cuda"
+        of_run = [words for words in task["commands"] if words[0] == "run"]
+        expect(device in of_run[0], f"{task}")
+
+
+def merges_ask_slurm_for_no_gpu(test):
+    """With programs in the place of Slurm's that keep what they were given."""
+    campaign = write_campaign(test.work, limits=DIVIDED, slurm=["--gres=gpu:1", "--time=10"])
+    program("campaign", "plan", campaign, "-o", test.work / "slurm")
+    programs = test.work / "bin"
+    programs.mkdir()
+    for name, text in [("scontrol", "echo 'MaxArraySize            = 1001'"),
+                       ("sbatch", f"number=$(ls {programs} | grep -c job)\n"
+                                  f"{{ echo \"$@\"; cat; }} > {programs}/job$number < "
+                                  "/dev/stdin\necho $number")]:
+        (programs / name).write_text("#!/bin/sh\n" + text + "\n")
+        (programs / name).chmod(0o755)
+    done = subprocess.run([test.work / "slurm/submit.sh"], stdin=subprocess.DEVNULL, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"})
+    expect(done.returncode == 0, done.stderr)
+    shards, merges, _ = [(programs / f"job{i}").read_text() for i in range(3)]
+    expect("--dependency=afterany:0" in merges.splitlines()[0], merges)
+    expect("#SBATCH --gres=gpu:1\n" in shards and "#SBATCH --gres" not in merges, merges)
+    expect([line for line in shards.splitlines()[1:] if line != "#SBATCH --gres=gpu:1"]
+           == merges.splitlines()[1:], "the rest of the script differs")
+
+
 def failed_shard_fails_its_run(test):
     plan(test, "broken", DIVIDED)
     test.path = test.work / "broken"
@@ -101,7 +184,7 @@ def failed_shard_fails_its_run(test):
     sound = model.read_bytes()
     model.write_bytes(sound[:-100])
     done = run(test, "--all", "--jobs", "2")
-    expect(done.returncode == 4 and "waits for v01/r00/0.1/shards/1" in done.stderr, done.stderr)
+    expect(done.returncode == 3 and "waits for v01/r00/0.1/shards/1" in done.stderr, done.stderr)
     look = status(test.path)
     expect(look["failed"] == test.merge and look["missing"] == 1, f"{look}")
     facts = json.loads(program("campaign", "report", test.path, "--json"))
@@ -116,7 +199,10 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         test = Test(pathlib.Path(folder))
         for check in [plan_has_shards_and_merges, merge_waits, results_are_those_of_whole_runs,
-                      finished_ones_stay, failed_shard_fails_its_run]:
+                      finished_ones_stay, finished_runs_need_no_shards,
+                      new_store_has_shards_of_its_own, merges_need_no_gpu,
+                      merges_ask_slurm_for_no_gpu,
+                      failed_shard_fails_its_run]:
             begin = time.monotonic()
             check(test)
             print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)

@@ -1,6 +1,7 @@
-"""A campaign on a real Slurm of one node: 24 runs, of which two are divided into shards. One shard is
-killed and one gets TERM, and both are queued again; one run fails for good; the merges come once,
-after all of these, and the report once, after all.
+"""A campaign on a real Slurm of one node: 24 runs, of which three are divided into shards. One shard
+is killed and one gets TERM, and both are queued again; one run, and all shards of another one, fail
+for good; the merges come once, after all of these, and the report once, after all. The merge without
+its shards is not queued again.
 
 slurm_test.py PROGRAM
 """
@@ -16,7 +17,7 @@ import time
 from campaign_scene import expect, make_scene, program, status, write_campaign
 from one_node_slurm import OneNodeSlurm, what_is_missing
 
-VEHICLES, SLOW, BROKEN_VEHICLE = 24, (3, 8), 13
+VEHICLES, SLOW, BROKEN_SLOW, BROKEN_VEHICLE = 24, (3, 5, 8), 5, 13
 MAX_ARRAY = 20  # more tasks become two arrays
 LIMITS = {"memory": "300M", "threads": 1, "shard_seconds": 0.18}  # divides the slow ones alone
 
@@ -69,7 +70,11 @@ class Campaign:
         self.path, self.slurm = path, slurm
         self.tasks = [json.loads(line.rstrip(",")) for line in
                       (path / "plan.json").read_text().splitlines()[1:-1]]
-        shards = [task["task"] for task in self.tasks if "shard" in task]
+        lost = [task for task in self.tasks if task["vehicle"] == f"v{BROKEN_SLOW:02}"]
+        self.lost = [task["task"] for task in lost if "shard" in task]
+        self.lost_merge = lost[-1]["task"]
+        shards = [task["task"] for task in self.tasks
+                  if "shard" in task and task["task"] not in self.lost]
         self.merges = [task["task"] for task in self.tasks if "shards" in task]
         expect(len(self.merges) == len(SLOW), f"{len(self.merges)} runs are divided")
         self.killed, self.stopped = shards[0], shards[-1]
@@ -122,8 +127,8 @@ class Campaign:
         last = time.monotonic() + seconds
         done_before = set()
         while True:
-            queue = self.slurm.run("squeue", "-h", "-r", "-o", "%i %T").splitlines()
             look = status(self.path)
+            queue = self.slurm.run("squeue", "-h", "-r", "-o", "%i %T").splitlines()
             done = {one["task"] for one in look["list"] if one["status"] == "done"}
             expect(done_before <= done, "a task that was done is no longer")
             for task in done - done_before:
@@ -131,7 +136,7 @@ class Campaign:
             done_before = done
             self.disturb(look)
             if not queue:
-                return look
+                return status(self.path)
             expect(time.monotonic() < last, "it takes too long: " + "; ".join(queue))
             time.sleep(0.1)
 
@@ -144,6 +149,8 @@ def check_logs(campaign):
     expect("exit code 5, queued again" in text[stopped], "TERM: " + text[stopped])
     expect("exit code 3" in text[broken] and "queued again" not in text[broken],
            "the broken task: " + text[broken])
+    lost = text[campaign.lost_merge]
+    expect("which is not done" in lost and "exit code 2" in lost, "the lost merge: " + lost)
     others = [task for task in text if task not in (killed, stopped)]
     again = [task for task in others if "queued again" in text[task]]
     expect(not again, f"queued again without a reason: {again}")
@@ -155,6 +162,9 @@ def check_merges(campaign, look):
     last = max(state.stat().st_mtime for task, state in enumerate(states)
                if task not in campaign.merges)
     for merge in campaign.merges:
+        if merge == campaign.lost_merge:
+            expect(look["list"][merge]["status"] == "missing", f"{look['list'][merge]}")
+            continue
         expect(look["list"][merge]["tries"] == 1, f"merged twice: {look['list'][merge]}")
         result = states[merge].parent / "out.h5"
         expect(result.stat().st_mtime >= last, "a merge came before the end of the others")
@@ -164,7 +174,9 @@ def check_merges(campaign, look):
 
 def check_end(campaign, look):
     path = campaign.path
-    expect(look["done"] == len(campaign.tasks) - 1 and look["failed"] == 1, f"at the end: {look}")
+    failed = sorted([campaign.broken, *campaign.lost])
+    expect(look["done"] == len(campaign.tasks) - len(failed) - 1 and look["failed"] == len(failed),
+           f"at the end: {look}")
     broken = look["list"][campaign.broken]
     expect(broken["exit_code"] == 3 and broken["tries"] == 1, f"the broken task: {broken}")
     expect(look["list"][campaign.stopped]["tries"] == 2, "the stopped task was not tried twice")
@@ -175,8 +187,11 @@ def check_end(campaign, look):
     expect(reports == 1, f"{reports} reports")
     newest = max(file.stat().st_mtime for file in path.glob("runs/**/state.json"))
     expect((path / "index.html").stat().st_mtime >= newest, "the report came before the end")
-    expect(program("campaign", "status", path, "--missing") == "", "something is missing")
-    expect(program("campaign", "status", path, "--failed") == f"{campaign.broken}\n", "--failed")
+    expect(program("campaign", "status", path, "--missing") == f"{campaign.lost_merge}\n",
+           "what is missing")
+    said = program("campaign", "status", path, "--failed")
+    last = failed[-1]
+    expect(said == f"{failed[0]}-{failed[-2]},{last}\n", "--failed: " + said)
     check_merges(campaign, look)
     check_logs(campaign)
 
@@ -192,8 +207,9 @@ def main():
         make_scene(work, vehicles=VEHICLES, routes=1, slow=SLOW)
         path = work / "a campaign"
         program("campaign", "plan", write_campaign(work, limits=LIMITS), "-o", path)
-        broken = work / f"vehicles/v{BROKEN_VEHICLE:02}.ply"
-        broken.write_bytes(broken.read_bytes()[:-100])
+        for vehicle in (BROKEN_VEHICLE, BROKEN_SLOW):
+            broken = work / f"vehicles/v{vehicle:02}.ply"
+            broken.write_bytes(broken.read_bytes()[:-100])
         with OneNodeSlurm(work / "slurm", max_array=MAX_ARRAY) as slurm:
             campaign = Campaign(path, slurm)
             missing = program("campaign", "status", path, "--missing")

@@ -26,6 +26,7 @@ struct Point10Fields {
   unsigned return_number() const { return returns & 7u; }
   unsigned number_of_returns() const { return returns >> 3 & 7u; }
   unsigned scan_direction() const { return returns >> 6 & 1u; }
+  std::uint8_t point_class() const { return classification & 0x1F; }
 };
 
 /// The item's bits of `changed`.
@@ -44,6 +45,7 @@ class Point10Version2 {
   void begin(const std::byte* record);
   /// The next point's position.
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& decoder);
+  std::uint8_t point_class() const { return last_.point_class(); }  ///< of that point
 
  private:
   struct Models {
@@ -71,6 +73,7 @@ class Point10Version1 {
  public:
   void begin(const std::byte* record);
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& decoder);
+  std::uint8_t point_class() const { return last_.point_class(); }
 
  private:
   struct Models {

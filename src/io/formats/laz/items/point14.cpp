@@ -11,6 +11,7 @@ void Point14::begin(const std::byte* record, bool has_heights) {
   const auto flags = load<std::uint8_t>(record + 15);
   Channel first;
   first.position = load<Quanta>(record);
+  first.point_class = load<std::uint8_t>(record + 16);
   first.return_number = returns & 15u;
   first.number_of_returns = returns >> 4;
   current_ = flags >> 4 & 3u;
@@ -20,9 +21,11 @@ void Point14::begin(const std::byte* record, bool has_heights) {
 /// Begins a channel with the last point of another.
 void Point14::start(Channel& channel, const Channel& from) {
   renew(channel.models);
+  class_models_[static_cast<std::size_t>(&channel - channels_.data())].renew();
   channel.used = true;
   channel.position = from.position;
   channel.heights.fill(from.position[2]);
+  channel.point_class = from.point_class;
   channel.number_of_returns = from.number_of_returns;
   channel.return_number = from.return_number;
   channel.time_changed = false;

@@ -4,17 +4,18 @@
 #include <cstdint>
 #include <memory>
 
+#include "io/formats/laz/coding/models_by_value.hpp"
 #include "io/formats/laz/items/coordinate_models.hpp"
 #include "io/formats/laz/items/median_of_five.hpp"
 #include "io/formats/laz/items/return_contexts.hpp"
 
 namespace clearway::laz {
 
-/// Bytes that a point takes at most of either layer.
+/// Bytes that a point takes at most of any layer.
 constexpr std::size_t kMostBytesPoint14 = 64;
 
-/// The two layers of the item POINT14 that hold coordinates: one of scanner channels, returns, x
-/// and y, and one of z. Versions 2 to 4 do not differ in them.
+/// Three layers of the item POINT14: one of scanner channels, returns, x and y, one of z, and one
+/// of classes. Versions 2 to 4 do not differ in them.
 class Point14 {
  public:
   using Quanta = std::array<std::int32_t, 3>;
@@ -23,6 +24,8 @@ class Point14 {
   void begin(const std::byte* record, bool has_heights);
   /// The next point's position. plane: the first layer; heights: the layer of z.
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& plane, ArithmeticDecoder& heights);
+  /// Of that point, from the layer of classes. Only where that is there; else none changes.
+  [[gnu::always_inline]] inline std::uint8_t next_class(ArithmeticDecoder& classes);
 
  private:
   /// Bits of `changed`; the two lowest say how the return number differs.
@@ -47,6 +50,7 @@ class Point14 {
     std::array<std::int32_t, 8> heights{};
     unsigned number_of_returns = 0, return_number = 0;
     bool time_changed = false;
+    std::uint8_t point_class = 0;
   };
 
   void start(Channel& channel, const Channel& from);
@@ -54,6 +58,7 @@ class Point14 {
   ArithmeticDecoder next_returns(ArithmeticDecoder plane, unsigned changed);
 
   std::array<Channel, 4> channels_;
+  std::array<ModelsByValue, 4> class_models_;  ///< of the channels
   unsigned current_ = 0;
   bool has_heights_ = false;
 };
@@ -88,6 +93,15 @@ inline Point14::Quanta Point14::next(ArithmeticDecoder& plane, ArithmeticDecoder
     height = z;
   }
   return channel.position;
+}
+
+inline std::uint8_t Point14::next_class(ArithmeticDecoder& classes) {
+  Channel& channel = channels_[current_];
+  const bool single = channel.return_number == 1 && channel.number_of_returns <= 1;
+  const auto context =
+      static_cast<std::uint8_t>((channel.point_class & 0x1Fu) << 1 | (single ? 1u : 0u));
+  channel.point_class = class_models_[current_].decode(classes, context);
+  return channel.point_class;
 }
 
 }  // namespace clearway::laz

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
+#include "core/geometry/quantum_box.hpp"
+
+namespace clearway {
+
+/// The integers whose positions lie in a closed box; none where no integer's does. Exact, because a
+/// position is monotone in its integers.
+std::optional<QuantumBox> quanta_in(const Quantisation& quantisation, const Box& box);
+
+/// Puts the lists of what is ignored in ascending order, each value once: the same question then
+/// has the same lists.
+void sort_ignored(QueryParameters& query);
+
+/// Which points of a cloud a query leaves out of the search (docs/design/ignored.md).
+class IgnoredPoints {
+ public:
+  /// The cloud outlives it. Without classes, all points have class 0.
+  IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query);
+
+  /// Whether the query leaves anything out.
+  bool any() const { return any_; }
+
+  /// Whether a point of the cell may be ignored.
+  bool touches(std::uint32_t cell) const;
+
+  /// Whether a box holds the whole cell, so that none of its points is searched.
+  bool holds(std::uint32_t cell) const;
+
+  /// searched: a word for each block of the cell; bit i is set where point i is to be searched.
+  /// coordinates(): the cell's packed x, y and z, asked for where they are needed. Returns how many
+  /// points are ignored. Thread safe. Throws InputError where the cell is damaged.
+  template <typename Coordinates>
+  std::uint32_t mask(std::uint32_t cell, std::span<std::uint64_t> searched,
+                     const Coordinates& coordinates) const {
+    set_all(cell, searched);
+    if (by_class_) leave_out_classes(cell, searched);
+    for (const QuantumBox& box : boxes_) {
+      switch (place_of(box, cloud_.cells()[cell].box)) {
+        case Place::kOutside:
+          break;
+        case Place::kInside:
+          std::fill(searched.begin(), searched.end(), 0);
+          break;
+        case Place::kCut:
+          leave_out_box(cell, box, coordinates(), searched);
+      }
+    }
+    return cloud_.cells()[cell].count - count(searched);
+  }
+
+  static std::uint32_t count(std::span<const std::uint64_t> words) {
+    std::uint32_t points = 0;
+    for (const std::uint64_t word : words)
+      points += static_cast<std::uint32_t>(std::popcount(word));
+    return points;
+  }
+
+ private:
+  enum class Place { kOutside, kInside, kCut };
+
+  static Place place_of(const QuantumBox& ignored, const QuantumBox& points);
+  void set_all(std::uint32_t cell, std::span<std::uint64_t> searched) const;
+  void leave_out_classes(std::uint32_t cell, std::span<std::uint64_t> searched) const;
+  void leave_out_box(std::uint32_t cell, const QuantumBox& box,
+                     const std::array<PackedChunk<std::int32_t>, 3>& coordinates,
+                     std::span<std::uint64_t> searched) const;
+
+  const PackedCloud& cloud_;
+  bool any_, by_class_;
+  std::array<std::uint8_t, 256> is_ignored_{};  ///< 1 for an ignored class
+  std::vector<QuantumBox> boxes_;
+};
+
+}  // namespace clearway

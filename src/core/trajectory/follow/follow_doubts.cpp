@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/trajectory/follow/follow_path.hpp"
+#include "core/util/format.hpp"
+#include "core/util/number_ranges.hpp"
+
+namespace clearway {
+namespace {
+
+/// "poses 0-99, 901-1000", or the first few of many such runs.
+std::string listed(const std::vector<std::uint64_t>& indices) {
+  constexpr std::size_t kMost = 4;
+  const auto ranges = number_ranges(indices);
+  std::string text = indices.size() == 1 ? "pose " : "poses ";
+  for (std::size_t k = 0; k < std::min(ranges.size(), kMost); ++k) {
+    text += (k > 0 ? ", " : "") + ranges[k];
+  }
+  return ranges.size() > kMost ? text + " and others" : text;
+}
+
+/// To a millimetre.
+std::string metres_text(double metres) { return format_number(std::round(metres * 1e3) / 1e3); }
+
+Message warning(const std::string& code, const std::string& text,
+                const std::vector<std::uint64_t>& poses) {
+  return {Message::Severity::kWarning,
+          code,
+          text,
+          {{"poses", static_cast<double>(poses.size())},
+           {"first", static_cast<double>(poses.front())},
+           {"last", static_cast<double>(poses.back())}}};
+}
+
+}  // namespace
+
+std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
+                                  const BodyMount& mount, const std::string& name) {
+  std::vector<Message> doubts;
+  const auto warn = [&](const std::string& code, const std::vector<std::uint64_t>& poses,
+                        const std::string& what) {
+    if (poses.empty()) return;
+    const std::string share = name + ": " + format_count(poses.size()) + " of " +
+                              counted(path.poses().size(), "pose") + " of the path (" +
+                              listed(poses) + ", from 0): ";
+    doubts.push_back(warning(code, share + what, poses));
+  };
+  const bool pivots = std::holds_alternative<BodyPivots>(mount);
+  warn("body-off-path", followed.off_path,
+       std::string("the body has no pose there, as ") + (pivots ? "a pivot" : "its station") +
+           " is off the path, which is " + metres_text(path.length()) +
+           " m long. Make the path longer to search there too");
+  warn("body-undefined", followed.undefined,
+       "the body has no pose there. Its pivots are at one place, or one is above the other. The "
+       "path turns back there, or stands on its end");
+  warn("body-folded", followed.folded,
+       "the path turns back between the pivots. They are closer together than half their way "
+       "along the path. Split the path where it turns back");
+  warn("body-turned", followed.turned,
+       pivots ? "the body's x axis is more than 60 degrees from the path's. If the path is driven "
+                "backwards, give the pivots the other way round"
+              : "the path is driven against its x axis. Stations ahead are behind the model there");
+  return doubts;
+}
+
+}  // namespace clearway

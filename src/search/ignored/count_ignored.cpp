@@ -1,0 +1,140 @@
+#include "search/ignored/count_ignored.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clearway/error.hpp"
+#include "core/query/ignored_points.hpp"
+#include "core/query/ignored_text.hpp"
+#include "core/util/format.hpp"
+#include "core/util/number_ranges.hpp"
+#include "core/util/tsan_annotations.hpp"
+#include "search/threads.hpp"
+
+namespace clearway {
+namespace {
+
+/// Calls visit(cell, searched) for the cells in which `ignored` may leave out something; several
+/// threads at once. searched: room for the words of a cell.
+template <typename Visit>
+void for_each_touched(const StoreReader& store, const IgnoredPoints& ignored, const Visit& visit) {
+  const ParallelScope scope;
+  const auto look = piece_of(scope, [&](std::size_t cell) {
+    const auto index = static_cast<std::uint32_t>(cell);
+    if (!ignored.touches(index)) return;
+    std::vector<std::uint64_t> searched(store.blocks_per_cell());
+    visit(index, searched);
+  });
+  scope.begin();
+  tbb::parallel_for(std::size_t{0}, store.cells().size(), look);
+}
+
+QueryParameters only_classes(const QueryParameters& query) {
+  QueryParameters out;
+  out.ignore_classes = query.ignore_classes;
+  return out;
+}
+
+QueryParameters only_boxes(std::vector<Box> boxes) {
+  QueryParameters out;
+  out.ignore_boxes = std::move(boxes);
+  return out;
+}
+
+/// Of the cells that boxes touch, what all of `query` leaves out and its classes alone do not.
+std::uint64_t count_in_boxes(const StoreReader& store, const QueryParameters& query) {
+  const IgnoredPoints all(store, query), classes(store, only_classes(query));
+  const IgnoredPoints boxes(store, only_boxes(query.ignore_boxes));
+  std::atomic<std::uint64_t> points = 0;
+  for_each_touched(store, boxes, [&](std::uint32_t cell, std::vector<std::uint64_t>& searched) {
+    const auto coordinates = [&] { return store.peek(cell); };
+    const std::uint64_t of_all = all.mask(cell, searched, coordinates);
+    points += of_all - (classes.any() ? classes.mask(cell, searched, coordinates) : 0);
+  });
+  return points;
+}
+
+/// "2", "2, 5-7"
+std::string list_of(const std::vector<std::uint32_t>& classes) {
+  std::string text;
+  for (const std::string& range : number_ranges(classes)) {
+    text += (text.empty() ? "" : ", ") + range;
+  }
+  return text;
+}
+
+void warn_of_classes(const StoreReader& store, const QueryParameters& query,
+                     const IgnoredPointCounts& counts, MessageLog& log) {
+  std::vector<std::uint32_t> absent, known;
+  for (std::size_t i = 0; i < counts.of_classes.size(); ++i) {
+    if (counts.of_classes[i] == 0) absent.push_back(query.ignore_classes[i]);
+  }
+  if (absent.empty()) return;
+  const auto& points = store.metadata().classes->points;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (points[i] > 0) known.push_back(i);
+  }
+  const bool one = absent.size() == 1;
+  log.warn("absent-class",
+           std::string("no point has ") + (one ? "class " : "one of the classes ") +
+               list_of(absent) + ": ignoring " + (one ? "it" : "them") +
+               " changes nothing. The environment has " +
+               (known.size() == 1 ? "class " : "classes ") + list_of(known),
+           {{"classes", static_cast<double>(absent.size())}});
+}
+
+void warn_of_boxes(const QueryParameters& query, const IgnoredPointCounts& counts,
+                   MessageLog& log) {
+  std::vector<Box> empty;
+  for (std::size_t i = 0; i < counts.in_boxes.size(); ++i) {
+    if (counts.in_boxes[i] == 0) empty.push_back(query.ignore_boxes[i]);
+  }
+  if (empty.empty()) return;
+  const bool one = empty.size() == 1;
+  log.warn("empty-box",
+           std::string("no point is in the ignored ") + (one ? "box " : "boxes ") +
+               boxes_text(empty) + ": ignoring " + (one ? "it" : "them") +
+               " changes nothing. Boxes are in the environment's coordinates and unit",
+           {{"boxes", static_cast<double>(empty.size())}});
+}
+
+}  // namespace
+
+IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters& query,
+                                 int threads) {
+  IgnoredPointCounts counts;
+  const auto& classes = store.metadata().classes;
+  if (!query.ignore_classes.empty() && !classes) {
+    throw UsageError(store.name() +
+                     ": its points have no classes to ignore; expected a store of LAS or LAZ "
+                     "files with classes, converted by this release");
+  }
+  for (const std::uint8_t value : query.ignore_classes) {
+    counts.of_classes.push_back(classes->points[value]);
+    counts.points += classes->points[value];
+  }
+  if (query.ignore_boxes.empty()) return counts;
+  in_threads(threads, [&] {
+    for (const Box& box : query.ignore_boxes) {
+      counts.in_boxes.push_back(count_in_boxes(store, only_boxes({box})));
+    }
+    const bool one = query.ignore_boxes.size() == 1 && query.ignore_classes.empty();
+    counts.points += one ? counts.in_boxes[0] : count_in_boxes(store, query);
+  });
+  return counts;
+}
+
+void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
+                     const IgnoredPointCounts& counts, MessageLog& log) {
+  warn_of_classes(store, query, counts, log);
+  warn_of_boxes(query, counts, log);
+  if (query.ignores_points() && counts.points > 0 && counts.points == store.point_count()) {
+    log.warn("all-ignored", "all points of the environment are ignored: nothing is searched");
+  }
+}
+
+}  // namespace clearway

@@ -1,0 +1,239 @@
+#include "core/trajectory/follow/follow_path.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "clearway/error.hpp"
+#include "support/scenes.hpp"
+
+using namespace clearway;
+using Catch::Contains;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Along a circle around `centre`, its x axis forward, every `step` metres.
+std::vector<Pose> circle(double radius, double step, std::size_t count, const Vec3& centre,
+                         double x_turned = 0) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double angle = step * static_cast<double>(i) / radius;
+    const Vec3 at{centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle),
+                  centre.z};
+    poses.push_back(rotation({0, 0, 1}, angle + kPi / 2 + x_turned, at));
+  }
+  return poses;
+}
+
+std::vector<Pose> straight(std::size_t count, double step) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    poses.push_back(translation({step * static_cast<double>(i), 0, 0}));
+  }
+  return poses;
+}
+
+Vec3 column(const Pose& pose, int axis) {
+  return {pose.rotation[axis], pose.rotation[3 + axis], pose.rotation[6 + axis]};
+}
+
+double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+FollowedPath follow(const std::vector<Pose>& poses, const BodyMount& mount) {
+  return follow_path(PathStations(poses, 2), mount, 2);
+}
+
+std::vector<std::string> codes(const std::vector<Pose>& poses, const BodyMount& mount) {
+  const PathStations path(poses, 1);
+  std::vector<std::string> out;
+  for (const Message& doubt : doubts_about(follow_path(path, mount, 1), path, mount, "body")) {
+    out.push_back(doubt.code);
+  }
+  return out;
+}
+
+/// Positions at least so many poses from the ends, where the curve knows one side only.
+constexpr std::size_t kEnds = 110;
+
+}  // namespace
+
+TEST_CASE("the middle of a chord of a circle is as far inside as the formula says") {
+  // Pivots between the samples, a circle of the tightest curves of railways and a wide one.
+  const double radius = GENERATE(80.0, 150.0, 300.0, 4000.0);
+  const std::size_t count = 1001;
+  const auto poses = circle(radius, 0.1, count, {0, 0, 0});
+  const auto body = follow(poses, BodyPivots{10.05, -10.05});
+  const auto front = follow(poses, BodyStation{10.05}), rear = follow(poses, BodyStation{-10.05});
+  REQUIRE(body.of.size() == count - 2 * 101);
+  double worst = 0;
+  for (std::size_t k = 0; k < body.of.size(); ++k) {
+    const std::size_t i = body.of[k];
+    if (i < kEnds || i + kEnds >= count) continue;
+    const double* f = front.poses[i].translation;
+    const double* r = rear.poses[i - rear.of[0]].translation;
+    const double chord = std::hypot(f[0] - r[0], f[1] - r[1], f[2] - r[2]);
+    CHECK(chord == Approx(2 * radius * std::sin(10.05 / radius)).epsilon(1e-9));
+    const double inside = radius - std::sqrt(radius * radius - chord * chord / 4);
+    const double* at = body.poses[k].translation;
+    worst = std::max(worst, std::abs(radius - std::hypot(at[0], at[1]) - inside));
+  }
+  CHECK(worst < 1e-9);
+}
+
+TEST_CASE("the origin divides the chord as 0 divides the pivots") {
+  const double radius = 120;
+  const auto poses = circle(radius, 0.1, 801, {0, 0, 5});
+  const BodyPivots pivots = GENERATE(BodyPivots{12.03, -4.01}, BodyPivots{3.3, -17.77},
+                                     BodyPivots{12.03, 4.01}, BodyPivots{-6, 6.5});
+  const auto body = follow(poses, pivots);
+  for (std::size_t k = 0; k < body.of.size(); ++k) {
+    const std::size_t i = body.of[k];
+    if (i < 210 || i > 590) continue;
+    const auto place = [&](double ahead) {
+      const double angle = (0.1 * static_cast<double>(i) + ahead) / radius;
+      return Vec3{radius * std::cos(angle), radius * std::sin(angle), 5};
+    };
+    const Vec3 front = place(pivots.front), rear = place(pivots.rear);
+    const double share = -pivots.rear / (pivots.front - pivots.rear);
+    const Vec3 expected = {rear.x + share * (front.x - rear.x), rear.y + share * (front.y - rear.y),
+                           5};
+    for (int axis = 0; axis < 3; ++axis) {
+      CHECK(std::abs(body.poses[k].translation[axis] - expected[axis]) < 1e-9);
+    }
+    const double length = std::hypot(front.x - rear.x, front.y - rear.y);
+    const Vec3 x = column(body.poses[k], 0);
+    CHECK(std::abs(x.x - (front.x - rear.x) / length) < 1e-9);
+    CHECK(std::abs(x.y - (front.y - rear.y) / length) < 1e-9);
+    CHECK(column(body.poses[k], 2).z == Approx(1).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a followed frame is a rotation whose up is the mean made perpendicular to the chord") {
+  Random random(64);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 60; ++i) {
+    const double s = 0.5 * i;
+    Pose pose = rotation({1, 0.1, 0}, 0.4 * std::sin(s / 9), {s, 3 * std::sin(s / 8), 0.2 * s});
+    poses.push_back(i % 2 == 0 ? pose : printed_with_six_digits(pose));
+  }
+  const PathStations path(poses, 1);
+  const auto body = follow_path(path, BodyPivots{4.2, -3.1}, 1);
+  REQUIRE(body.poses.size() > 20);
+  for (std::size_t k = 0; k < body.poses.size(); ++k) {
+    const Vec3 x = column(body.poses[k], 0), y = column(body.poses[k], 1),
+               z = column(body.poses[k], 2);
+    for (const double one : {dot(x, x), dot(y, y), dot(z, z)}) CHECK(std::abs(one - 1) < 1e-14);
+    for (const double none : {dot(x, y), dot(y, z), dot(z, x)}) CHECK(std::abs(none) < 1e-14);
+    CHECK(x.x * (y.y * z.z - y.z * z.y) + x.y * (y.z * z.x - y.x * z.z) > 0);
+    const std::size_t i = body.of[k];
+    Vec3 up{0, 0, 0};
+    for (const double ahead : {4.2, -3.1}) {
+      const Vec3 one = column(path.pose_at(*path.ahead_of(i, ahead)), 2);
+      const double length = std::sqrt(dot(one, one));
+      for (int axis = 0; axis < 3; ++axis) up[axis] += one[axis] / length;
+    }
+    // What is left of it across the chord is along z, and nothing of it is along y.
+    CHECK(dot(up, z) > 0);
+    CHECK(std::abs(dot(up, y)) < 1e-12);
+  }
+}
+
+TEST_CASE("a body at a station has the poses of the curve, and at 0 those of the path") {
+  const auto poses = circle(50, 0.5, 41, {5e5, 4e6, 0});
+  CHECK(follow(poses, BodyStation{0}).poses == poses);
+  const auto ahead = follow(poses, BodyStation{2.3});
+  REQUIRE(ahead.of.size() == 36);
+  CHECK(ahead.off_path == std::vector<std::uint64_t>{36, 37, 38, 39, 40});
+  for (std::size_t k = 4; k < 30; ++k) {
+    const double angle = (0.5 * static_cast<double>(ahead.of[k]) + 2.3) / 50;
+    CHECK(std::abs(ahead.poses[k].translation[0] - 5e5 - 50 * std::cos(angle)) < 1e-7);
+    CHECK(std::abs(column(ahead.poses[k], 0).x + std::sin(angle)) < 1e-7);
+  }
+  const auto behind = follow(poses, BodyStation{-2});
+  CHECK(behind.of.front() == 4);
+  for (std::size_t k = 0; k < 30; ++k) {
+    CHECK(std::abs(behind.poses[k].translation[1] - poses[k].translation[1]) < 1e-4);
+  }
+}
+
+TEST_CASE("warnings say where a body has no pose") {
+  const auto poses = straight(11, 1);
+  const PathStations path(poses, 1);
+  const BodyMount mount = BodyPivots{2.5, -1};
+  const auto doubts = doubts_about(follow_path(path, mount, 1), path, mount, "wagon");
+  REQUIRE(doubts.size() == 1);
+  CHECK(doubts[0].code == "body-off-path");
+  CHECK_THAT(doubts[0].text, Contains("wagon: 4 of 11 poses of the path (poses 0, 8-10, from 0)"));
+  CHECK(doubts[0].numbers[0].second == 4);
+  CHECK(codes(poses, BodyStation{3}) == std::vector<std::string>{"body-off-path"});
+  CHECK(codes(poses, BodyStation{0}).empty());
+  CHECK(follow_path(path, BodyPivots{20, -1}, 1).poses.empty());
+}
+
+TEST_CASE("a path that turns back folds the body, and has no chord where the pivots meet") {
+  auto poses = straight(21, 1);
+  for (int x = 19; x >= 0; --x) poses.push_back(translation({double(x), 0, 0}));
+  const auto body = follow(poses, BodyPivots{4, -4});
+  // At the turning point both pivots are at x = 16.
+  CHECK(body.undefined == std::vector<std::uint64_t>{20});
+  CHECK(body.folded == std::vector<std::uint64_t>{19, 21});
+  // Going back with the x axis ahead: the body's points the other way.
+  CHECK(body.turned.front() == 21);
+  CHECK(body.turned.back() == 36);
+  for (std::size_t k = 0; k < body.of.size(); ++k) {
+    CHECK(column(body.poses[k], 0).x == (body.of[k] < 20 ? 1 : -1));
+  }
+  CHECK(codes(poses, BodyPivots{4, -4}) ==
+        std::vector<std::string>{"body-off-path", "body-undefined", "body-folded", "body-turned"});
+}
+
+TEST_CASE("a path driven backwards takes its pivots the other way round") {
+  const auto backwards = circle(60, 0.1, 601, {0, 0, 0}, kPi);
+  CHECK(codes(backwards, BodyPivots{5, -5}) ==
+        std::vector<std::string>{"body-off-path", "body-turned"});
+  CHECK(codes(backwards, BodyPivots{-5, 5}) == std::vector<std::string>{"body-off-path"});
+  CHECK(codes(backwards, BodyStation{5}) ==
+        std::vector<std::string>{"body-off-path", "body-turned"});
+  CHECK(codes(backwards, BodyStation{0}).empty());
+  const auto body = follow(backwards, BodyPivots{-5, 5});
+  for (std::size_t k = 0; k < body.of.size(); ++k) {
+    CHECK(dot(column(body.poses[k], 0), column(backwards[body.of[k]], 0)) > 0.99);
+  }
+}
+
+TEST_CASE("a body stands where the path stands") {
+  auto poses = straight(31, 0.5);
+  poses.insert(poses.begin() + 15, 4, poses[15]);
+  const auto body = follow(poses, BodyPivots{2, -2});
+  for (std::size_t k = 0; k + 1 < body.of.size(); ++k) {
+    const bool stands = body.of[k] >= 15 && body.of[k] < 19;
+    CHECK((body.poses[k] == body.poses[k + 1]) == stands);
+  }
+}
+
+TEST_CASE("a body on two pivots of one pose or of a path that goes straight up has no pose") {
+  const std::vector<Pose> one{translation({1, 2, 3})};
+  CHECK(follow(one, BodyPivots{1, -1}).off_path.size() == 1);
+  CHECK(follow(one, BodyStation{0}).poses == one);
+  CHECK(follow({}, BodyPivots{1, -1}).poses.empty());
+  std::vector<Pose> up;
+  up.reserve(9);
+  for (int z = 0; z < 9; ++z) up.push_back(translation({0, 0, double(z)}));
+  CHECK(follow(up, BodyPivots{1, -1}).undefined.size() == 7);
+}
+
+TEST_CASE("a body on two pivots refuses a path that mirrors the model") {
+  auto poses = straight(5, 1);
+  for (Pose& pose : poses) pose.rotation[4] = -1;
+  CHECK_THROWS_AS(follow(poses, BodyPivots{1, -1}), InputError);
+  CHECK(follow(poses, BodyStation{1}).poses.size() == 4);
+}
+
+TEST_CASE("followed poses do not depend on the number of threads") {
+  Random random(65);
+  const auto poses = smooth_path(random, {{0, 0, 0}, {100, 80, 10}}, 700);
+  const PathStations one(poses, 1), four(poses, 4);
+  const BodyMount mount = BodyPivots{3.3, -2.2};
+  CHECK(follow_path(one, mount, 1).poses == follow_path(four, mount, 4).poses);
+}

@@ -1,0 +1,87 @@
+#include "cli/ignored/ignored_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "core/query/ignored_text.hpp"
+#include "io/formats/text/text_number.hpp"
+
+namespace clearway::tool {
+namespace {
+
+constexpr std::uint64_t kGreatestClass = 255;
+
+std::optional<std::uint64_t> parse_class(const std::string& text) {
+  const auto number = parse_count(text);
+  return number && *number <= kGreatestClass ? number : std::nullopt;
+}
+
+std::vector<std::string> words_of(const std::vector<std::string>& lists) {
+  std::vector<std::string> words;
+  for (const std::string& list : lists) {
+    for (std::string& word : CLI::detail::split(list, ',')) words.push_back(std::move(word));
+  }
+  return words;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& lists) {
+  std::set<std::uint8_t> classes;
+  for (const std::string& word : words_of(lists)) {
+    const std::size_t dash = std::min(word.find('-'), word.size());
+    const auto first = parse_class(word.substr(0, dash));
+    const auto last = dash < word.size() ? parse_class(word.substr(dash + 1)) : first;
+    if (!first || !last || *last < *first) {
+      throw CLI::ValidationError("--ignore-class",
+                                 "'" + word + "': expected numbers of classes from 0 to " +
+                                     std::to_string(kGreatestClass) +
+                                     ", for example 2,7 or 3-5; clearway info lists those of a "
+                                     "store");
+    }
+    for (std::uint64_t i = *first; i <= *last; ++i) classes.insert(static_cast<std::uint8_t>(i));
+  }
+  return {classes.begin(), classes.end()};
+}
+
+Box parse_box(const std::string& text) {
+  const auto refuse = [&text](const std::string& why) {
+    throw CLI::ValidationError("--ignore-box", text + ": " + why);
+  };
+  std::vector<double> numbers;
+  for (const std::string& field : CLI::detail::split(text, ',')) {
+    const auto number = parse_whole_number(field);
+    if (!number || !std::isfinite(*number)) refuse("'" + field + "' is no number");
+    numbers.push_back(*number);
+  }
+  if (numbers.size() != 6) {
+    refuse("expected six numbers with commas: least x, y and z, then greatest x, y and z");
+  }
+  const Box box{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+  for (int k = 0; k < 3; ++k) {
+    if (box.lo[k] > box.hi[k]) {
+      refuse("its corners are the wrong way round: expected the least x, y and z first");
+    }
+  }
+  return box;
+}
+
+nlohmann::ordered_json ignored_json(const QueryParameters& query,
+                                    const IgnoredPointCounts& counts) {
+  nlohmann::ordered_json classes = nlohmann::ordered_json::array();
+  nlohmann::ordered_json boxes = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < query.ignore_classes.size(); ++i) {
+    classes.push_back({{"class", query.ignore_classes[i]}, {"points", counts.of_classes[i]}});
+  }
+  for (std::size_t i = 0; i < query.ignore_boxes.size(); ++i) {
+    const Box& box = query.ignore_boxes[i];
+    boxes.push_back({{"lo", {box.lo.x, box.lo.y, box.lo.z}},
+                     {"hi", {box.hi.x, box.hi.y, box.hi.z}},
+                     {"points", counts.in_boxes[i]}});
+  }
+  return {{"points", counts.points}, {"classes", classes}, {"boxes", boxes}};
+}
+
+}  // namespace clearway::tool

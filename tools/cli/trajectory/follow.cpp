@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "clearway/error.hpp"
+#include "clearway/trajectory.hpp"
+#include "cli/support/console.hpp"
+#include "cli/support/lengths.hpp"
+#include "cli/support/options.hpp"
+#include "cli/support/signals.hpp"
+#include "cli/support/standard_output.hpp"
+#include "cli/support/trajectory_options.hpp"
+#include "cli/trajectory/commands.hpp"
+#include "core/trajectory/follow/follow_path.hpp"
+#include "core/util/format.hpp"
+#include "io/system/pending_file.hpp"
+#include "io/trajectory/trajectory_writer.hpp"
+#include "search/threads.hpp"
+
+namespace clearway::tool {
+namespace {
+
+struct FollowOptions {
+  std::filesystem::path input, output;
+  std::optional<double> at;
+  std::optional<std::array<double, 2>> pivots;
+  LengthOptions lengths;
+  TrajectoryOptions trajectory;
+  int threads = 0;
+  bool force = false;
+  bool json = false;
+};
+
+BodyMount mount_of(const FollowOptions& options) {
+  if (!options.at && !options.pivots) {
+    throw UsageError(
+        "where the body is on the path is missing; expected --at or --pivots, for example --at 10 "
+        "or --pivots 10,-10");
+  }
+  if (options.at) return BodyStation{*options.at};
+  const auto [front, rear] = *options.pivots;
+  if (front == rear) {
+    throw UsageError("--pivots: both are " + format_number(front) +
+                     " m ahead; expected two different places, for example 10,-10");
+  }
+  return BodyPivots{front, rear};
+}
+
+std::vector<Pose> read_path(const FollowOptions& options) {
+  std::vector<Message> remarks;
+  PoseLabels labels;
+  std::vector<Pose> poses = read_trajectory(options.input, options.trajectory, &remarks, &labels);
+  for (const Message& remark : remarks) log_message(remark);
+  if (!labels.time.empty() || !labels.name.empty()) {
+    spdlog::info("{}: its times and names are left out, as the output has matrices only",
+                 options.input.string());
+  }
+  if (poses.empty()) throw InputError(options.input.string() + ": no poses; nothing to follow");
+  return poses;
+}
+
+/// What went wrong on the path names its file.
+template <typename Work>
+auto on_path(const FollowOptions& options, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(options.input.string() + ": " + error.what());
+  }
+}
+
+void refuse_nowhere(const FollowOptions& options, const FollowedPath& followed,
+                    const PathStations& path) {
+  if (!followed.poses.empty()) return;
+  throw InputError(fmt::format(
+      "{}: the path is {} m long, and the body has a pose nowhere on it; expected a longer path, "
+      "or stations nearer to its poses",
+      options.input.string(), format_number(std::round(path.length() * 1e3) / 1e3)));
+}
+
+/// The first and last of each run of poses.
+nlohmann::ordered_json ranges_of(const std::vector<std::uint64_t>& poses) {
+  auto ranges = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0 && poses[i] == poses[i - 1] + 1) {
+      ranges.back()[1] = poses[i];
+    } else {
+      ranges.push_back({poses[i], poses[i]});
+    }
+  }
+  return ranges;
+}
+
+void report(const FollowOptions& options, const FollowedPath& followed, const PathStations& path) {
+  spdlog::info("{}: {}, from {}; the path is {:.6g} m long", options.output.string(),
+               counted(followed.poses.size(), "pose"), format_count(path.poses().size()),
+               path.length());
+  if (!options.json) return;
+  nlohmann::ordered_json json{{"poses_in", path.poses().size()},
+                              {"poses_out", followed.poses.size()},
+                              {"length", path.length()}};
+  if (options.at) json["at"] = *options.at;
+  if (options.pivots) json["pivots"] = *options.pivots;
+  json["off_path"] = ranges_of(followed.off_path);
+  json["undefined"] = ranges_of(followed.undefined);
+  json["folded"] = ranges_of(followed.folded);
+  json["turned"] = ranges_of(followed.turned);
+  print(json.dump(2) + "\n");
+}
+
+void write_followed(const FollowOptions& options) {
+  const BodyMount mount = mount_of(options);
+  refuse_overwriting(options.output, {options.input});
+  const int threads = threads_or_all(options.threads);
+  check_threads(threads);
+  PendingFile output(options.output, options.force);
+  const std::vector<Pose> poses = read_path(options);
+  const auto path = on_path(options, [&] { return PathStations(poses, threads); });
+  const auto followed = on_path(options, [&] { return follow_path(path, mount, threads); });
+  refuse_nowhere(options, followed, path);
+  for (const Message& doubt : doubts_about(followed, path, mount, options.input.string())) {
+    log_message(doubt);
+  }
+  ConsoleProgress progress;
+  write_trajectory(followed.poses, File::create(output.partial()), progress);
+  output.publish();
+  report(options, followed, path);
+}
+
+}  // namespace
+
+void add_trajectory_follow(CLI::App& trajectory) {
+  const auto options = std::make_shared<FollowOptions>();
+  CLI::App* command = trajectory.add_subcommand(
+      "follow", "Write the poses of a body that follows the path, at a station or on two pivots");
+  command->add_option("IN", options->input, kTrajectoryHelp)->type_name("FILE")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "The body's poses: 16 numbers a line, a row-major 4x4 matrix")
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* at = options->lengths.add(
+      *command, "--at", options->at,
+      "The body has the path's pose so many metres ahead; negative: behind", LengthRange::kAny);
+  options->lengths
+      .add(*command, "--pivots", options->pivots,
+           "Two places of the body lie on the path, so many metres ahead or behind; "
+           "the body points from the second to the first")
+      ->excludes(at);
+  add_trajectory_options(*command, options->trajectory, options->lengths);
+  add_threads_option(*command, options->threads);
+  command->add_flag("--force", options->force, "Overwrite an existing output");
+  command->add_flag("--json", options->json, "One JSON object on standard output");
+  command->footer("Example: clearway trajectory follow path.txt -o wagon.txt --pivots 10,-10");
+  command->callback([options] {
+    run_stoppable(options->output, kStartsAgain, [&] { write_followed(*options); });
+  });
+}
+
+}  // namespace clearway::tool
