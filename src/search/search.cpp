@@ -253,6 +253,7 @@ class Search {
   void report_written(const WrittenResult& written) {
     report_.colliding_points = written.collisions;
     report_.clearance_points = written.clearances;
+    report_.inside_points = written.inside_points;
     report_.first_place = written.first_place;
     report_.least_clearance = written.least_clearance;
     report_.least_profile = written.least_profile;

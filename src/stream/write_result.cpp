@@ -137,6 +137,8 @@ std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const Quantis
     out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose);
   });
   out->rows.seal();
+  out->inside = static_cast<std::uint64_t>(
+      std::ranges::count_if(rows, [](const ClearanceRow& row) { return row.distance < 0; }));
   const ClearanceRow& least = least_row(rows, &ClearanceRow::distance);
   out->place = {least.source, least.pose, xyz_of(quantisation, least.q), least.distance};
   return out;
@@ -219,7 +221,8 @@ class ResultWriting {
                             });
   }
 
-  void write_clearances(const SetCells& in, std::optional<FoundPlace>& least) {
+  void write_clearances(const SetCells& in, std::optional<FoundPlace>& least,
+                        std::uint64_t& inside) {
     const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
     const ClearanceSet& clearances = answer_.clearances;
     const auto rows_of = [&](std::uint32_t cell) {
@@ -234,6 +237,7 @@ class ResultWriting {
       return encode(writer_, store_.quantisation(), rows);
     };
     const auto keep_least = [&](const ClearancePiece& piece) {
+      inside += piece.inside;
       if (least && least->distance <= piece.place->distance) return;
       least = piece.place;
     };
@@ -266,7 +270,7 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
   progress.begin("write", out.collisions + out.clearances, "points");
   ResultWriting writing(store, answer, memory_bytes, writer, progress);
   writing.write_collisions(collisions, out.first_place);
-  writing.write_clearances(clearances, out.least_clearance);
+  writing.write_clearances(clearances, out.least_clearance, out.inside_points);
   if (header.profile > 0) {
     out.least_profile =
         write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress);

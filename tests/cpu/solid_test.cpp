@@ -115,7 +115,10 @@ TEST_CASE("ignored points are in no solid") {
     for (std::uint8_t& value : classes) value = static_cast<std::uint8_t>(below(scene.random, 3));
     query.ignore_classes = {1};
   }
-  SECTION("by box") { query.ignore_boxes = {{{-4, -3, -1}, {0.5, 4, 2}}}; }
+  SECTION("by box") {
+    const double* at = scene.poses[20].translation;
+    query.ignore_boxes = {{{at[0] - 1, at[1] - 1, at[2] - 1}, {at[0] + 1, at[1] + 1, at[2] + 1}}};
+  }
   const std::uint64_t left = check_engines(scene.points, classes, scene.quantisation, query);
   CHECK(left > 0);
   CHECK(left < scene.check());
@@ -123,9 +126,9 @@ TEST_CASE("ignored points are in no solid") {
 
 TEST_CASE("random solids") {
 #ifdef CLEARWAY_SANITIZED
-  constexpr std::uint64_t kScenes = 15;
+  constexpr std::uint64_t kScenes = 30;
 #else
-  constexpr std::uint64_t kScenes = 20;
+  constexpr std::uint64_t kScenes = 500;
 #endif
   std::uint64_t with_hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
@@ -136,6 +139,7 @@ TEST_CASE("random solids") {
     const double size = std::exp(uniform(random, -3, 4));
     const Box room{{-size, -size, -size / 3}, {size, size, size / 3}};
     const double part = size * uniform(random, 0.05, 0.4);
+    const bool large = seed % 50 == 0;
     scene.bodies = {};
     for (std::uint64_t i = 0; i <= below(random, 3); ++i) {
       const Vec3 at = random_point(random, {{-part, -part, -part}, {part, part, part}});
@@ -145,13 +149,16 @@ TEST_CASE("random solids") {
       scene.bodies.add(random_surface(random, {{-part, -part, -part}, {part, part, part}}, 5),
                        false);
     }
-    scene.poses = smooth_path(random, room, 1 + below(random, 40));
-    scene.radius = size * std::exp(uniform(random, -5, 0));
+    scene.poses = smooth_path(random, room, 1 + below(random, large ? 40 : 12));
+    // A radius far below the model's size takes a large field.
+    scene.radius =
+        large ? size * std::exp(uniform(random, -5, 0)) : part * std::exp(uniform(random, -1, 1.5));
     scene.quantisation = {{size * 1e-6, size * 1e-6, size * 2e-6}, {0, 0, 0}};
+    const std::size_t count = large ? 150 : 40;
     const std::vector<Vec3> beside =
-        places_beside(random, scene.bodies.surface, scene.poses, 2 * scene.radius, 150);
+        places_beside(random, scene.bodies.surface, scene.poses, 2 * scene.radius, count);
     scene.points = quantise(beside, scene.quantisation);
-    const auto anywhere = quantise(random_points(random, room, 150), scene.quantisation);
+    const auto anywhere = quantise(random_points(random, room, count), scene.quantisation);
     scene.points.insert(scene.points.end(), anywhere.begin(), anywhere.end());
     if (below(random, 3) == 0) scene.move_far_away({5e5, 5e6, 300});
     const std::uint32_t cell_points = std::uint32_t{64} << below(random, 4);
