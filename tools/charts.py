@@ -10,11 +10,12 @@ import argparse
 import sys
 from pathlib import Path
 
-from charting import accuracy, datasets, grid, points, scaling, stability, table, threads
+from charting import accuracy, datasets, grid, points, scaling, stability, surfaces, table, threads
 from charting.record import read_record
 
 FIGURES = {"table": table, "threads": threads, "grid": grid, "datasets": datasets,
-           "points": points, "accuracy": accuracy, "stability": stability, "scaling": scaling}
+           "points": points, "accuracy": accuracy, "stability": stability, "scaling": scaling,
+           "surfaces": surfaces}
 
 
 def files_in(folder):

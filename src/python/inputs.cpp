@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "clearway/convert.hpp"
-#include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "python/arrays.hpp"
 #include "python/values.hpp"
@@ -29,48 +28,6 @@ constexpr Named<AngleUnit> kAngleUnits[] = {
     {"declared", AngleUnit::kDeclared}, {"deg", AngleUnit::kDegrees}, {"rad", AngleUnit::kRadians}};
 constexpr Named<AngleFrame> kAngleFrames[] = {
     {"declared", AngleFrame::kDeclared}, {"ned", AngleFrame::kNed}, {"enu", AngleFrame::kEnu}};
-
-/// Reads beside other Python threads. What was noted until an error is kept too.
-template <typename Read>
-auto read(const py::object& messages, Read call) {
-  std::vector<Message> noted;
-  try {
-    auto value = without_gil([&] { return call(&noted); });
-    append_to(messages, noted);
-    return value;
-  } catch (...) {
-    append_to(messages, noted);
-    throw;
-  }
-}
-
-void add_read_model(py::module_& module) {
-  module.def(
-      "read_model",
-      [](const py::object& path, double spacing, double unit, double environment_unit,
-         bool vertices_only, std::optional<double> above, const py::object& messages) {
-        const ModelOptions options{ModelAs::kPoints, spacing,       unit,
-                                   environment_unit, vertices_only, above};
-        return to_array(read(messages, [&, file = path_of(path)](auto* noted) {
-          return read_model(file, options, noted);
-        }));
-      },
-      "path"_a, py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0, "environment_unit"_a = 1.0,
-      "vertices_only"_a = false, "above"_a = py::none(), "messages"_a = py::none(),
-      R"(read_model(path, *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
---
-
-Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
-
-The surface of a mesh is sampled to points. Returns n x 3 float64, metres, in the model's frame.
-
-spacing: of a mesh, metres; no place of its surface is farther from a point. A mesh needs one.
-unit: metres of a unit of the file; 0: as the file says, else as they are.
-environment_unit: metres of the environment's unit, into which a known unit is converted.
-vertices_only: takes the vertices of a mesh alone, and not its surface.
-above: leaves out points whose z is below it, metres; for example wheels on the ground.
-messages: a list to which notes and warnings are appended.)");
-}
 
 void add_labels(py::module_& module) {
   py::class_<PoseLabels>(module, "PoseLabels",
@@ -109,7 +66,7 @@ void add_read_trajectory(py::module_& module) {
         options.environment_unit = environment_unit;
         options.lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]};
         PoseLabels found;
-        const auto poses = read(messages, [&, file = path_of(path)](auto* noted) {
+        const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
           return read_trajectory(file, options, noted, &found);
         });
         if (labels != nullptr) *labels = std::move(found);
@@ -233,7 +190,6 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 }  // namespace
 
 void add_inputs(py::module_& module) {
-  add_read_model(module);
   add_labels(module);
   add_read_trajectory(module);
   add_convert_report(module);

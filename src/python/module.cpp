@@ -12,6 +12,7 @@ PYBIND11_MODULE(_clearway, module) {
   add_watch();
   add_errors(module);
   add_values(module);
+  add_model(module);
   add_inputs(module);
   add_reports(module);
   add_search(module);

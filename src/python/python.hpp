@@ -79,6 +79,7 @@ const char* name_in(const Named<Value> (&table)[Size], Value value) {
 void add_watch();                           // watch.cpp
 void add_errors(py::module_& module);       // errors.cpp
 void add_values(py::module_& module);       // values.cpp
+void add_model(py::module_& module);        // model.cpp
 void add_reports(py::module_& module);      // reports.cpp
 void add_inputs(py::module_& module);       // inputs.cpp
 void add_search(py::module_& module);       // search.cpp

@@ -6,6 +6,7 @@
 #include "clearway/report.hpp"
 #include "python/arrays.hpp"
 #include "python/findings.hpp"
+#include "python/model.hpp"
 #include "python/store.hpp"
 #include "python/values.hpp"
 #include "python/watch.hpp"
@@ -39,7 +40,7 @@ Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 
 
 Returns a ReportSummary.
 
-result, store, model, poses: those of the search.
+result, store, model, poses: those of the search. A surface was read as a ModelShape.
 output: the page.
 title, project, client, author, date: for the head of the page. Nothing else depends on the time.
 result_name, environment_name, model_name, trajectory_name: names of the files, for people.
@@ -85,13 +86,14 @@ void add_write_report(py::module_& module) {
                               overwrite};
         Watch watch(std::move(progress), py::none(), std::move(stop));
         watch.attach(options.conflicts);
-        return watch.run([&, to = path_of(output),
-                          points = points_of(points_array(model, "model"), "model"),
-                          path = poses_of(poses_array(poses, "poses"), "poses")] {
-          return in_turn(store, options.conflicts.stop, [&](const Store& own) {
-            return write_report(result, own, points, path, to, options);
-          });
-        });
+        ModelShape shape = model_of(model);
+        options.model_triangles = std::move(shape.triangles);
+        return watch.run(
+            [&, to = path_of(output), path = poses_of(poses_array(poses, "poses"), "poses")] {
+              return in_turn(store, options.conflicts.stop, [&](const Store& own) {
+                return write_report(result, own, shape.points, path, to, options);
+              });
+            });
       },
       "result"_a, "store"_a, "model"_a, "poses"_a, "output"_a, py::kw_only(), "title"_a = "",
       "project"_a = "", "client"_a = "", "author"_a = "", "date"_a = "", "result_name"_a = "",

@@ -46,6 +46,8 @@ void add_findings_of(py::class_<Report>& report) {
                     "The result was there already: nothing was searched.")
       .def_readonly("environment_points", &Report::environment_points)
       .def_readonly("model_points", &Report::model_points)
+      .def_readonly("model_triangles", &Report::model_triangles,
+                    "Of a surface, whose corners the model points are; otherwise 0.")
       .def_readonly("poses", &Report::poses)
       .def_readonly("colliding_points", &Report::colliding_points)
       .def_readonly("clearance_points", &Report::clearance_points,
@@ -84,7 +86,7 @@ void add_work_of(py::class_<Report>& report) {
           "Where it is the answer of one part alone: (i, n); otherwise None.")
       .def_readonly("shard_share", &Report::shard_share,
                     "Of a shard: its estimated work over the mean; otherwise None.")
-      .def_readonly("searches", &Report::searches, "Pairs of pose and model point.")
+      .def_readonly("searches", &Report::searches, "Pairs of pose and model point or triangle.")
       .def_readonly("tolerance", &Report::tolerance, "A ToleranceReport, or None.")
       .def_readonly("field_voxel", &Report::field_voxel, "Metres; 0: none.")
       .def_readonly("grid_cell", &Report::grid_cell, "Metres; 0: none.")

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "python/arrays.hpp"
+#include "python/model.hpp"
 #include "python/store.hpp"
 #include "python/values.hpp"
 #include "python/watch.hpp"
@@ -80,7 +81,7 @@ ArrayQuery make_query(const py::object& model, const py::object& poses, double r
                       std::vector<Box> ignore_boxes, bool allow_non_rigid) {
   return {{radius, first_pose, between_poses, clearance, profile, tolerance,
            std::move(ignore_classes), std::move(ignore_boxes)},
-          points_array(model, "model"),
+          model_object(model),
           poses_array(poses, "poses"),
           allow_non_rigid};
 }
@@ -97,8 +98,8 @@ void add_query(py::module_& module) {
            "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false)
       .def_property(
           "model", [](const ArrayQuery& q) { return q.model; },
-          [](ArrayQuery& q, const py::object& value) { q.model = points_array(value, "model"); },
-          "Points in the model's own frame: n x 3 float64, metres.")
+          [](ArrayQuery& q, const py::object& value) { q.model = model_object(value); },
+          "In the model's own frame: points, n x 3 float64, metres; or a ModelShape.")
       .def_property(
           "poses", [](const ArrayQuery& q) { return q.poses; },
           [](ArrayQuery& q, const py::object& value) { q.poses = poses_array(value, "poses"); },
@@ -106,8 +107,8 @@ void add_query(py::module_& module) {
       .def_readwrite("allow_non_rigid", &ArrayQuery::allow_non_rigid,
                      "Takes poses that scale or shear too.")
       .def("__repr__", [](const ArrayQuery& q) {
-        return py::str("<Query: {} model points, {} poses, radius {} m>")
-            .format(q.model.shape(0), q.poses.shape(0), q.parameters.radius);
+        return py::str("<Query: {}, {} poses, radius {} m>")
+            .format(model_words(q.model), q.poses.shape(0), q.parameters.radius);
       });
   using Q = QueryParameters;
   add_parameter<&Q::radius>(query, "radius",
@@ -205,7 +206,10 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 }  // namespace
 
 Query query_of(const ArrayQuery& query) {
-  return {points_of(query.model, "model"), poses_of(query.poses, "poses"), query.parameters};
+  ModelShape shape = model_of(query.model);
+  Query asked(std::move(shape.points), poses_of(query.poses, "poses"), query.parameters);
+  asked.triangles = std::move(shape.triangles);
+  return asked;
 }
 
 void add_search(py::module_& module) {

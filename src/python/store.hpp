@@ -34,10 +34,11 @@ auto in_turn(SharedStore& shared, StopFlag stop, Call call) {
   return call(std::as_const(shared.store));
 }
 
-/// A Query whose model and poses are NumPy arrays.
+/// A Query whose model and poses are Python's.
 struct ArrayQuery {
   QueryParameters parameters;
-  Doubles model, poses;  ///< as points_array() and poses_array() have them
+  py::object model;  ///< as model_object() has it
+  Doubles poses;     ///< as poses_array() has them
   bool allow_non_rigid = false;
 };
 

@@ -17,6 +17,20 @@ std::vector<Message> messages_of(const py::handle& object);
 /// Appends to a list; None: nowhere.
 void append_to(const py::handle& list, const std::vector<Message>& messages);
 
+/// Reads beside other Python threads. What was noted until an error is kept too.
+template <typename Read>
+auto read_noting(const py::object& messages, Read call) {
+  std::vector<Message> noted;
+  try {
+    auto value = without_gil([&] { return call(&noted); });
+    append_to(messages, noted);
+    return value;
+  } catch (...) {
+    append_to(messages, noted);
+    throw;
+  }
+}
+
 /// "; 2 warnings: no-poses, steps", or nothing.
 std::string warning_words(const std::vector<Message>& warnings);
 

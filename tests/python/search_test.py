@@ -32,6 +32,47 @@ class FindsWhatBruteForceFinds(SceneTest):
                 if engine != "auto":
                     self.assertEqual(report.engine, engine)
 
+    def test_a_surface(self):
+        square = clearway.ModelShape([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
+                                     [[0, 1, 2], [0, 2, 3]])
+        query = clearway.Query(square, self.poses, RADIUS, first_pose=True)
+        self.assertIn("2 model triangles", repr(query))
+        report = self.search(query=query)
+        self.assertEqual((report.model_points, report.model_triangles), (4, 2))
+        first = np.full(len(self.points), -1)
+        for i in reversed(range(len(self.poses))):
+            local = self.points - self.poses[i, :3, 3]
+            outside = np.maximum(np.abs(local) - (1, 1, 0), 0)
+            first[np.linalg.norm(outside, axis=1) < RADIUS] = i
+        result = clearway.Result(self.folder / "out.h5")
+        np.testing.assert_array_equal(result.source(), np.flatnonzero(first >= 0))
+        np.testing.assert_array_equal(result.first_pose(), first[first >= 0])
+        store = clearway.Store(self.folder / "site.h5")
+        page = self.folder / "square.html"
+        self.assertFalse(clearway.write_report(result, store, square, self.poses, page).clear)
+        with self.assertRaises(clearway.InputError):  # its corners alone are another model
+            clearway.write_report(result, store, square.points, self.poses, page, overwrite=True)
+
+    def test_a_surface_of_a_file(self):
+        (self.folder / "one.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        noted = []
+        shape = clearway.read_model_shape(self.folder / "one.off", messages=noted)
+        np.testing.assert_array_equal(shape.triangles, [[0, 1, 2]])
+        self.assertEqual(shape.points.shape, (3, 3))
+        self.assertIn("searched as it is", noted[0].text)
+        sampled = clearway.read_model_shape(self.folder / "one.off", "points", spacing=0.1)
+        self.assertEqual(sampled.triangles.shape, (0, 3))
+        self.assertIn("model points", repr(clearway.Query(sampled, self.poses, RADIUS)))
+
+    def test_triangles_are_checked(self):
+        points = np.eye(3)
+        for wrong, said in (([[0, 1, 3]], "the point 3, expected 0 to 2"),
+                            ([[0, 1, -1]], "the point -1"), ([[0, 1]], "n x 3")):
+            with self.assertRaisesRegex(clearway.UsageError, said):
+                clearway.ModelShape(points, wrong)
+        with self.assertRaises(TypeError):
+            clearway.ModelShape(points, [[0, 1, 2.5]])
+
     def test_ignored_boxes(self):
         box = clearway.Box((0, -1, -1), (3, 1, 1))
         inside = np.all((self.points >= (0, -1, -1)) & (self.points <= (3, 1, 1)), axis=1)

@@ -48,6 +48,10 @@ constexpr Experiment kExperiments[] = {
      "Whether --engine auto takes the faster engine, and how good its estimates are", true, true},
     {"shards", bench_shards,
      "Work of the largest of 16 shards over the mean, by estimate and measured", true, true},
+    {"surfaces", bench_surfaces,
+     "A mesh as a surface and as points on it: time, and points missed (on the hall, unless "
+     "--env, --model and --trajectory name others)",
+     false, true},
 };
 
 /// Throws UsageError with the experiments that take --scenes.

@@ -14,6 +14,9 @@ METHODS = {"tolerance": ("t", "tolerance t (m)"),
            "model thinned": ("v", "model thinned to a voxel v (m)"),
            "every nth pose": ("n", "every n-th pose"),
            "environment quantised": ("q", "environment quantised to q (m)")}
+# Of surfaces: how it is called in the legend.
+SHAPES = {"surface": "the surface itself",
+          "sampled": "points on it: no place of the surface is farther from one than written"}
 
 
 def wrong(case):
@@ -23,13 +26,15 @@ def wrong(case):
 def label_of(case):
     if case["method"] in METHODS:
         name = f"{METHODS[case['method']][0]} {power(float(case['value']))}"
+    elif case["method"] in SHAPES:
+        name = case["value"] or "surface"
     else:
         name = f"{case['engine']} {case['value']}".strip()
     return name + (" ↑" if case.findings.get("beyond") else "")
 
 
-def draw(record):
-    sheet = Sheet(record, "Speed against accuracy (hall)", 8.3, times=("answer",))
+def draw(record, title="Speed against accuracy (hall)"):
+    sheet = Sheet(record, title, 8.3, times=("answer",))
     axes, place = panels(sheet, 2, 1, legend_lines=3)
     styles = styles_of(record.names("method"))
     number, distance = axes[:, 0]
@@ -66,7 +71,7 @@ def draw(record):
         place_labels(panel, panel.__dict__["clearway_labels"])
     names = list(styles)
     legend_in(place, [handle_of(styles[name]._replace(line="none")) for name in names],
-              [METHODS.get(name, ("", name))[1] for name in names], 3)
+              [SHAPES.get(name) or METHODS.get(name, ("", name))[1] for name in names], 3)
     sheet.say("Wrong: false hits and misses against exact distances. Engine and parameter are "
               "written beside the markers. Grey steps: the front, no other is both faster and more "
               "accurate. ↑: some false hits are farther away than distances are known. Time "

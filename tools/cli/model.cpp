@@ -165,7 +165,7 @@ void add_model(CLI::App& program) {
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
-      "clearway run samples a mesh in the same way, at a quarter of the radius.\n"
+      "clearway run searches the mesh itself. With --model-as points it makes such points.\n"
       "Example: clearway model car.stl --unit mm -o car.ply --spacing 0.025");
   command->callback(
       [options] { run_stoppable(options->output, kStartsAgain, [&] { run_model(*options); }); });

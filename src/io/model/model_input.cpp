@@ -127,8 +127,8 @@ std::uint64_t unused_vertices(const TriangleMesh& mesh) {
 std::vector<Vec3> sampled(const ModelInput& input, double spacing, std::vector<Message>& messages) {
   if (spacing == 0) {
     refuse(input.path.string(),
-           "a mesh of " + format_count(input.mesh.triangles.size()) +
-               " triangles; expected a spacing for the points of its surface",
+           "a mesh of " + counted(input.mesh.triangles.size(), "triangle") +
+               "; expected a spacing for the points of its surface",
            Remedy::kModelSpacing, 0);
   }
   std::vector<Vec3> points = sample_mesh(input.mesh, spacing, input.path.string());
@@ -139,7 +139,7 @@ std::vector<Vec3> sampled(const ModelInput& input, double spacing, std::vector<M
   }
   tell_bend(input, spacing, "the spacing", messages);
   tell(messages, input,
-       "a mesh of " + format_count(input.mesh.triangles.size()) + " triangles, sampled to " +
+       "a mesh of " + counted(input.mesh.triangles.size(), "triangle") + ", sampled to " +
            format_count(points.size()) + " points; no place of its surface is farther than " +
            format_number(spacing) + " m from one",
        {{"triangles", static_cast<double>(input.mesh.triangles.size())},

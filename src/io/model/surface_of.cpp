@@ -127,8 +127,7 @@ TriangleMesh surface_of(const ModelInput& input, const ModelOptions& options,
   if (unused > 0) {
     tell(format_count(unused) + " vertices belong to no face, and are left out of the model");
   }
-  tell("a mesh of " + format_count(mesh.triangles.size()) +
-           " triangles, which are searched as they are",
+  tell("a mesh of " + counted(mesh.triangles.size(), "triangle") + ", searched as it is",
        {{"triangles", static_cast<double>(mesh.triangles.size())}});
   if (options.spacing > 0) {
     tell_bend(input, options.spacing, "the spacing that points would have", messages);

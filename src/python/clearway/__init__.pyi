@@ -87,8 +87,13 @@ class Store:
     def length_unit(self) -> str: ...
     path: Final[_Path]
 
+class ModelShape:
+    points: Final[_Doubles]
+    triangles: Final[_Poses]
+    def __init__(self, points: ArrayLike, triangles: ArrayLike = ...) -> None: ...
+
 class Query:
-    model: Any  # any array is taken, and float64 given
+    model: Any  # any array or a ModelShape is taken, and float64 or a ModelShape given
     poses: Any
     radius: float
     first_pose: bool
@@ -100,7 +105,7 @@ class Query:
     ignore_boxes: list[Box]
     allow_non_rigid: bool
     def __init__(
-        self, model: ArrayLike = ..., poses: ArrayLike = ..., radius: float = 0.0, *,
+        self, model: ArrayLike | ModelShape = ..., poses: ArrayLike = ..., radius: float = 0.0, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
         profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
         ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
@@ -148,6 +153,7 @@ class SearchReport:
     was_finished: Final[bool]
     environment_points: Final[int]
     model_points: Final[int]
+    model_triangles: Final[int]
     poses: Final[int]
     colliding_points: Final[int]
     clearance_points: Final[int]
@@ -269,6 +275,11 @@ def read_model(
     path: _AnyPath, *, spacing: float = 0.0, unit: float = 0.0, environment_unit: float = 1.0,
     vertices_only: bool = False, above: float | None = None, messages: list[Message] | None = None,
 ) -> _Doubles: ...
+def read_model_shape(
+    path: _AnyPath, model_as: Literal["points", "surface"] = "surface", *, spacing: float = 0.0,
+    unit: float = 0.0, environment_unit: float = 1.0, vertices_only: bool = False,
+    above: float | None = None, messages: list[Message] | None = None,
+) -> ModelShape: ...
 def read_trajectory(
     path: _AnyPath, *, format: str = "auto", allow_non_rigid: bool = False,
     angle_unit: Literal["declared", "deg", "rad"] = "declared",
@@ -308,7 +319,7 @@ def find_conflicts(
     progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> Conflicts: ...
 def write_report(
-    result: Result, store: Store, model: ArrayLike, poses: ArrayLike, output: _AnyPath, *,
+    result: Result, store: Store, model: ArrayLike | ModelShape, poses: ArrayLike, output: _AnyPath, *,
     title: str = "", project: str = "", client: str = "", author: str = "", date: str = "",
     result_name: str = "", environment_name: str = "", model_name: str = "",
     trajectory_name: str = "", model_above: float | None = None, model_left_out: int = 0,

@@ -177,7 +177,15 @@ def scaling():
                        failed={"after_seconds": 120.0} if slow else None)
 
 
-EXPERIMENTS = (table, threads, grid, datasets, points, accuracy, stability, scaling)
+def surfaces():
+    yield case({"scene": "hall", "method": "surface", "engine": "sweep cpu", "value": ""}, 0.4,
+               judged(0, 0))
+    for parts, wrong in ((4, 90), (8, 30), (12, 9), (16, 1), (64, 0)):
+        yield case({"scene": "hall", "method": "sampled", "engine": "sweep cpu",
+                    "value": f"r / {parts}"}, 0.02 * parts, judged(wrong, 0.01 / parts**2))
+
+
+EXPERIMENTS = (table, threads, grid, datasets, points, accuracy, stability, scaling, surfaces)
 
 
 def write_records(folder):

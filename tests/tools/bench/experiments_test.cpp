@@ -43,6 +43,22 @@ TEST_CASE("grid: its regular layouts say how many points a chunk has") {
   CHECK(varied.size() == 3);
 }
 
+TEST_CASE("surfaces: points on a surface miss what is beyond their spacing alone") {
+  const Experiment surfaces("surfaces", 1);
+  const Outcome done = surfaces.run();
+  CAPTURE(done.err);
+  REQUIRE(done.exit_code == 0);
+  std::set<std::string> spacings;
+  const Json figures = surfaces.figures();
+  for (const Json& one : figures["cases"]) {
+    CAPTURE(one["key"]);
+    CHECK(one["findings"]["false_hits"] == 0);
+    spacings.insert(one["parameters"]["value"]);
+    if (one["parameters"]["method"] == "surface") CHECK(one["findings"]["misses"] == 0);
+  }
+  CHECK(spacings == std::set<std::string>{"", "r / 12", "r / 16", "r / 4", "r / 8"});
+}
+
 TEST_CASE("accuracy: exact engines err nowhere, the others say where") {
   const Experiment accuracy("accuracy");
   const Outcome done = accuracy.run("--limit 4");

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <set>
 
 #include "bench/variants/variants.hpp"
@@ -94,6 +95,28 @@ TEST_CASE("a thinned model is a subset that covers the model") {
   for (const Vec3& point : kept) of_kept.insert(voxel_of(point));
   CHECK(of_kept == of_model);
   CHECK(of_kept.size() == kept.size());
+}
+
+TEST_CASE("a body fills the box of its model and is closed") {
+  const ScratchFolder folder;
+  write_ply(folder / "model.ply", {{-1, -2, 0}, {3, 2, 1.5}});
+  write_body(folder / "model.ply", folder / "body.off", 799);
+  const ModelShape body = read_model_shape(folder / "body.off", {.as = ModelAs::kSurface});
+  CHECK(body.triangles.size() == 2 * 19 * 19);
+  CHECK(body.points.size() == 19 * 19 + 2);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& [a, b, c] : body.triangles) {
+    for (const auto& edge : {std::pair{a, b}, {b, c}, {c, a}}) ++edges[edge];
+  }
+  for (const auto& [edge, count] : edges) {
+    REQUIRE(count == 1);
+    REQUIRE(edges.contains({edge.second, edge.first}));
+  }
+  for (const Vec3& corner : body.points) {
+    const double x = (corner.x - 1) / 2, y = corner.y / 2, z = (corner.z - 0.75) / 0.75;
+    REQUIRE(x * x * x * x + y * y * y * y + z * z * z * z == Approx(1));
+  }
+  CHECK_THROWS_AS(write_body(folder / "model.ply", folder / "body.off", 17), UsageError);
 }
 
 TEST_CASE("voxels without a size are refused") {

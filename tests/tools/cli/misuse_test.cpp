@@ -225,8 +225,7 @@ TEST_CASE("faces of a mesh are read for a model, not for an environment, which i
       site.run("run --env " + site.path("site.h5") + " --model " + site.path("mesh.ply") +
                " --trajectory " + site.path("path.txt") + " --radius 0.1 -o " + site.path("m.h5"));
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err,
-             Contains("a mesh of 1 triangles, sampled to") && Contains("than 0.025 m"));
+  CHECK_THAT(outcome.err, Contains("a mesh of 1 triangle, searched as it is"));
   const Outcome convert =
       site.run("convert " + site.path("mesh.ply") + " -o " + site.path("m2.h5"));
   CHECK_THAT(convert.err, Contains("its 1 faces are not read, its vertices are"));

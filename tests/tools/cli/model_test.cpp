@@ -87,7 +87,7 @@ TEST_CASE("run of a mesh searches its surface") {
   CHECK(told["model_triangles"] == 12);
   CHECK(told["engine"] == "sweep");
   CHECK(told["searches"] == told["poses"].get<std::uint64_t>() * 12);
-  CHECK_THAT(run.err, Contains("12 triangles, which are searched as they are"));
+  CHECK_THAT(run.err, Contains("12 triangles, searched as it is"));
   const json info =
       json::parse(meshes.work.run("info " + meshes.work.path("surface.h5") + " --json").out);
   CHECK(info["model_as"] == "surface");

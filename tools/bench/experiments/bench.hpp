@@ -154,5 +154,6 @@ void bench_hard(Bench& bench);
 void bench_equality(Bench& bench);
 void bench_choice(Bench& bench);
 void bench_shards(Bench& bench);
+void bench_surfaces(Bench& bench);
 
 }  // namespace clearway::bench

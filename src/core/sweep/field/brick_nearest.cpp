@@ -183,8 +183,8 @@ void find_nearest_triangles(const TriangleTree& tree, const Vec3& corner, double
   std::uint32_t near = 0;
   for (std::uint32_t at = 0; at < ModelFieldRef::kBrickNodes; ++at) {
     constexpr std::uint32_t kRow = ModelFieldRef::kRow;
-    const Vec3 node{corner.x + at % kRow * voxel, corner.y + at / kRow % kRow * voxel,
-                    corner.z + at / kRow / kRow * voxel};
+    const std::uint32_t x = at % kRow, y = at / kRow % kRow, z = at / (kRow * kRow);
+    const Vec3 node{corner.x + x * voxel, corner.y + y * voxel, corner.z + z * voxel};
     const TriangleTree::Nearest found = tree.nearest(node, near);
     near = found.element;
     squared[at] = rounded_down(found.squared_distance);

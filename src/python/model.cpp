@@ -1,0 +1,171 @@
+#include "python/model.hpp"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/values.hpp"
+
+namespace clearway::python {
+namespace {
+
+using namespace py::literals;
+
+using Triangle = std::array<std::uint32_t, 3>;
+using Corners = py::array_t<std::uint32_t, py::array::c_style>;
+
+constexpr Named<ModelAs> kModelAs[] = {{"points", ModelAs::kPoints},
+                                       {"surface", ModelAs::kSurface}};
+
+py::array triangles_array(const std::vector<Triangle>& triangles) {
+  Corners array({static_cast<py::ssize_t>(triangles.size()), py::ssize_t{3}});
+  std::copy_n(triangles.empty() ? nullptr : triangles.front().data(), 3 * triangles.size(),
+              array.mutable_data());
+  return array;
+}
+
+/// n x 3 whole numbers, each below `points`.
+std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points) {
+  const py::array array = py::module_::import("numpy").attr("asarray")(object);
+  if (array.size() == 0) return {};
+  const char kind = array.dtype().kind();
+  if (kind != 'i' && kind != 'u') {
+    throw py::type_error("triangles: expected whole numbers, found " +
+                         std::string(py::str(array.dtype())));
+  }
+  if (array.ndim() != 2 || array.shape(1) != 3) {
+    throw UsageError("triangles: expected an array of n x 3 indices of points");
+  }
+  const auto indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
+  std::vector<Triangle> triangles(static_cast<std::size_t>(indices.shape(0)));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t index = indices.data()[3 * i + k];
+      if (index < 0 || static_cast<std::uint64_t>(index) >= points) {
+        throw UsageError("triangles: triangle " + std::to_string(i) + " has the point " +
+                         std::to_string(index) + ", expected 0 to " +
+                         std::to_string(static_cast<std::int64_t>(points) - 1));
+      }
+      triangles[i][k] = static_cast<std::uint32_t>(index);
+    }
+  }
+  return triangles;
+}
+
+void add_shape(py::module_& module) {
+  py::class_<ModelShape>(module, "ModelShape",
+                         "A model of points, or of triangles that are searched as they are.")
+      .def(py::init([](const py::object& points, const py::object& triangles) {
+             ModelShape shape;
+             shape.points = points_of(points_array(points, "points"), "points");
+             shape.triangles = triangles_of(triangles, shape.points.size());
+             return shape;
+           }),
+           "points"_a, "triangles"_a = py::tuple())
+      .def_property_readonly(
+          "points", [](const ModelShape& s) { return to_array(s.points); },
+          "Points, or the corners of the triangles: n x 3 float64, metres.")
+      .def_property_readonly(
+          "triangles", [](const ModelShape& s) { return triangles_array(s.triangles); },
+          "Three indices of points for each: n x 3 uint32. None: the points are the model.")
+      .def("__repr__", [](const ModelShape& s) {
+        return text("<ModelShape: " + std::to_string(s.points.size()) + " points, " +
+                    std::to_string(s.triangles.size()) + " triangles>");
+      });
+}
+
+void add_read_model(py::module_& module) {
+  module.def(
+      "read_model",
+      [](const py::object& path, double spacing, double unit, double environment_unit,
+         bool vertices_only, std::optional<double> above, const py::object& messages) {
+        const ModelOptions options{ModelAs::kPoints, spacing,       unit,
+                                   environment_unit, vertices_only, above};
+        return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
+          return read_model(file, options, noted);
+        }));
+      },
+      "path"_a, py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0, "environment_unit"_a = 1.0,
+      "vertices_only"_a = false, "above"_a = py::none(), "messages"_a = py::none(),
+      R"(read_model(path, *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
+--
+
+Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
+
+The surface of a mesh is sampled to points. Returns n x 3 float64, metres, in the model's frame.
+
+spacing: of a mesh, metres; no place of its surface is farther from a point. A mesh needs one.
+unit: metres of a unit of the file; 0: as the file says, else as they are.
+environment_unit: metres of the environment's unit, into which a known unit is converted.
+vertices_only: takes the vertices of a mesh alone, and not its surface.
+above: leaves out points whose z is below it, metres; for example wheels on the ground.
+messages: a list to which notes and warnings are appended.)");
+}
+
+void add_read_model_shape(py::module_& module) {
+  module.def(
+      "read_model_shape",
+      [](const py::object& path, const std::string& model_as, double spacing, double unit,
+         double environment_unit, bool vertices_only, std::optional<double> above,
+         const py::object& messages) {
+        const ModelOptions options{value_of("model_as", kModelAs, model_as),
+                                   spacing,
+                                   unit,
+                                   environment_unit,
+                                   vertices_only,
+                                   above};
+        return read_noting(messages, [&, file = path_of(path)](auto* noted) {
+          return read_model_shape(file, options, noted);
+        });
+      },
+      "path"_a, "model_as"_a = "surface", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
+      "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
+      "messages"_a = py::none(),
+      R"(read_model_shape(path, model_as='surface', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
+--
+
+Read a mesh, to be searched as its triangles are. Returns a ModelShape.
+
+model_as: 'surface': the triangles of the mesh; a file without any is refused.
+    'points': as read_model() reads it.
+spacing, vertices_only: for 'points', as read_model() takes them.
+above: cuts the triangles at this height, and leaves out what is below it; metres.
+unit, environment_unit, messages: as read_model() takes them.)");
+}
+
+}  // namespace
+
+py::object model_object(const py::handle& object) {
+  if (py::isinstance<ModelShape>(object)) return py::reinterpret_borrow<py::object>(object);
+  return points_array(object, "model");
+}
+
+ModelShape model_of(const py::object& object) {
+  if (py::isinstance<ModelShape>(object)) return object.cast<ModelShape>();
+  ModelShape shape;
+  shape.points = points_of(points_array(object, "model"), "model");
+  return shape;
+}
+
+std::string model_words(const py::object& object) {
+  if (py::isinstance<ModelShape>(object)) {
+    const std::size_t triangles = object.cast<const ModelShape&>().triangles.size();
+    if (triangles > 0) return std::to_string(triangles) + " model triangles";
+    return std::to_string(object.cast<const ModelShape&>().points.size()) + " model points";
+  }
+  return std::to_string(py::len(object)) + " model points";
+}
+
+void add_model(py::module_& module) {
+  add_shape(module);
+  add_read_model(module);
+  add_read_model_shape(module);
+}
+
+}  // namespace clearway::python
