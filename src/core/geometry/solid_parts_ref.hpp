@@ -31,16 +31,19 @@ struct SolidPartsRef {
 
   /// x: in the model's frame; anything.
   CLEARWAY_HD bool contains(const Vec3& x) const {
-    return any_with([](std::uint32_t) { return true; }, x);
+    return any_with(
+        x, [](std::uint32_t) { return false; }, [](std::uint32_t) { return true; });
   }
 
-  /// Whether visit(solid) is true for any solid that contains x; stops at the first.
-  template <typename Visit>
-  CLEARWAY_HD bool any_with(Visit visit, const Vec3& x) const {
+  /// Whether visit(solid) is true for any solid that contains x; stops at the first. Does not look
+  /// at those for which skip(solid) is true.
+  template <typename Skip, typename Visit>
+  CLEARWAY_HD bool any_with(const Vec3& x, Skip skip, Visit visit) const {
     if (!lattice.has_in_box(x)) return false;
     const SolidLattice::Place place = lattice.place_of(x);
     for (std::uint32_t solid = 0; solid < count; ++solid) {
-      if (winding(solid, x, place) != 0 && visit(solid)) return true;
+      if (skip(solid) || winding(solid, x, place) == 0) continue;
+      if (visit(solid)) return true;
     }
     return false;
   }

@@ -112,8 +112,10 @@ class ProfileDepths {
     if (bound_ < 0) {
       const typename Blocks::Sphere sphere = blocks_.sphere(block);
       SweepStatistics not_counted;
-      const double squared = squared_depth(sweep_, sphere.centre, pose, not_counted);
-      const double most = (std::sqrt(squared) + sphere.rho + 2 * sweep_.rounding) * kRoundedUp;
+      const double more = sphere.rho + 2 * sweep_.rounding;
+      const double squared = DepthAtPose<Element>(sweep_, sphere.centre, not_counted)
+                                 .squared(pose, squared_depth_below(-bound_, more), near_);
+      const double most = (std::sqrt(squared) + more) * kRoundedUp;
       if (most * most * kRoundedUp < -bound_) return;
     }
     for (std::uint32_t begin = block * kBlockPoints; begin < (block + 1) * kBlockPoints;
@@ -132,7 +134,10 @@ class ProfileDepths {
       const Vec3 e = page_.position(quantisation_, *cell_, index);
       ++statistics_[lane].point_tests;
       if (!may_be_inside(pose, e)) return;
-      const double squared = squared_depth(sweep_, e, pose, statistics_[lane]);
+      // What is less deep than the bound need not be exact: it stays above the bound.
+      std::uint32_t near = near_;
+      const double squared = DepthAtPose<Element>(sweep_, e, statistics_[lane])
+                                 .squared(pose, bound_ < 0 ? -bound_ : 0, near);
       if (squared > 0) least[lane] = 0 - squared;
     });
     const double value = Warp::least(least);
@@ -165,6 +170,7 @@ class ProfileDepths {
   const PageCell* cell_ = nullptr;
   std::uint32_t index_ = 0;  ///< of it, in the page
   std::uint32_t first_point_ = 0, first_slot_ = 0;
+  std::uint32_t near_ = 0;                 ///< triangle of the solids to begin with
   double bound_ = 0;                       ///< v above it do not matter at this pose
   double found_ = kInfinity;               ///< the least v found at the last pose
   std::uint32_t last_pose_ = kSweepNever;  ///< that was searched
