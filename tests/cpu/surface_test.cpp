@@ -132,7 +132,7 @@ TEST_CASE("random surfaces") {
     const double size = std::exp(uniform(random, -3, 4));
     const Box room{{-size, -size, -size / 3}, {size, size, size / 3}};
     const double part = size * uniform(random, 0.01, 0.4);
-    const bool large = seed % 50 == 0;
+    const bool large = seed % 100 == 0;
     scene.surface = random_surface(random, {{-part, -part, -part / 2}, {part, part, part}},
                                    1 + below(random, 30));
     scene.poses = smooth_path(random, room, 1 + below(random, large ? 40 : 12));
@@ -141,7 +141,7 @@ TEST_CASE("random surfaces") {
                          : part * std::exp(uniform(random, -1, 1.5));
     scene.quantisation = {{size * 1e-6, size * 1e-6, size * 2e-6}, {0, 0, 0}};
     scene.points = quantise(
-        places_beside(random, scene.surface, scene.poses, 2 * scene.radius, large ? 300 : 80),
+        places_beside(random, scene.surface, scene.poses, 2 * scene.radius, large ? 200 : 30),
         scene.quantisation);
     if (below(random, 3) == 0) scene.move_far_away({5e5, 5e6, 300});
     const std::uint32_t cell_points = std::uint32_t{64} << below(random, 4);

@@ -95,8 +95,9 @@ inline Surface torus(double thin, std::uint32_t around, std::uint32_t along_tube
 }
 
 /// A body that does not cross itself, within about `size` of the origin: any turn, from as wide as
-/// high down to needles and sheets that are 1e-9 times as thick.
-inline Surface random_body(Random& random, double size) {
+/// high down to needles and sheets that are 1e-9 times as thick. is_simple: of at most 40
+/// triangles.
+inline Surface random_body(Random& random, double size, bool is_simple = false) {
   const Pose turn = random_rotation(random, {0, 0, 0});
   const auto thinness = [&] {
     return below(random, 2) == 0 ? 1 : std::pow(10, -uniform(random, 0, 9));
@@ -113,13 +114,14 @@ inline Surface random_body(Random& random, double size) {
       body = box_surface({{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}});
       break;
     case 2: {
-      body = unit_sphere(static_cast<int>(below(random, 3)));
+      body = unit_sphere(static_cast<int>(below(random, is_simple ? 2 : 3)));
       for (Vec3& v : body.vertices) v = plus({}, below(random, 8) == 0 ? 0.05 : 1, v);
       break;
     }
     default:
-      body = torus(uniform(random, 0.1, 0.5), static_cast<std::uint32_t>(3 + below(random, 8)),
-                   static_cast<std::uint32_t>(3 + below(random, 5)));
+      body = torus(uniform(random, 0.1, 0.5),
+                   static_cast<std::uint32_t>(3 + below(random, is_simple ? 3 : 8)),
+                   static_cast<std::uint32_t>(3 + below(random, is_simple ? 2 : 5)));
       break;
   }
   if (below(random, 2) == 0) body = turned_inwards(body);
