@@ -133,12 +133,11 @@ std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const Quantis
     set_column(columns.source, strip, [](const auto& row) { return row.source; });
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
     set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
+    for (const double distance : columns.distance) out->inside += distance < 0;
     set_column(columns.pose, strip, [](const auto& row) { return row.pose; });
     out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose);
   });
   out->rows.seal();
-  out->inside = static_cast<std::uint64_t>(
-      std::ranges::count_if(rows, [](const ClearanceRow& row) { return row.distance < 0; }));
   const ClearanceRow& least = least_row(rows, &ClearanceRow::distance);
   out->place = {least.source, least.pose, xyz_of(quantisation, least.q), least.distance};
   return out;
@@ -221,8 +220,7 @@ class ResultWriting {
                             });
   }
 
-  void write_clearances(const SetCells& in, std::optional<FoundPlace>& least,
-                        std::uint64_t& inside) {
+  void write_clearances(const SetCells& in, WrittenResult& out) {
     const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
     const ClearanceSet& clearances = answer_.clearances;
     const auto rows_of = [&](std::uint32_t cell) {
@@ -237,9 +235,9 @@ class ResultWriting {
       return encode(writer_, store_.quantisation(), rows);
     };
     const auto keep_least = [&](const ClearancePiece& piece) {
-      inside += piece.inside;
-      if (least && least->distance <= piece.place->distance) return;
-      least = piece.place;
+      out.inside_points += piece.inside;
+      std::optional<FoundPlace>& least = out.least_clearance;
+      if (!least || piece.place->distance < least->distance) least = piece.place;
     };
     write_set<ClearanceRow>(store_, clearances, in, plan, progress_, rows_of,
                             [&](std::span<const ClearanceRow> rows) {
@@ -270,7 +268,7 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
   progress.begin("write", out.collisions + out.clearances, "points");
   ResultWriting writing(store, answer, memory_bytes, writer, progress);
   writing.write_collisions(collisions, out.first_place);
-  writing.write_clearances(clearances, out.least_clearance, out.inside_points);
+  writing.write_clearances(clearances, out);
   if (header.profile > 0) {
     out.least_profile =
         write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress);

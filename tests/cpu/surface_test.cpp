@@ -137,8 +137,8 @@ TEST_CASE("random surfaces") {
                                    1 + below(random, 30));
     scene.poses = smooth_path(random, room, 1 + below(random, large ? 40 : 12));
     // A radius far below the model's size takes a large field.
-    scene.radius = large ? size * std::exp(uniform(random, -5, 0))
-                         : part * std::exp(uniform(random, -1, 1.5));
+    scene.radius =
+        large ? size * std::exp(uniform(random, -5, 0)) : part * std::exp(uniform(random, -1, 1.5));
     scene.quantisation = {{size * 1e-6, size * 1e-6, size * 2e-6}, {0, 0, 0}};
     scene.points = quantise(
         places_beside(random, scene.surface, scene.poses, 2 * scene.radius, large ? 200 : 30),

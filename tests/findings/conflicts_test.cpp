@@ -157,7 +157,6 @@ TEST_CASE("least distances come from the clearances, of equal ones the smallest 
   CHECK(out.listed[0].nearest_pose == 1);
   CHECK(out.listed[0].encroachment == 0.25);
   CHECK_FALSE(out.listed[0].depth);  // of points
-  CHECK_FALSE(out.listed[0].points_inside);
   CHECK(out.listed[1].least_distance == 0.5);
   CHECK(out.listed[1].nearest_source == 8);
 }
