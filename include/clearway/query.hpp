@@ -34,6 +34,9 @@ struct QueryParameters {
   friend bool operator==(const QueryParameters&, const QueryParameters&) = default;
 };
 
+/// Of a triangle that belongs to no solid.
+inline constexpr std::uint32_t kNoSolid = 0xffffffff;
+
 /// Which points of an environment lie within the search radius of the moving model?
 struct Query : QueryParameters {
   Query() = default;
@@ -41,16 +44,30 @@ struct Query : QueryParameters {
       : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
 
   bool is_surface() const { return !triangles.empty(); }
+  bool is_solid() const { return !solid_of.empty(); }  ///< then it is a surface too
 
   std::vector<Vec3> model;  ///< points, or corners of triangles; in the model's own frame, metres
   std::vector<Pose> poses;
   /// Three indices into `model` each: the model is their surface. None: it is its points.
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// The number of each triangle's solid, from 0, or kNoSolid: what is inside collides too. The
+  /// triangles of a solid are closed: each edge is used as often in one direction as in the other,
+  /// by vertices of the same values. None: nothing has an inside.
+  std::vector<std::uint32_t> solid_of;
 };
 
 /// Of a surface its triangles, otherwise the model's points.
 inline std::uint64_t element_count(const Query& query) {
   return query.is_surface() ? query.triangles.size() : query.model.size();
+}
+
+/// How many solids the model has.
+inline std::uint64_t solid_count(const Query& query) {
+  std::uint64_t count = 0;
+  for (const std::uint32_t solid : query.solid_of) {
+    if (solid != kNoSolid && solid >= count) count = solid + std::uint64_t{1};
+  }
+  return count;
 }
 
 }  // namespace clearway

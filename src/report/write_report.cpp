@@ -48,8 +48,8 @@ void check_inputs(const Result& result, const Store& store, const std::vector<Ve
         result.reader().name() + ": names another coordinate reference system than the store",
         Remedy::kSameEnvironment);
   }
-  check_hash(result, "model", hash_of_model(model, options.model_triangles), header.model_hash,
-             Remedy::kSameModel);
+  check_hash(result, "model", hash_of_model(model, options.model_triangles, options.model_solid_of),
+             header.model_hash, Remedy::kSameModel);
   check_hash(result, "trajectory", hash_of_trajectory(poses), header.trajectory_hash,
              Remedy::kSameTrajectory);
 }

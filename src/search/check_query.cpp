@@ -6,6 +6,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "core/geometry/inside.hpp"
 #include "core/query/ignored_text.hpp"
 
 namespace clearway {
@@ -89,6 +90,26 @@ void check_triangles(const Query& query) {
   }
 }
 
+void check_solids(const Query& query) {
+  if (!query.is_solid()) return;
+  if (query.solid_of.size() != query.triangles.size()) {
+    throw InputError("the model has " + std::to_string(query.triangles.size()) +
+                     " triangles and the solids of " + std::to_string(query.solid_of.size()) +
+                     ", expected one for each");
+  }
+  if (solid_count(query) > query.triangles.size()) {
+    throw InputError("the model names solid " + std::to_string(solid_count(query) - 1) +
+                     ", expected numbers below that of its triangles");
+  }
+  for (const Vec3& corner : query.model) {
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(corner[k]) < SolidLattice::kMostSide / 2) continue;
+      throw InputError("a corner of the model has the coordinate " + std::to_string(corner[k]) +
+                       ", expected one below 5e149 m for a model with solids");
+    }
+  }
+}
+
 }  // namespace
 
 Engine chosen_engine(const SearchOptions& options) {
@@ -153,6 +174,13 @@ void check_surface(const QueryParameters& query, const SearchOptions& options) {
   }
 }
 
+void check_solid(const QueryParameters& query) {
+  if (!(query.tolerance > 0)) return;
+  throw UsageError(
+      "a tolerance and a model with solids cannot be combined: without a tolerance, "
+      "engine sweep answers it exactly");
+}
+
 void check_sizes(const Query& query) {
   constexpr std::uint64_t kEnd = std::uint64_t{1} << 31;  // trees have up to 2 n - 1 nodes
   if (query.poses.size() >= kEnd) {
@@ -165,6 +193,7 @@ void check_sizes(const Query& query) {
                      " points, expected fewer than 2^32");
   }
   check_triangles(query);
+  check_solids(query);
 }
 
 }  // namespace clearway

@@ -27,7 +27,8 @@ std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) 
 std::uint64_t tree_building_bytes(const Query& query) {
   const std::uint64_t of_model =
       query.is_surface() ? 240 * query.triangles.size() : 52 * query.model.size();
-  return of_model + 168 * query.poses.size();
+  const std::uint64_t of_solids = 400 * query.solid_of.size();  // each once more, by solid
+  return of_model + of_solids + 168 * query.poses.size();
 }
 
 void check_memory(std::uint64_t needed, std::uint64_t allowed) {

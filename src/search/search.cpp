@@ -87,6 +87,7 @@ class Search {
     report_.environment_points = store_.point_count();
     report_.model_points = query_.model.size();
     report_.model_triangles = query_.triangles.size();
+    report_.model_solids = solid_count(query_);
     report_.poses = query_.poses.size();
     report_.cells_total = store_.cells().size();
     report_.ignored = header_.ignored;
@@ -252,6 +253,7 @@ class Search {
   void report_written(const WrittenResult& written) {
     report_.colliding_points = written.collisions;
     report_.clearance_points = written.clearances;
+    report_.inside_points = written.inside_points;
     report_.first_place = written.first_place;
     report_.least_clearance = written.least_clearance;
     report_.least_profile = written.least_profile;
@@ -299,6 +301,7 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
                     const SearchOptions& options) {
   check_query(query, options);
   if (query.is_surface()) check_surface(query, options);
+  if (query.is_solid()) check_solid(query);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

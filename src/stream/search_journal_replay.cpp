@@ -1,5 +1,6 @@
 // What a journal's file holds, checked record by record and added to an answer.
 #include <algorithm>
+#include <cmath>
 
 #include "core/geometry/predicate.hpp"
 #include "stream/each_bit.hpp"
@@ -86,6 +87,11 @@ std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t 
   return bits;
 }
 
+/// Inside solids it is below 0.
+bool SearchJournal::is_square(double squared) const {
+  return squared >= 0 || (query_.is_solid() && squared < 0 && std::isfinite(squared));
+}
+
 void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
                                 ClearanceSet* clearances) const {
   const std::uint64_t cell_word = std::uint64_t{take_cell(payload)} * cloud_.blocks_per_cell();
@@ -112,7 +118,7 @@ void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
     for_each_bit(bits, [&](std::size_t i) {
       const auto squared = payload.take<double>();
       const Clearance clearance{squared, take_pose(payload)};
-      if (!(squared >= 0 && clearance.found())) payload.refuse("a distance that is none");
+      if (!(is_square(squared) && clearance.found())) payload.refuse("a distance that is none");
       if (clearances != nullptr) clearances->set(word * kBlockPoints + i, clearance);
     });
   });
@@ -142,7 +148,7 @@ void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile)
   for (std::uint64_t facts = payload.take_count(); facts > 0; --facts) {
     const std::uint32_t pose = take_pose(payload);
     const auto squared = payload.take<double>();
-    if (!(squared >= 0 && squared < limit)) payload.refuse("a distance that is none");
+    if (!(is_square(squared) && squared < limit)) payload.refuse("a distance that is none");
     const std::uint64_t entry = payload.take_count();
     const std::uint64_t cell = entry / cloud_.cell_entries(), index = entry % cloud_.cell_entries();
     if (cell >= cloud_.cells().size() || index >= cloud_.cells()[cell].count) {

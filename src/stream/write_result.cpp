@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/query/signed_root.hpp"
 #include "io/system/thread_limit.hpp"
 #include "stream/write/gather_rows.hpp"
 #include "stream/write/write_profile.hpp"
@@ -132,6 +133,7 @@ std::shared_ptr<ClearancePiece> encode(const ResultWriter& writer, const Quantis
     set_column(columns.source, strip, [](const auto& row) { return row.source; });
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
     set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
+    for (const double distance : columns.distance) out->inside += distance < 0;
     set_column(columns.pose, strip, [](const auto& row) { return row.pose; });
     out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose);
   });
@@ -218,7 +220,7 @@ class ResultWriting {
                             });
   }
 
-  void write_clearances(const SetCells& in, std::optional<FoundPlace>& least) {
+  void write_clearances(const SetCells& in, WrittenResult& out) {
     const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
     const ClearanceSet& clearances = answer_.clearances;
     const auto rows_of = [&](std::uint32_t cell) {
@@ -226,15 +228,16 @@ class ResultWriting {
                                                std::uint32_t i) {
         const Clearance clearance = clearances.at(entry);
         return ClearanceRow{
-            source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
+            source, signed_root(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
       };
     };
     const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
       return encode(writer_, store_.quantisation(), rows);
     };
     const auto keep_least = [&](const ClearancePiece& piece) {
-      if (least && least->distance <= piece.place->distance) return;
-      least = piece.place;
+      out.inside_points += piece.inside;
+      std::optional<FoundPlace>& least = out.least_clearance;
+      if (!least || piece.place->distance < least->distance) least = piece.place;
     };
     write_set<ClearanceRow>(store_, clearances, in, plan, progress_, rows_of,
                             [&](std::span<const ClearanceRow> rows) {
@@ -265,7 +268,7 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
   progress.begin("write", out.collisions + out.clearances, "points");
   ResultWriting writing(store, answer, memory_bytes, writer, progress);
   writing.write_collisions(collisions, out.first_place);
-  writing.write_clearances(clearances, out.least_clearance);
+  writing.write_clearances(clearances, out);
   if (header.profile > 0) {
     out.least_profile =
         write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress);

@@ -77,7 +77,9 @@ Query read_query_again(ReportCommand& options, const Result& result, const Store
                 [](const Message& told) { return told.severity == Message::Severity::kNote; });
   Query query(std::move(model.points), std::move(poses), result.parameters());
   query.triangles = std::move(model.triangles);
+  query.solid_of = std::move(model.solid_of);
   options.report.model_triangles = query.triangles;
+  options.report.model_solid_of = query.solid_of;
   return query;
 }
 

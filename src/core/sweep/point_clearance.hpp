@@ -5,6 +5,7 @@
 
 #include "core/query/clearance_set.hpp"
 #include "core/sweep/point_curve.hpp"
+#include "core/sweep/solid_depth.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "core/util/bit_reversal_order.hpp"
 
@@ -12,7 +13,8 @@ namespace clearway {
 
 /// The exact clearance of one environment point: branch and bound over motion tree and model. What
 /// is given up is proven to have only computed d2 above the best so far, so that ties reach the
-/// lowest pose (docs/design/numerics.md, "Clearance").
+/// lowest pose (docs/design/numerics.md, "Clearance"). Of solids the depth comes first: below 0, it
+/// is the answer.
 template <typename Element>
 class PointClearance {
  public:
@@ -20,12 +22,23 @@ class PointClearance {
   CLEARWAY_HD PointClearance(const SweepRefOf<Element>& sweep, const Vec3& e, const Clearance& best,
                              SweepStatistics& statistics)
       : sweep_(sweep), statistics_(statistics), e_(e) {
-    set_best(best.squared, best.pose);
+    best_ = best;
+    if (!is_inside()) set_best(best.squared, best.pose);
   }
 
   CLEARWAY_HD const Clearance& best() const { return best_; }
-  /// That the best was found with.
+  CLEARWAY_HD bool is_inside() const { return best_.squared < 0; }
+  /// That the best was found with, unless it is inside.
   CLEARWAY_HD const Element& element() const { return near_; }
+
+  /// Looks whether the point is inside at a pose.
+  CLEARWAY_HD void offer_inside(std::uint32_t pose) {
+    if constexpr (kIsSolid<Element>) {
+      SolidDepth<Element> depth(sweep_, e_, best_, statistics_);
+      depth.offer(pose);
+      if (depth.best().squared < 0) best_ = depth.best();
+    }
+  }
 
   CLEARWAY_HD void offer(std::uint32_t pose, const Element& m) {
     const double squared = squared_distance(e_, transform(sweep_.motion.poses[pose], m));
@@ -37,6 +50,8 @@ class PointClearance {
   /// Every pose of some nodes, at most kMostNodes. First a look at all, far apart ones first, for a
   /// best that is close from the start; then the one that may be nearest comes first.
   CLEARWAY_HD void search(const std::uint32_t* nodes, std::uint32_t count) {
+    search_inside(nodes, count);
+    if (is_inside()) return;
     double squared_lower[kMostNodes];
     BitReversalOrder(count).for_each([&](std::uint32_t i) {
       squared_lower[i] = look(nodes[i]);
@@ -60,6 +75,14 @@ class PointClearance {
 
   CLEARWAY_HD std::uint32_t size_of(std::uint32_t at) const {
     return 2 * sweep_.motion.nodes[at].count - 1;
+  }
+
+  CLEARWAY_HD void search_inside(const std::uint32_t* nodes, std::uint32_t count) {
+    if constexpr (kIsSolid<Element>) {
+      SolidDepth<Element> depth(sweep_, e_, best_, statistics_);
+      for (std::uint32_t i = 0; i < count; ++i) depth.search(nodes[i]);
+      if (depth.best().squared < 0) best_ = depth.best();
+    }
   }
 
   /// What the square of the distance is at least, pulled back by the middle pose of the node.

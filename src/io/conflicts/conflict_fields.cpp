@@ -36,7 +36,9 @@ std::vector<ConflictField> fields_of(const Conflict& c) {
           {"side", std::string_view(name_of(c.side))},
           {"lateral", value_of<double>(c.lateral)},
           {"height", value_of<double>(c.height)},
-          {"group", c.group}};
+          {"group", c.group},
+          {"depth", value_of<double>(c.depth)},
+          {"points_inside", value_of<std::uint64_t>(c.points_inside)}};
 }
 
 }  // namespace clearway

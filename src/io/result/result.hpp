@@ -59,6 +59,7 @@ struct ResultHeader : QueryParameters {
   std::optional<ResultPart> part;  ///< of what merge() makes a result of
   /// Of a surface, whose corners the model's points are; 0: the points are the model.
   std::uint64_t model_triangles = 0;
+  std::uint64_t model_solids = 0;  ///< parts of it with an inside; then distances may be below 0
   IgnoredPointCounts ignored{};  ///< of ignore_classes and ignore_boxes, as sort_ignored() has them
   std::uint64_t classes_hash = 0;  ///< of all points; 0 where no class is ignored
   /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances. Version

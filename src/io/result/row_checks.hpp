@@ -19,6 +19,8 @@ struct RowChecks {
   void sources(std::span<const std::uint64_t> source) const;
   void points(std::span<const Vec3> xyz) const;
   void poses(const char* dataset, std::span<const std::uint32_t> pose) const;
+  /// Of a model with solids, one below 0 too.
+  bool is_distance(double distance) const;
   void clearances(std::span<const double> distance) const;
   /// Distance, source and point of a pose belong together.
   void profile(std::span<const double> distance, std::span<const std::uint64_t> source,

@@ -46,14 +46,16 @@ ModelField::ModelField(Tree tree, const Box& model, double spacing, double radiu
                        const ModelFieldOptions& options, int threads)
     : tree_(tree), model_(model), by_need_(options.by_need) {
   if (threads == 0) threads = omp_get_max_threads();
+  if (options.solids != nullptr) inside_.emplace(*options.solids);
   choose_voxel(spacing, radius, options);
   for (;; voxel_ *= 2) {
     lay_out(margin_steps(options.reach));
     fill_coarse(options.reach > 0, threads);
     const double band = this->band(radius, options.reach);
     bricks_ = mark_bricks(band, threads);
-    if (bricks_ * kBrickBytes <= options.most_bytes) break;
+    if (bricks_ * brick_bytes() <= options.most_bytes) break;
   }
+  if (inside_) inside_->lay_out(size_, origin_, coarse_, brick_of_, bricks_);
   distances_ = std::make_unique_for_overwrite<float[]>(std::size_t{bricks_} * kBrickNodes);
   nearest_ = std::make_unique_for_overwrite<std::uint32_t[]>(std::size_t{bricks_} * kBrickNodes);
   if (!by_need_) make_all(threads);
@@ -195,6 +197,7 @@ void ModelField::make_brick(std::size_t cell) const {
   } else {
     find_nearest_triangles(*std::get<const TriangleTree*>(tree_), corner, voxel_, squared, nearest);
   }
+  if (inside_) inside_->make_brick(brick, corner, voxel_, squared);
   std::atomic_ref(brick_of_[cell]).store(brick, std::memory_order_release);
 }
 
@@ -240,7 +243,8 @@ ModelFieldRef ModelField::ref() const {
           .brick_of = brick_of_.data(),
           .distances = distances_.get(),
           .nearest = nearest_.get(),
-          .by_need = by_need_ ? this : nullptr};
+          .by_need = by_need_ ? this : nullptr,
+          .inside = inside_ ? inside_->ref() : FieldInsideRef{}};
 }
 
 ModelFieldRef ModelField::ref_as_made() const {
@@ -252,7 +256,11 @@ ModelFieldRef ModelField::ref_as_made() const {
 std::uint64_t ModelField::allocated_bytes() const {
   return coarse_squared_.capacity() * sizeof(float) +
          (coarse_nearest_.capacity() + brick_of_.capacity()) * sizeof(std::uint32_t) +
-         bricks_ * kBrickBytes;
+         bricks_ * kBrickBytes + (inside_ ? inside_->allocated_bytes() : 0);
+}
+
+std::uint64_t ModelField::brick_bytes() const {
+  return kBrickBytes + (inside_ ? FieldInside::kBrickBytes : 0);
 }
 
 }  // namespace clearway
