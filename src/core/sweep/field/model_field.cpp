@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/sweep/field/brick_nearest.hpp"
+#include "core/sweep/field/brick_triangles.hpp"
 
 namespace clearway {
 namespace {
@@ -193,7 +194,7 @@ void ModelField::make_brick(std::size_t cell) const {
   if (const auto* points = std::get_if<const ModelTree*>(&tree_)) {
     BrickNearest(**points).find(corner, voxel_, squared, nearest);
   } else {
-    find_nearest_triangles(*std::get<const TriangleTree*>(tree_), corner, voxel_, squared, nearest);
+    BrickTriangles(*std::get<const TriangleTree*>(tree_)).find(corner, voxel_, squared, nearest);
   }
   std::atomic_ref(brick_of_[cell]).store(brick, std::memory_order_release);
 }
