@@ -162,7 +162,7 @@ struct SweepRefOf {
     if (farther(back.least, squared_lower, radius + node.delta + rounding)) {
       return Verdict::kDismissed;
     }
-    if (bounds.near != ModelFieldRef::kNone &&
+    if (bounds.near != ModelFieldRef::kNone && may_hit_at_mid(back, squared_lower) &&
         collides(e, transform(motion.poses[node.mid], model.elements[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
@@ -173,6 +173,12 @@ struct SweepRefOf {
       return Verdict::kDismissed;
     }
     return Verdict::kOpen;
+  }
+
+  /// Whether the predicate is worth asking: that of points costs no more than the test.
+  CLEARWAY_HD bool may_hit_at_mid(const InversePose& back, double squared_lower) const {
+    if constexpr (!kIsTriangle<Element>) return true;
+    return !farther(back.least, squared_lower, radius + rounding);
   }
 
   CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node,
