@@ -112,13 +112,14 @@ struct TrianglePacket {
     return a.x * b.x + a.y * b.y + a.z * b.z;
   }
 
- private:
-  CLEARWAY_HD static Vec3 beyond(const Vec3& from, double share, const Vec3& way) {
-    return {from.x - share * way.x, from.y - share * way.y, from.z - share * way.z};
-  }
   CLEARWAY_HD static double clamped(double share) {
     const double from_0 = share > 0 ? share : 0;  // also of what is no number
     return from_0 < 1 ? from_0 : 1;
+  }
+
+ private:
+  CLEARWAY_HD static Vec3 beyond(const Vec3& from, double share, const Vec3& way) {
+    return {from.x - share * way.x, from.y - share * way.y, from.z - share * way.z};
   }
   CLEARWAY_HD static Nearest measured(const Vec3& way) { return {dot(way, way), way}; }
   CLEARWAY_HD static Nearest nearer(const Nearest& one, const Nearest& other) {

@@ -78,7 +78,7 @@ class SweepFilterOf final : public PoseReach {
   const ModelTreeOf<Element>& model_;
   SweepRefOf<Element> ref_;
   MotionCurves curves_;           ///< with a clearance
-  WideTree wide_;                 ///< likewise, of points
+  WideTreeOf<Element> wide_;      ///< likewise
   SweepRefOf<Element> for_plan_;  ///< makes no bricks: cells are too large to need them
 };
 

@@ -67,8 +67,8 @@ struct SweepRefOf {
   MotionTreeRef motion;
   ModelTreeRefOf<Element> model;
   ModelFieldRef field;
-  WideTreeRef wide;  ///< the model's points again, with a clearance; not of triangles
-  double radius;     ///< whatever is closer is a hit; with a tolerance search_radius()
+  WideTreeRefOf<Element> wide;  ///< the model's elements again, with a clearance
+  double radius;                ///< whatever is closer is a hit; with a tolerance search_radius()
   double
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
   double clearance;   ///< 0: not asked for

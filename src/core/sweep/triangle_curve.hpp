@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/box.hpp"
+#include "core/geometry/sweep_bounds.hpp"
+#include "core/geometry/triangle_packet.hpp"
+#include "core/trajectory/motion_tree_ref.hpp"
+
+namespace clearway {
+
+/// The parabola c(t) = start + t way + t (1 - t) bend that a point moves along, seen from the model,
+/// while the model moves through the poses of a node, against triangles. It lies in the convex hull
+/// of c(0), c(1) and the place where its tangents there meet.
+class TriangleCurve {
+ public:
+  CLEARWAY_HD TriangleCurve(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e)
+      : way_{}, bend_{} {
+    const MotionParabola through(node);
+    start_ = motion.inverse_poses[through.middle].apply(e);
+    if (node.count == 1) return;
+    const Vec3 middle = start_;
+    if (through.middle != through.first) start_ = motion.inverse_poses[through.first].apply(e);
+    way_ = difference(motion.inverse_poses[through.last].apply(e), start_);
+    const double height = through.height(), t = through.middle_place;
+    for (int k = 0; k < 3 && height > 0; ++k) {
+      bend_[k] = (middle[k] - start_[k] - t * way_[k]) / height;
+    }
+    const double squared_way = squared_length(way_.x, way_.y, way_.z);
+    if (squared_way > kLeastSquaredWay) per_squared_way_ = 1 / squared_way;
+  }
+
+  CLEARWAY_HD Box box() const {
+    Box box{start_, start_};
+    for (int k = 0; k < 3; ++k) {
+      (way_[k] < 0 ? box.lo : box.hi)[k] += way_[k];
+      (bend_[k] < 0 ? box.lo : box.hi)[k] += 0.25 * bend_[k];
+    }
+    return box;
+  }
+
+  /// At most the squares of the distances to the triangles of a packet.
+  CLEARWAY_HD void to_triangles(const TrianglePacket& packet,
+                                double (&squared)[TrianglePacket::kMost]) const {
+#ifdef __CUDA_ARCH__
+    to_all_triangles(packet, squared);
+#else
+    to_triangles_in_vectors(packet, squared);
+#endif
+  }
+
+  /// The t of a place that is near the triangle.
+  CLEARWAY_HD double place(const TrianglePacket& packet, std::uint32_t i) const {
+    const Vec3 x = at(0.5);
+    return place_near(difference(x, packet.nearest(i, x).way));
+  }
+
+ private:
+  /// Where the way is shorter, it is as good as a place.
+  static constexpr double kLeastSquaredWay = 1e-140;
+
+  CLEARWAY_HD void to_all_triangles(const TrianglePacket& packet, double* squared) const {
+    for (std::uint32_t i = 0; i < TrianglePacket::kMost; ++i) {
+      const double t = place(packet, i);
+      const Vec3 x = at(t);
+      const TrianglePacket::Nearest from = packet.nearest(i, x);
+      squared[i] = packet.from_hull(i, from, along_hull(from.way, t));
+    }
+  }
+
+  /// The same in vectors of the processor.
+  void to_triangles_in_vectors(const TrianglePacket& packet, double* squared) const;
+
+  CLEARWAY_HD Vec3 at(double t) const {
+    const double rest = 1 - t;
+    return {start_.x + t * (way_.x + rest * bend_.x), start_.y + t * (way_.y + rest * bend_.y),
+            start_.z + t * (way_.z + rest * bend_.z)};
+  }
+
+  /// Of the chord.
+  CLEARWAY_HD double place_near(const Vec3& m) const {
+    return TrianglePacket::clamped(TrianglePacket::dot(way_, difference(m, start_)) *
+                                   per_squared_way_);
+  }
+
+  /// The least product of v and a corner of the hull as seen from at(t), or 0 if that is less.
+  CLEARWAY_HD double along_hull(const Vec3& v, double t) const {
+    const double way = TrianglePacket::dot(v, way_), bend = TrianglePacket::dot(v, bend_);
+    const double here = t * (way + (1 - t) * bend);
+    const double middle = 0.5 * (way + bend);
+    double least = way < 0 ? way : 0;
+    least = middle < least ? middle : least;
+    least -= here;
+    return least < 0 ? least : 0;
+  }
+
+  Vec3 start_, way_, bend_;
+  double per_squared_way_ = 0;
+};
+
+}  // namespace clearway
