@@ -155,7 +155,7 @@ class PointClearance {
           if (one_place) {
             offer(node.first, sweep_.model.elements[packet.index[i]]);
           } else {
-            search_poses(node, packet, i, curve);
+            search_poses(node, packet, i, curve, least, error);
           }
           squared = squared_ball(least, error);
           return false;
@@ -164,15 +164,22 @@ class PointClearance {
 
   /// One triangle against the poses of a smooth node, the likely nearest first.
   CLEARWAY_HD void search_poses(const MotionNode& node, const TrianglePacket& packet,
-                                std::uint32_t i, const TriangleCurve& curve) {
+                                std::uint32_t i, const TriangleCurve& curve, double least,
+                                double error) {
+    constexpr std::uint32_t kMost = TriangleCurve::kMostPlaces;
     const Element& t = sweep_.model.elements[packet.index[i]];
-    const auto nearest = static_cast<std::uint32_t>(curve.place(packet, i) * (node.count - 1) + 0.5);
+    const double per_last = 1.0 / (node.count - 1);
+    const auto nearest =
+        static_cast<std::uint32_t>(curve.place(packet, i) * (node.count - 1) + 0.5);
     offer(node.first + nearest, t);
-    for (std::uint32_t k = 0; k < node.count; ++k) {
-      if (k == nearest) continue;
-      const InversePose& back = sweep_.motion.inverse_poses[node.first + k];
-      if (packet.nearest(i, back.apply(e_)).squared > squared_ball(back.least, 0)) continue;
-      offer(node.first + k, t);
+    double from_pose[kMost];
+    for (std::uint32_t begin = 0; begin < node.count; begin += kMost) {
+      curve.from_places(packet, i, begin, per_last, from_pose);
+      const std::uint32_t end = begin + kMost < node.count ? begin + kMost : node.count;
+      for (std::uint32_t k = begin; k < end; ++k) {
+        if (k == nearest || from_pose[k - begin] > squared_ball(least, error)) continue;
+        offer(node.first + k, t);
+      }
     }
   }
 

@@ -55,6 +55,18 @@ class TriangleCurve {
     return place_near(difference(x, packet.nearest(i, x).way));
   }
 
+  static constexpr std::uint32_t kMostPlaces = 8;
+
+  /// The squares of the distances from a triangle to the places (first + k) per_last.
+  CLEARWAY_HD void from_places(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
+                               double per_last, double (&squared)[kMostPlaces]) const {
+#ifdef __CUDA_ARCH__
+    from_all_places(packet, i, first, per_last, squared);
+#else
+    from_places_in_vectors(packet, i, first, per_last, squared);
+#endif
+  }
+
  private:
   /// Where the way is shorter, it is as good as a place.
   static constexpr double kLeastSquaredWay = 1e-140;
@@ -70,6 +82,19 @@ class TriangleCurve {
 
   /// The same in vectors of the processor.
   void to_triangles_in_vectors(const TrianglePacket& packet, double* squared) const;
+
+  CLEARWAY_HD void from_all_places(const TrianglePacket& packet, std::uint32_t i,
+                                   std::uint32_t first, double per_last, double* squared) const {
+    double t[kMostPlaces];
+    for (std::uint32_t k = 0; k < kMostPlaces; ++k) t[k] = (first + k) * per_last;
+    for (std::uint32_t k = 0; k < kMostPlaces; ++k) {
+      squared[k] = packet.nearest(i, at(t[k])).squared;
+    }
+  }
+
+  /// The same in vectors of the processor.
+  void from_places_in_vectors(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
+                              double per_last, double* squared) const;
 
   CLEARWAY_HD Vec3 at(double t) const {
     const double rest = 1 - t;
