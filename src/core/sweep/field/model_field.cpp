@@ -21,6 +21,9 @@ constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
 /// A node takes a search for the nearest triangle, of some microseconds: no more coarse ones.
 constexpr double kMostSurfaceNodes = 1 << 17;
+/// A surface has no spacing to go by: this many voxels, or more where they are close to the radius,
+/// cost about as much as the exact tests that finer ones would spare (measured).
+constexpr double kSurfaceVoxels = 1 << 19;
 /// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
 /// the model's points are worth.
 constexpr double kCheapNodes = 1 << 17;
@@ -64,11 +67,16 @@ void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOpt
   const Box& box = model_;
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
   const double of_points = kVoxelSpacings * spacing;
-  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
   const auto nodes_of = [&](double voxel) {
     const double around = 2 * radius + 4 * voxel;
     return (extent.x + around) * (extent.y + around) * (extent.z + around) / std::pow(voxel, 3);
   };
+  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
+  if (is_surface()) {
+    const double around = 2 * radius;
+    const double volume = (extent.x + around) * (extent.y + around) * (extent.z + around);
+    chosen = std::clamp(std::cbrt(volume / kSurfaceVoxels), radius / 4, 2 * radius);
+  }
   while (options.cheaply_finer && chosen / 2 >= of_points && nodes_of(chosen / 2) <= kCheapNodes) {
     chosen /= 2;
   }
