@@ -4,6 +4,7 @@
 
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/geometry/triangle.hpp"
+#include "core/util/macros.hpp"
 
 namespace clearway {
 
@@ -81,7 +82,7 @@ struct TrianglePacket {
   CLEARWAY_HD std::uint32_t element(std::uint32_t i) const { return index[i]; }
 
   /// As the predicate, but with the ends of edges as feet, and shares as products.
-  CLEARWAY_HD Nearest nearest(std::uint32_t i, const Vec3& x) const {
+  CLEARWAY_IN_CLONE CLEARWAY_HD Nearest nearest(std::uint32_t i, const Vec3& x) const {
     const Vec3 to_b{ab[0][i], ab[1][i], ab[2][i]}, to_c{ac[0][i], ac[1][i], ac[2][i]};
     const Vec3 over{height[0][i], height[1][i], height[2][i]};
     const Vec3 from_a{x.x - a[0][i], x.y - a[1][i], x.z - a[2][i]};
@@ -99,10 +100,10 @@ struct TrianglePacket {
     return nearer(least, face);
   }
 
-  /// At most the square of the distance from the triangle to every place of the convex hull of some
-  /// places. x: one of the hull; along: at most 0, and at most the product
-  /// of the way with any place of the hull as seen from x. The plane at the way's other end, across
-  /// it, has the triangle behind it.
+  /// At most the square of the distance from the triangle to every place of some hull, of which x
+  /// is one. along: at most 0, and at most the product of the way and any place of the hull as seen
+  /// from x, less its rounding. A plane across the way, where it starts, has the triangle behind
+  /// it.
   CLEARWAY_HD double from_hull(std::uint32_t i, const Nearest& from_x, double along) const {
     const double above = from_x.squared * (1 - kTilt) + along - tilt[i];
     return above > 0 ? above / from_x.squared * above : 0;

@@ -167,18 +167,25 @@ class PointClearance {
                                 std::uint32_t i, const TriangleCurve& curve, double least,
                                 double error) {
     constexpr std::uint32_t kMost = TriangleCurve::kMostPlaces;
+    constexpr std::uint32_t kPart = TriangleCurve::kPlacesOfPart;
     const Element& t = sweep_.model.elements[packet.index[i]];
     const double per_last = 1.0 / (node.count - 1);
     const auto nearest =
         static_cast<std::uint32_t>(curve.place(packet, i) * (node.count - 1) + 0.5);
     offer(node.first + nearest, t);
-    double from_pose[kMost];
-    for (std::uint32_t begin = 0; begin < node.count; begin += kMost) {
-      curve.from_places(packet, i, begin, per_last, from_pose);
-      const std::uint32_t end = begin + kMost < node.count ? begin + kMost : node.count;
-      for (std::uint32_t k = begin; k < end; ++k) {
-        if (k == nearest || from_pose[k - begin] > squared_ball(least, error)) continue;
-        offer(node.first + k, t);
+    double from_part[kMost], from_pose[kPart];
+    for (std::uint32_t first = 0; first < node.count; first += kMost * kPart) {
+      curve.from_parts(packet, i, first, per_last, from_part);
+      for (std::uint32_t part = 0; part < kMost; ++part) {
+        const std::uint32_t begin = first + part * kPart;
+        if (begin >= node.count) break;
+        if (from_part[part] > squared_ball(least, error)) continue;
+        curve.from_places(packet, i, begin, per_last, from_pose);
+        const std::uint32_t end = begin + kPart < node.count ? begin + kPart : node.count;
+        for (std::uint32_t k = begin; k < end; ++k) {
+          if (k == nearest || from_pose[k - begin] > squared_ball(least, error)) continue;
+          offer(node.first + k, t);
+        }
       }
     }
   }

@@ -6,12 +6,13 @@
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/geometry/triangle_packet.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
+#include "core/util/macros.hpp"
 
 namespace clearway {
 
-/// The parabola c(t) = start + t way + t (1 - t) bend that a point moves along, seen from the model,
-/// while the model moves through the poses of a node, against triangles. It lies in the convex hull
-/// of c(0), c(1) and the place where its tangents there meet.
+/// The parabola c(t) = start + t way + t (1 - t) bend that a point moves along, seen from the
+/// model, while the model moves through the poses of a node, against triangles. It lies in the
+/// convex hull of c(0), c(1) and the place where its tangents there meet.
 class TriangleCurve {
  public:
   CLEARWAY_HD TriangleCurve(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e)
@@ -28,6 +29,8 @@ class TriangleCurve {
     }
     const double squared_way = squared_length(way_.x, way_.y, way_.z);
     if (squared_way > kLeastSquaredWay) per_squared_way_ = 1 / squared_way;
+    const double size = squared_way + squared_length(bend_.x, bend_.y, bend_.z);
+    rounding_ = 32 * kUnitRoundoff * size;
   }
 
   CLEARWAY_HD Box box() const {
@@ -55,7 +58,19 @@ class TriangleCurve {
     return place_near(difference(x, packet.nearest(i, x).way));
   }
 
-  static constexpr std::uint32_t kMostPlaces = 8;
+  static constexpr std::uint32_t kMostPlaces = 8;  ///< worked on together
+  static constexpr std::uint32_t kPlacesOfPart = 8;
+
+  /// At most the squares of the distances from a triangle to parts of the curve: number k has the
+  /// places (first + k kPlacesOfPart) per_last and those behind it.
+  CLEARWAY_HD void from_parts(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
+                              double per_last, double (&squared)[kMostPlaces]) const {
+#ifdef __CUDA_ARCH__
+    from_all_parts(packet, i, first, per_last, squared);
+#else
+    from_parts_in_vectors(packet, i, first, per_last, squared);
+#endif
+  }
 
   /// The squares of the distances from a triangle to the places (first + k) per_last.
   CLEARWAY_HD void from_places(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
@@ -71,7 +86,8 @@ class TriangleCurve {
   /// Where the way is shorter, it is as good as a place.
   static constexpr double kLeastSquaredWay = 1e-140;
 
-  CLEARWAY_HD void to_all_triangles(const TrianglePacket& packet, double* squared) const {
+  CLEARWAY_IN_CLONE CLEARWAY_HD void to_all_triangles(const TrianglePacket& packet,
+                                                      double* squared) const {
     for (std::uint32_t i = 0; i < TrianglePacket::kMost; ++i) {
       const double t = place(packet, i);
       const Vec3 x = at(t);
@@ -83,8 +99,33 @@ class TriangleCurve {
   /// The same in vectors of the processor.
   void to_triangles_in_vectors(const TrianglePacket& packet, double* squared) const;
 
-  CLEARWAY_HD void from_all_places(const TrianglePacket& packet, std::uint32_t i,
-                                   std::uint32_t first, double per_last, double* squared) const {
+  /// A part from t - half to t + half lies within half |c'| along its tangent at t and half^2
+  /// |bend| beside that.
+  CLEARWAY_IN_CLONE CLEARWAY_HD void from_all_parts(const TrianglePacket& packet, std::uint32_t i,
+                                                    std::uint32_t first, double per_last,
+                                                    double* squared) const {
+    constexpr double kHalf = 0.5 * (kPlacesOfPart - 1);
+    const double half = kHalf * per_last * (1 + 1e-9);
+    double t[kMostPlaces];
+    for (std::uint32_t k = 0; k < kMostPlaces; ++k) {
+      t[k] = (first + k * kPlacesOfPart + kHalf) * per_last;
+    }
+    for (std::uint32_t k = 0; k < kMostPlaces; ++k) {
+      const TrianglePacket::Nearest from = packet.nearest(i, at(t[k]));
+      const double bend = TrianglePacket::dot(from.way, bend_);
+      const double slope = TrianglePacket::dot(from.way, way_) + (1 - 2 * t[k]) * bend;
+      const double most = (slope < 0 ? -slope : slope) + half * (bend < 0 ? -bend : bend);
+      squared[k] = packet.from_hull(i, from, -half * most - rounding_);
+    }
+  }
+
+  /// The same in vectors of the processor.
+  void from_parts_in_vectors(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
+                             double per_last, double* squared) const;
+
+  CLEARWAY_IN_CLONE CLEARWAY_HD void from_all_places(const TrianglePacket& packet, std::uint32_t i,
+                                                     std::uint32_t first, double per_last,
+                                                     double* squared) const {
     double t[kMostPlaces];
     for (std::uint32_t k = 0; k < kMostPlaces; ++k) t[k] = (first + k) * per_last;
     for (std::uint32_t k = 0; k < kMostPlaces; ++k) {
@@ -108,7 +149,7 @@ class TriangleCurve {
                                    per_squared_way_);
   }
 
-  /// The least product of v and a corner of the hull as seen from at(t), or 0 if that is less.
+  /// At most the least product of v and a corner of the hull as seen from at(t), and at most 0.
   CLEARWAY_HD double along_hull(const Vec3& v, double t) const {
     const double way = TrianglePacket::dot(v, way_), bend = TrianglePacket::dot(v, bend_);
     const double here = t * (way + (1 - t) * bend);
@@ -116,10 +157,11 @@ class TriangleCurve {
     double least = way < 0 ? way : 0;
     least = middle < least ? middle : least;
     least -= here;
-    return least < 0 ? least : 0;
+    return (least < 0 ? least : 0) - rounding_;
   }
 
   Vec3 start_, way_, bend_;
+  double rounding_ = 0;  ///< square metres, of products with a way
   double per_squared_way_ = 0;
 };
 
