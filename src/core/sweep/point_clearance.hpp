@@ -167,25 +167,22 @@ class PointClearance {
                                 std::uint32_t i, const TriangleCurve& curve, double least,
                                 double error) {
     constexpr std::uint32_t kMost = TriangleCurve::kMostPlaces;
-    constexpr std::uint32_t kPart = TriangleCurve::kPlacesOfPart;
     const Element& t = sweep_.model.elements[packet.index[i]];
     const double per_last = 1.0 / (node.count - 1);
     const auto nearest =
         static_cast<std::uint32_t>(curve.place(packet, i) * (node.count - 1) + 0.5);
     offer(node.first + nearest, t);
-    double from_part[kMost], from_pose[kPart];
-    for (std::uint32_t first = 0; first < node.count; first += kMost * kPart) {
-      curve.from_parts(packet, i, first, per_last, from_part);
-      for (std::uint32_t part = 0; part < kMost; ++part) {
-        const std::uint32_t begin = first + part * kPart;
-        if (begin >= node.count) break;
-        if (from_part[part] > squared_ball(least, error)) continue;
-        curve.from_places(packet, i, begin, per_last, from_pose);
-        const std::uint32_t end = begin + kPart < node.count ? begin + kPart : node.count;
-        for (std::uint32_t k = begin; k < end; ++k) {
-          if (k == nearest || from_pose[k - begin] > squared_ball(least, error)) continue;
-          offer(node.first + k, t);
-        }
+    const std::uint32_t length = node.count > kMost * kMost ? (node.count - 1) / kMost + 1 : kMost;
+    double from_part[kMost];
+    curve.from_parts(packet, i, length, per_last, from_part);
+    for (std::uint32_t part = 0; part < kMost && part * length < node.count; ++part) {
+      if (from_part[part] > squared_ball(least, error)) continue;
+      const std::uint32_t begin = part * length, left = node.count - begin;
+      double from_pose[kMost];
+      for (std::uint32_t k = 0; k < (length < left ? length : left); ++k) {
+        if (k % kMost == 0) curve.from_places(packet, i, begin + k, per_last, from_pose);
+        const bool is_open = !(from_pose[k % kMost] > squared_ball(least, error));
+        if (is_open && begin + k != nearest) offer(node.first + begin + k, t);
       }
     }
   }

@@ -10,12 +10,12 @@ void TriangleCurve::to_triangles_in_vectors(const TrianglePacket& packet, double
 
 CLEARWAY_SIMD_CLONES
 void TriangleCurve::from_parts_in_vectors(const TrianglePacket& packet, std::uint32_t i,
-                                          std::uint32_t first, double per_last,
+                                          std::uint32_t length, double per_last,
                                           double* squared) const {
   const TriangleCurve curve = *this;
   TrianglePacket one;
   one.copy(0, packet, i);
-  curve.from_all_parts(one, 0, first, per_last, squared);
+  curve.from_all_parts(one, 0, length, per_last, squared);
 }
 
 CLEARWAY_SIMD_CLONES

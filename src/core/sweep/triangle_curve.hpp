@@ -59,16 +59,15 @@ class TriangleCurve {
   }
 
   static constexpr std::uint32_t kMostPlaces = 8;  ///< worked on together
-  static constexpr std::uint32_t kPlacesOfPart = 8;
 
-  /// At most the squares of the distances from a triangle to parts of the curve: number k has the
-  /// places (first + k kPlacesOfPart) per_last and those behind it.
-  CLEARWAY_HD void from_parts(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
+  /// At most the squares of the distances from a triangle to parts of the curve: number k has
+  /// `length` places from (k length) per_last on.
+  CLEARWAY_HD void from_parts(const TrianglePacket& packet, std::uint32_t i, std::uint32_t length,
                               double per_last, double (&squared)[kMostPlaces]) const {
 #ifdef __CUDA_ARCH__
-    from_all_parts(packet, i, first, per_last, squared);
+    from_all_parts(packet, i, length, per_last, squared);
 #else
-    from_parts_in_vectors(packet, i, first, per_last, squared);
+    from_parts_in_vectors(packet, i, length, per_last, squared);
 #endif
   }
 
@@ -102,13 +101,13 @@ class TriangleCurve {
   /// A part from t - half to t + half lies within half |c'| along its tangent at t and half^2
   /// |bend| beside that.
   CLEARWAY_IN_CLONE CLEARWAY_HD void from_all_parts(const TrianglePacket& packet, std::uint32_t i,
-                                                    std::uint32_t first, double per_last,
+                                                    std::uint32_t length, double per_last,
                                                     double* squared) const {
-    constexpr double kHalf = 0.5 * (kPlacesOfPart - 1);
-    const double half = kHalf * per_last * (1 + 1e-9);
+    const double middle = 0.5 * (length - 1);
+    const double half = middle * per_last * (1 + 1e-9);
     double t[kMostPlaces];
     for (std::uint32_t k = 0; k < kMostPlaces; ++k) {
-      t[k] = (first + k * kPlacesOfPart + kHalf) * per_last;
+      t[k] = (k * length + middle) * per_last;
     }
     for (std::uint32_t k = 0; k < kMostPlaces; ++k) {
       const TrianglePacket::Nearest from = packet.nearest(i, at(t[k]));
@@ -120,7 +119,7 @@ class TriangleCurve {
   }
 
   /// The same in vectors of the processor.
-  void from_parts_in_vectors(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
+  void from_parts_in_vectors(const TrianglePacket& packet, std::uint32_t i, std::uint32_t length,
                              double per_last, double* squared) const;
 
   CLEARWAY_IN_CLONE CLEARWAY_HD void from_all_places(const TrianglePacket& packet, std::uint32_t i,

@@ -227,6 +227,11 @@ TEST_CASE("a triangle's bound from a curve is below its distance from every plac
         }
         clear += least > 0.05;
         close += least > 0.05 && std::sqrt(squared[i]) > 0.8 * least;
+        curve.from_parts(packet, i, 13, 0.01, from_place);
+        for (int k = 0; k <= 100; ++k) {
+          const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
+          above += std::sqrt(from_place[k / 13]) > distance + 1e-9;
+        }
         curve.from_places(packet, i, 90, 0.01, from_place);
         for (int k = 0; k < 8; ++k) {
           const double exact = squared_distance(place(0.9 + 0.01 * k), triangles[i]);
