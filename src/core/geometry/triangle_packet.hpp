@@ -96,7 +96,7 @@ struct TrianglePacket {
     const double of_b = t - of_c * foot[i];
     Nearest face = measured(beyond(beyond(from_a, of_b, to_b), of_c, to_c));
     const bool inside = (of_c > 0) & (of_b > 0) & (of_b + of_c < 1);
-    face.squared = inside ? face.squared : kInfinity;
+    if (!inside) face.squared = kInfinity;
     return nearer(least, face);
   }
 

@@ -169,8 +169,8 @@ class PointClearance {
     constexpr std::uint32_t kMost = TriangleCurve::kMostPlaces;
     const Element& t = sweep_.model.elements[packet.index[i]];
     const double per_last = 1.0 / (node.count - 1);
-    const auto nearest =
-        static_cast<std::uint32_t>(curve.place(packet, i) * (node.count - 1) + 0.5);
+    const double guess = curve.place(packet, i) * (node.count - 1) + 0.5;
+    const auto nearest = static_cast<std::uint32_t>(guess);
     offer(node.first + nearest, t);
     const std::uint32_t length = node.count > kMost * kMost ? (node.count - 1) / kMost + 1 : kMost;
     double from_part[kMost];
