@@ -7,6 +7,7 @@
 #include "core/sweep/point_curve.hpp"
 #include "core/sweep/solid_depth.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "core/sweep/triangle_curve.hpp"
 #include "core/util/bit_reversal_order.hpp"
 
 namespace clearway {
@@ -133,10 +134,7 @@ class PointClearance {
     if (!one_place && !is_close_enough(error)) return false;
     const auto least = static_cast<double>(smooth.least);
     if constexpr (kIsTriangle<Element>) {
-      const CurveBall places(sweep_.motion, node, e_);
-      if (!one_place) error += places.radius;
-      if (!one_place && !is_close_enough(error)) return false;
-      search_triangles(node, places.centre, one_place, least, error);
+      search_triangles(node, TriangleCurve(sweep_.motion, node, e_), one_place, least, error);
     } else {
       const PointCurve curve(sweep_.motion, node, e_, ball(least, error));
       error += curve.beside();
@@ -150,37 +148,66 @@ class PointClearance {
                                  double least, double error) {
     ++statistics_.exact_tests;
     double squared = squared_ball(least, error);
-    sweep_.wide.visit_nearest_first(
+    sweep_.wide.any_nearest_first(
         curve.box(), [&] { return squared; },
         [&](const PointPacket& packet, double(&out)[PointPacket::kMost]) {
           curve.to_points(packet, out);
         },
-        [&](const Vec3& m) {
+        [&](const PointPacket& packet, std::uint32_t i) {
+          const Vec3 m = packet.point(i);
           if (one_place) {
             offer(node.first, m);
           } else {
             search_poses(node, m, curve, least, error);
           }
           squared = squared_ball(least, error);
+          return false;
         });
   }
 
-  /// x: none of the places of the poses is farther from it than the error.
-  CLEARWAY_HD void search_triangles(const MotionNode& node, const Vec3& x, bool one_place,
-                                    double least, double error) {
+  CLEARWAY_HD void search_triangles(const MotionNode& node, const TriangleCurve& curve,
+                                    bool one_place, double least, double error) {
     ++statistics_.exact_tests;
-    const std::uint32_t end = node.first + (one_place ? 1 : node.count);
     double squared = squared_ball(least, error);
-    sweep_.model.any(
-        [&](const Box& box) {
-          return least_squared_distance(box, x) > squared ? ModelStep::kSkip : ModelStep::kEnter;
+    sweep_.wide.any_nearest_first(
+        curve.box(), [&] { return squared; },
+        [&](const TrianglePacket& packet, double(&out)[TrianglePacket::kMost]) {
+          curve.to_triangles(packet, out);
         },
-        [&](const Element& t) {
-          if (squared_distance(x, t) > squared) return false;
-          for (std::uint32_t pose = node.first; pose < end; ++pose) offer(pose, t);
+        [&](const TrianglePacket& packet, std::uint32_t i) {
+          if (one_place) {
+            offer(node.first, sweep_.model.elements[packet.index[i]]);
+          } else {
+            search_poses(node, packet, i, curve, least, error);
+          }
           squared = squared_ball(least, error);
           return false;
         });
+  }
+
+  /// One triangle against the poses of a smooth node, the likely nearest first.
+  CLEARWAY_HD void search_poses(const MotionNode& node, const TrianglePacket& packet,
+                                std::uint32_t i, const TriangleCurve& curve, double least,
+                                double error) {
+    constexpr std::uint32_t kMost = TriangleCurve::kMostPlaces;
+    const StoredElement<Element>& t = sweep_.model.elements[packet.index[i]];
+    const double per_last = 1.0 / (node.count - 1);
+    const double guess = curve.place(packet, i) * (node.count - 1) + 0.5;
+    const auto nearest = static_cast<std::uint32_t>(guess);
+    offer(node.first + nearest, t);
+    const std::uint32_t length = node.count > kMost * kMost ? (node.count - 1) / kMost + 1 : kMost;
+    double from_part[kMost];
+    curve.from_parts(packet, i, length, per_last, from_part);
+    for (std::uint32_t part = 0; part < kMost && part * length < node.count; ++part) {
+      if (from_part[part] > squared_ball(least, error)) continue;
+      const std::uint32_t begin = part * length, left = node.count - begin;
+      double from_pose[kMost];
+      for (std::uint32_t k = 0; k < (length < left ? length : left); ++k) {
+        if (k % kMost == 0) curve.from_places(packet, i, begin + k, per_last, from_pose);
+        const bool is_open = !(from_pose[k % kMost] > squared_ball(least, error));
+        if (is_open && begin + k != nearest) offer(node.first + begin + k, t);
+      }
+    }
   }
 
   CLEARWAY_HD double squared_ball(double least, double error) const {

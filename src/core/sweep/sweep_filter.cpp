@@ -53,10 +53,8 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
     curves_ = MotionCurves(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
                            model.spacing(), threads);
     ref_.motion.curves = curves_.data();
-    if constexpr (!kIsTriangle<Element>) {
-      wide_ = WideTree(model);
-      ref_.wide = wide_.ref();
-    }
+    wide_ = WideTreeOf<StoredElement<Element>>(model);
+    ref_.wide = wide_.ref();
   }
   for_plan_ = ref_;
   for_plan_.field = field.ref_as_made();

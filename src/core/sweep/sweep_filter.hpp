@@ -78,9 +78,9 @@ class SweepFilterOf final : public PoseReach {
   const MotionTree& motion_;
   const ModelTreeOf<StoredElement<Element>>& model_;
   SweepRefOf<Element> ref_;
-  MotionCurves curves_;           ///< with a clearance
-  WideTree wide_;                 ///< likewise, of points
-  SweepRefOf<Element> for_plan_;  ///< makes no bricks: cells are too large to need them
+  MotionCurves curves_;                      ///< with a clearance
+  WideTreeOf<StoredElement<Element>> wide_;  ///< likewise
+  SweepRefOf<Element> for_plan_;             ///< makes no bricks: cells are too large to need them
 };
 
 using SweepFilter = SweepFilterOf<Vec3>;

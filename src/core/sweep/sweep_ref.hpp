@@ -67,8 +67,8 @@ struct SweepRefOf {
   MotionTreeRef motion;
   ModelTreeRefOf<StoredElement<Element>> model;
   ModelFieldRef field;
-  WideTreeRef wide;  ///< the model's points again, with a clearance; not of triangles
-  double radius;     ///< whatever is closer is a hit; with a tolerance search_radius()
+  WideTreeRefOf<StoredElement<Element>> wide;  ///< the model's elements again, with a clearance
+  double radius;  ///< whatever is closer is a hit; with a tolerance search_radius()
   double
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
   double clearance;   ///< 0: not asked for
@@ -174,7 +174,7 @@ struct SweepRefOf {
     if (farther(back.least, squared_lower, radius + node.delta + rounding)) {
       return is_inside(back.apply(e), squared_lower) ? Verdict::kHitAtMid : Verdict::kDismissed;
     }
-    if (bounds.near != ModelFieldRef::kNone &&
+    if (bounds.near != ModelFieldRef::kNone && may_hit_at_mid(back, squared_lower) &&
         collides(e, transform(motion.poses[node.mid], model.elements[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
@@ -185,6 +185,12 @@ struct SweepRefOf {
       return Verdict::kDismissed;
     }
     return Verdict::kOpen;
+  }
+
+  /// Whether the predicate is worth asking: that of points costs no more than the test.
+  CLEARWAY_HD bool may_hit_at_mid(const InversePose& back, double squared_lower) const {
+    if constexpr (!kIsTriangle<Element>) return true;
+    return !farther(back.least, squared_lower, radius + rounding);
   }
 
   CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node,

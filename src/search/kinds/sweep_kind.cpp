@@ -86,7 +86,8 @@ CpuSweepKindOf<Element>::CpuSweepKindOf(const StoreReader& store, const Query& q
                                         const SearchOptions& options)
     : SweepKindOf<Element>({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                             .threads = options.threads},
-                           store, query, options, query.profile > 0 ? kProfileFineness : 1) {}
+                           store, query, options,
+                           query.profile > 0 && !kIsTriangle<Element> ? kProfileFineness : 1) {}
 
 template <typename Element>
 std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/sweep/field/brick_nearest.hpp"
+#include "core/sweep/field/brick_triangles.hpp"
 
 namespace clearway {
 namespace {
@@ -20,6 +21,9 @@ constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
 /// A node takes a search for the nearest triangle, of some microseconds: no more coarse ones.
 constexpr double kMostSurfaceNodes = 1 << 17;
+/// A surface has no spacing to go by: this many voxels, or more where they are close to the radius,
+/// cost about as much as the exact tests that finer ones would spare (measured).
+constexpr double kSurfaceVoxels = 1 << 19;
 /// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
 /// the model's points are worth.
 constexpr double kCheapNodes = 1 << 17;
@@ -65,11 +69,16 @@ void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOpt
   const Box& box = model_;
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
   const double of_points = kVoxelSpacings * spacing;
-  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
   const auto nodes_of = [&](double voxel) {
     const double around = 2 * radius + 4 * voxel;
     return (extent.x + around) * (extent.y + around) * (extent.z + around) / std::pow(voxel, 3);
   };
+  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
+  if (is_surface()) {
+    const double around = 2 * radius;
+    const double volume = (extent.x + around) * (extent.y + around) * (extent.z + around);
+    chosen = std::clamp(std::cbrt(volume / kSurfaceVoxels), radius / 4, 2 * radius);
+  }
   while (options.cheaply_finer && chosen / 2 >= of_points && nodes_of(chosen / 2) <= kCheapNodes) {
     chosen /= 2;
   }
@@ -195,7 +204,7 @@ void ModelField::make_brick(std::size_t cell) const {
   if (const auto* points = std::get_if<const ModelTree*>(&tree_)) {
     BrickNearest(**points).find(corner, voxel_, squared, nearest);
   } else {
-    find_nearest_triangles(*std::get<const TriangleTree*>(tree_), corner, voxel_, squared, nearest);
+    BrickTriangles(*std::get<const TriangleTree*>(tree_)).find(corner, voxel_, squared, nearest);
   }
   if (inside_) inside_->make_brick(brick, corner, voxel_, squared);
   std::atomic_ref(brick_of_[cell]).store(brick, std::memory_order_release);
