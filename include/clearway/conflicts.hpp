@@ -50,6 +50,10 @@ struct Conflict {
   std::optional<std::uint32_t> nearest_pose = {};    ///< that has it
   std::optional<std::uint64_t> nearest_source = {};  ///< and the point
   std::optional<double> encroachment = {};           ///< radius - least_distance
+  /// Of a model with solids, where the result has clearances: how deep the point that lies deepest
+  /// is inside it, metres, 0 for none; and how many of the points are inside at any pose.
+  std::optional<double> depth = {};
+  std::optional<std::uint64_t> points_inside = {};
   std::optional<Vec3> nearest_point = {};  ///< where it is; not for results before version 3
   Side side = Side::kUnknown;  ///< of the nearest point, or else of the centroid at the first pose
   /// Of the same place, metres from the pose's position: to the left along the model's own axis,

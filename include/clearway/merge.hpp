@@ -38,6 +38,8 @@ struct MergeReport {
   std::uint32_t parts = 0;
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
   std::uint64_t colliding_points = 0, clearance_points = 0, profile_poses = 0;
+  std::uint64_t model_solids = 0;   ///< parts of the model that have an inside
+  std::uint64_t inside_points = 0;  ///< points inside them at any pose
   IgnoredPointCounts ignored = {};  ///< of the parameters' lists
   std::optional<FoundPlace> first_place = {}, least_clearance = {}, least_profile = {};
   std::vector<std::string> bodies = {};    ///< names, where the query has several

@@ -19,6 +19,7 @@ enum class ModelAs {
   kPoints,         ///< samples of a mesh's surface, or the points of the file
   kSurface,        ///< the triangles of a mesh; a file without any is refused
   kSurfaceOfMesh,  ///< the same of a mesh, and the points of any other file
+  kSolid,          ///< as kSurface, and what its closed parts enclose; without any it is refused
 };
 
 struct ModelOptions {
@@ -51,10 +52,12 @@ std::vector<Vec3> read_model(const std::filesystem::path& path, const ModelOptio
 struct ModelShape {
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< none: the points are the model
+  std::vector<std::uint32_t> solid_of = {};             ///< of kSolid: as Query has them
 };
 
 /// The same, as options.as says. Corners are where the samples of kPoints are drawn from; those
-/// that no triangle uses are left out.
+/// that no triangle uses are left out. Of kSolid those at one place are one; a height as
+/// options.above would leave solids open, and throws UsageError.
 ModelShape read_model_shape(const std::filesystem::path& path, const ModelOptions& options,
                             std::vector<Message>* messages = nullptr);
 

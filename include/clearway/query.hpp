@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -42,11 +43,20 @@ struct Query : QueryParameters {
       : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
 
   bool is_surface() const { return !triangles.empty(); }
+  bool is_solid() const { return !solid_of.empty(); }  ///< then it is a surface too
+  /// Itself, or any of its bodies.
+  bool has_solids() const {
+    return is_solid() || std::ranges::any_of(bodies, [](const Body& b) { return b.is_solid(); });
+  }
 
   std::vector<Vec3> model;  ///< points, or corners of triangles; in the model's own frame, metres
   std::vector<Pose> poses;  ///< the path, where there are bodies
   /// Three indices into `model` each: the model is their surface. None: it is its points.
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// The number of each triangle's solid, from 0, or kNoSolid: what is inside collides too. The
+  /// triangles of a solid are closed: each edge is used as often in one direction as in the other,
+  /// by vertices of the same values. None: nothing has an inside.
+  std::vector<std::uint32_t> solid_of = {};
   /// Several models in the place of one, each with poses of its own; then there is no model. A
   /// first pose, a clearance's pose and a pose of the profile are of the path.
   std::vector<Body> bodies = {};
@@ -59,6 +69,13 @@ inline std::uint64_t element_count(const Query& query) {
 
 inline std::uint64_t element_count(const Body& body) {
   return body.is_surface() ? body.triangles.size() : body.model.size();
+}
+
+/// How many solids the model has, or all bodies together.
+inline std::uint64_t solid_count(const Query& query) {
+  std::uint64_t count = solid_count(query.solid_of);
+  for (const Body& body : query.bodies) count += solid_count(body.solid_of);
+  return count;
 }
 
 }  // namespace clearway

@@ -41,6 +41,7 @@ struct ReportOptions {
   PoseLabels labels = {};              ///< of the poses, where the trajectory has them
   std::vector<Message> warnings = {};  ///< of the inputs and the query: the page shows them
   bool overwrite = false;
+  std::vector<std::uint32_t> model_solid_of = {};  ///< with solids: as Query has them
   /// Of a vehicle's result: its bodies; then the model is empty.
   std::vector<Body> bodies = {};
 };

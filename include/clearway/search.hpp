@@ -90,8 +90,10 @@ struct SearchReport {
   bool was_finished = false;  ///< the result was there already: nothing was searched
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
   std::uint64_t model_triangles = 0;  ///< of a surface, whose corners the points are; else 0
+  std::uint64_t model_solids = 0;     ///< parts of it that have an inside
   std::uint64_t colliding_points = 0;
   std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
+  std::uint64_t inside_points = 0;     ///< of them those inside a solid of the model at any pose
   std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
   /// Of the whole environment, in the order of the result's parameters: ascending, each once.
   IgnoredPointCounts ignored;

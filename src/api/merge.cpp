@@ -29,6 +29,7 @@ MergeReport report_of(const PartSet& set) {
   report.parts = static_cast<std::uint32_t>(set.parts().size());
   report.environment_points = set.header().environment_points;
   report.model_points = set.header().model_points;
+  report.model_solids = set.header().model_solids;
   report.poses = set.header().poses;
   report.bodies = set.header().bodies;
   report.colliding_points = set.collisions();
@@ -68,6 +69,7 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
     const MergedResult merged = merge_parts(set, pending.partial(), options.memory_bytes, progress);
     pending.publish();
     report.profile_poses = merged.profile_poses;
+    report.inside_points = merged.inside_points;
     report.first_place = merged.first_place;
     report.least_clearance = merged.least_clearance;
     report.least_profile = merged.least_profile;

@@ -1,7 +1,10 @@
 #include "cpu/brute_force.hpp"
 
+#include <algorithm>
 #include <limits>
 
+#include "core/geometry/inside.hpp"
+#include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/triangle.hpp"
 #include "core/query/hit_set.hpp"
@@ -110,6 +113,76 @@ std::vector<Clearance> clearances(std::span<const Vec3> environment, const Query
   return least;
 }
 
+/// The triangles of each solid, and the lattice over all of them.
+struct SolidTriangles {
+  std::vector<std::vector<Triangle>> solids;
+  SolidLattice lattice;
+
+  explicit SolidTriangles(const Query& query) {
+    std::vector<Vec3> corners;
+    const std::vector<Triangle> triangles = elements_of<Triangle>(query);
+    for (std::size_t i = 0; i < query.solid_of.size(); ++i) {
+      const std::uint32_t solid = query.solid_of[i];
+      if (solid == kNoSolid) continue;
+      if (solid >= solids.size()) solids.resize(solid + std::size_t{1});
+      solids[solid].push_back(triangles[i]);
+      corners.insert(corners.end(), {triangles[i].a, triangles[i].b, triangles[i].c});
+    }
+    if (!corners.empty()) lattice = SolidLattice(box_of(corners));
+  }
+
+  bool contains(const std::vector<Triangle>& solid, const Vec3& x) const {
+    if (!lattice.has_in_box(x)) return false;
+    int sum = 0;
+    for (const Triangle& t : solid) sum += winding_above(lattice, lattice.place_of(x), t);
+    return sum != 0;
+  }
+
+  /// The signed square v of docs/design/solids.md where e lies inside; otherwise 0.
+  double inside_square(const Vec3& e, const Pose& pose) const {
+    double deepest = 0;
+    for (const std::vector<Triangle>& solid : solids) {
+      if (!contains(solid, pulled_back(pose, e))) continue;
+      double least = std::numeric_limits<double>::infinity();
+      for (const Triangle& t : solid) {
+        least = std::min(least, squared_distance(e, transform(pose, t)));
+      }
+      deepest = std::max(deepest, least);
+    }
+    return 0 - deepest;
+  }
+
+  bool contains(const Vec3& e, const Pose& pose) const {
+    return std::ranges::any_of(
+        solids, [&](const auto& solid) { return contains(solid, pulled_back(pose, e)); });
+  }
+};
+
+/// As of a surface, and the poses at which a solid contains the point.
+std::vector<std::uint32_t> first_poses_of_solids(std::span<const Vec3> environment,
+                                                 const Query& query) {
+  std::vector<std::uint32_t> first = first_poses<Triangle>(environment, query);
+  const SolidTriangles solids(query);
+  for (std::size_t e = 0; e < environment.size(); ++e) {
+    for (std::uint32_t i = 0; i < std::min<std::size_t>(first[e], query.poses.size()); ++i) {
+      if (solids.contains(environment[e], query.poses[i])) first[e] = i;
+    }
+  }
+  return first;
+}
+
+std::vector<Clearance> clearances_of_solids(std::span<const Vec3> environment, const Query& query) {
+  std::vector<Clearance> least = clearances<Triangle>(environment, query);
+  const SolidTriangles solids(query);
+  for (std::size_t e = 0; e < environment.size(); ++e) {
+    for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
+      const double square = solids.inside_square(environment[e], query.poses[i]);
+      if (square < 0 && square < least[e].squared) least[e] = {square, i};
+    }
+  }
+  return least;
+}
+
 template <typename Element>
 std::vector<NearestPoint> profile_of(std::span<const Vec3> environment, const Query& query) {
   const double limit = rounded_product(query.profile, query.profile);
@@ -130,23 +203,38 @@ std::vector<NearestPoint> profile_of(std::span<const Vec3> environment, const Qu
   return profile;
 }
 
+std::vector<NearestPoint> profile_of_solids(std::span<const Vec3> environment, const Query& query) {
+  std::vector<NearestPoint> profile = profile_of<Triangle>(environment, query);
+  const SolidTriangles solids(query);
+  for (std::size_t i = 0; i < query.poses.size(); ++i) {
+    for (std::size_t e = 0; e < environment.size(); ++e) {
+      const double square = solids.inside_square(environment[e], query.poses[i]);
+      if (square < 0 && square < profile[i].squared) profile[i] = {square, e};
+    }
+  }
+  return profile;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
                                                    const Query& query) {
   if (query.between_poses) return first_poses_of_ways(environment, query);
+  if (query.is_solid()) return first_poses_of_solids(environment, query);
   return query.is_surface() ? first_poses<Triangle>(environment, query)
                             : first_poses<Vec3>(environment, query);
 }
 
 std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
                                               const Query& query) {
+  if (query.is_solid()) return clearances_of_solids(environment, query);
   return query.is_surface() ? clearances<Triangle>(environment, query)
                             : clearances<Vec3>(environment, query);
 }
 
 std::vector<NearestPoint> brute_force_profile(std::span<const Vec3> environment,
                                               const Query& query) {
+  if (query.is_solid()) return profile_of_solids(environment, query);
   return query.is_surface() ? profile_of<Triangle>(environment, query)
                             : profile_of<Vec3>(environment, query);
 }

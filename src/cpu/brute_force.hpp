@@ -17,13 +17,16 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
                                                    const Query& query);
 
 /// For every environment point the least d2 over every pair, however large, and the lowest pose
-/// that has it; not found where no d2 is finite. Likewise an oracle.
+/// that has it; not found where no d2 is finite. Inside solids v of docs/design/solids.md, which is
+/// below 0. Likewise an oracle.
 std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
                                               const Query& query);
 
 /// The nearest point of a pose, and the index in the environment as its source.
 struct NearestPoint {
-  double squared;  ///< the least d2, infinity where none is below the square of the profile's D
+  /// The least d2, infinity where none is below the square of the profile's D; inside solids the
+  /// least v, below 0.
+  double squared;
   std::uint64_t source;
 };
 

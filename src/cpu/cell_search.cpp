@@ -147,6 +147,7 @@ bool CellSearchOf<Element>::search_clearance(const Vec3& e, std::uint32_t index)
 
 template class CellSearchOf<Vec3>;
 template class CellSearchOf<Triangle>;
+template class CellSearchOf<SolidTriangle>;
 
 std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes) {
   std::uint64_t poses = 0;

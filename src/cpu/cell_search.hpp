@@ -66,6 +66,7 @@ using CellSearch = CellSearchOf<Vec3>;
 
 extern template class CellSearchOf<Vec3>;
 extern template class CellSearchOf<Triangle>;
+extern template class CellSearchOf<SolidTriangle>;
 
 /// How many poses motion nodes have together.
 std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes);

@@ -20,7 +20,7 @@ constexpr double kNodeExtent = 0.5;
 /// Levels of spheres and of halved runs of poses: the deepest stack of point batches.
 constexpr std::size_t kDeepest = ModelSpheres::kLevels + std::bit_width(PoseTree::kMostPoses) + 2;
 
-double longest_side(const Box& box) {
+double greatest_extent(const Box& box) {
   return std::max({box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z});
 }
 
@@ -125,7 +125,7 @@ bool RangeSearch::dismiss_or_take(const SearchTask& task, const Candidate& candi
 
 void RangeSearch::add_candidate(const SearchTask& task, const Candidate& candidate) {
   if (dismiss_or_take(task, candidate)) return;
-  const double extent = longest_side(candidate.box);
+  const double extent = greatest_extent(candidate.box);
   if (candidate.node.is_block() ||
       extent * extent <= kNodeExtent * kNodeExtent * task.reach_squared) {
     candidates_.push_back(candidate);

@@ -84,5 +84,6 @@ void SweepEngineOf<Element>::give_back(std::unique_ptr<CellSearchOf<Element>> se
 
 template class SweepEngineOf<Vec3>;
 template class SweepEngineOf<Triangle>;
+template class SweepEngineOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -7,7 +7,7 @@
 
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
-#include "core/sweep/host_profile.hpp"
+#include "core/sweep/profile/host_profile.hpp"
 #include "cpu/cell_search.hpp"
 
 namespace clearway {
@@ -55,5 +55,6 @@ using SweepEngine = SweepEngineOf<Vec3>;
 
 extern template class SweepEngineOf<Vec3>;
 extern template class SweepEngineOf<Triangle>;
+extern template class SweepEngineOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -189,8 +189,12 @@ class ConflictSearch {
     const auto least =
         least_distances(reader_, points_.source, conflict_of_row, out_.listed.size(), progress_);
     for (Conflict& conflict : out_.listed) {
-      const LeastDistance& found = least[conflict.id];
-      if (found.source == LeastDistance::kNone) continue;
+      const ConflictDistance& found = least[conflict.id];
+      if (reader_.header().model_solids > 0) {
+        conflict.depth = std::max(0.0, -found.distance);
+        conflict.points_inside = found.inside;
+      }
+      if (found.source == ConflictDistance::kNone) continue;
       conflict.least_distance = found.distance;
       conflict.nearest_pose = found.pose;
       conflict.nearest_source = found.source;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/sweep/host_profile.hpp"
+#include "core/sweep/profile/host_profile.hpp"
 #include "gpu/cuda_page_search.hpp"
 #include "gpu/sweep_on_device.hpp"
 #include "gpu/sweep_work_arrays.hpp"
@@ -166,15 +166,21 @@ std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Element>& sweep, const Pa
 
 template class CudaSweepEngineOf<Vec3>;
 template class CudaSweepEngineOf<Triangle>;
+template class CudaSweepEngineOf<SolidTriangle>;
 template std::uint64_t cuda_sweep_bytes(const SweepRefOf<Vec3>&);
 template std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Vec3>&, const PackedCloud&,
                                              const SlotLayout&);
 template std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Vec3>&, const PackedCloud&,
                                                const SlotLayout&);
 template std::uint64_t cuda_sweep_bytes(const SweepRefOf<Triangle>&);
+template std::uint64_t cuda_sweep_bytes(const SweepRefOf<SolidTriangle>&);
 template std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Triangle>&, const PackedCloud&,
                                              const SlotLayout&);
+template std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<SolidTriangle>&, const PackedCloud&,
+                                             const SlotLayout&);
 template std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Triangle>&, const PackedCloud&,
+                                               const SlotLayout&);
+template std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<SolidTriangle>&, const PackedCloud&,
                                                const SlotLayout&);
 
 }  // namespace clearway

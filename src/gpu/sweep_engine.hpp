@@ -27,6 +27,7 @@ using CudaSweepEngine = CudaSweepEngineOf<Vec3>;
 
 extern template class CudaSweepEngineOf<Vec3>;
 extern template class CudaSweepEngineOf<Triangle>;
+extern template class CudaSweepEngineOf<SolidTriangle>;
 
 /// Device memory that a CudaSweepEngine takes beside its slots, and for each of them.
 template <typename Element>

@@ -1,4 +1,4 @@
-#include "core/sweep/profile_page.hpp"
+#include "core/sweep/profile/profile_page.hpp"
 #include "core/sweep/sweep_block.hpp"
 #include "gpu/cuda_check.hpp"
 #include "gpu/sweep_kernels.hpp"
@@ -147,10 +147,14 @@ void search_profile(const SweepPageOf<Element>& page, const ProfileBests& bests,
 template void search_sweep(const SweepPageOf<Vec3>&, unsigned long long*, unsigned, cudaStream_t);
 template void search_sweep(const SweepPageOf<Triangle>&, unsigned long long*, unsigned,
                            cudaStream_t);
+template void search_sweep(const SweepPageOf<SolidTriangle>&, unsigned long long*, unsigned,
+                           cudaStream_t);
 template void search_profile(const SweepPageOf<Vec3>&, const ProfileBests&, const ProfileList&,
                              unsigned long long*, unsigned, cudaStream_t);
 template void search_profile(const SweepPageOf<Triangle>&, const ProfileBests&, const ProfileList&,
                              unsigned long long*, unsigned, cudaStream_t);
+template void search_profile(const SweepPageOf<SolidTriangle>&, const ProfileBests&,
+                             const ProfileList&, unsigned long long*, unsigned, cudaStream_t);
 
 void load_sweep_kernels() noexcept {
   cudaFuncAttributes unused;

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "core/sweep/profile/sweep_profile.hpp"
 #include "core/sweep/sweep_page.hpp"
-#include "core/sweep/sweep_profile.hpp"
 
 namespace clearway {
 
@@ -34,10 +34,15 @@ extern template void search_sweep(const SweepPageOf<Vec3>&, unsigned long long*,
                                   cudaStream_t);
 extern template void search_sweep(const SweepPageOf<Triangle>&, unsigned long long*, unsigned,
                                   cudaStream_t);
+extern template void search_sweep(const SweepPageOf<SolidTriangle>&, unsigned long long*, unsigned,
+                                  cudaStream_t);
 extern template void search_profile(const SweepPageOf<Vec3>&, const ProfileBests&,
                                     const ProfileList&, unsigned long long*, unsigned,
                                     cudaStream_t);
 extern template void search_profile(const SweepPageOf<Triangle>&, const ProfileBests&,
+                                    const ProfileList&, unsigned long long*, unsigned,
+                                    cudaStream_t);
+extern template void search_profile(const SweepPageOf<SolidTriangle>&, const ProfileBests&,
                                     const ProfileList&, unsigned long long*, unsigned,
                                     cudaStream_t);
 

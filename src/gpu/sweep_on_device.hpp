@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/sweep/sweep_profile.hpp"
+#include "core/sweep/profile/sweep_profile.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "gpu/sweep_kernels.hpp"
 
@@ -28,6 +28,15 @@ SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& a
   move(ref.field.brick_of, coarse);
   move(ref.field.distances, fine);
   move(ref.field.nearest, fine);
+  if constexpr (kIsSolid<Element>) {
+    FieldInsideRef& inside = ref.field.inside;
+    move(inside.cells, coarse);
+    move(inside.nodes,
+         std::size_t{ref.field.bricks} * FieldInsideRef::words_for(ModelFieldRef::kBrickNodes));
+    move(inside.solids.parts, inside.solids.count);
+    move(inside.solids.triangles, inside.solids.triangle_count);
+    move(inside.solids.boxes, inside.solids.box_count);
+  }
   move(ref.model.elements, ref.model.size);
   move(ref.model.boxes, ref.model.box_count);
   move(ref.wide.nodes, ref.wide.node_count);

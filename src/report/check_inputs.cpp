@@ -32,8 +32,8 @@ void check_model(const Result& result, const std::vector<Vec3>& model,
                Remedy::kSameModel);
     return;
   }
-  check_hash(result, "model", hash_of_model(model, options.model_triangles), header.model_hash,
-             Remedy::kSameModel);
+  check_hash(result, "model", hash_of_model(model, options.model_triangles, options.model_solid_of),
+             header.model_hash, Remedy::kSameModel);
 }
 
 }  // namespace

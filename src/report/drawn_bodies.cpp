@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/inside.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
+#include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle.hpp"
 #include "io/model/sample_mesh.hpp"
 #include "report/shown_poses.hpp"
@@ -40,6 +42,30 @@ std::vector<Vec3> surface_points(const DrawnBody& body, std::size_t most) {
   return sample_mesh(mesh, spacing_for(mesh, static_cast<double>(most)), "the model");
 }
 
+/// The square of the greatest depth of a place in the solids of a body at a pose; 0 outside.
+double squared_depth(const DrawnBody& body, const Vec3& place, const Pose& pose) {
+  if (body.solid_of.empty()) return 0;
+  Query own;
+  own.model.assign(body.model.begin(), body.model.end());
+  own.triangles.assign(body.triangles.begin(), body.triangles.end());
+  own.solid_of.assign(body.solid_of.begin(), body.solid_of.end());
+  const SolidParts solids(own);
+  const SolidPartsRef ref = solids.ref();
+  double deepest = 0;
+  const auto look = [&](std::uint32_t solid) {
+    const SolidPart& part = ref.parts[solid];
+    double least = std::numeric_limits<double>::infinity();
+    for (const Triangle& t : std::span(ref.triangles + part.first, part.count)) {
+      least = std::min(least, squared_distance(place, transform(pose, t)));
+    }
+    deepest = std::max(deepest, least);
+    return false;
+  };
+  ref.any_with(
+      pulled_back(pose, place), [](std::uint32_t) { return false; }, look);
+  return deepest;
+}
+
 }  // namespace
 
 const Pose* DrawnBody::pose_at(std::uint32_t pose) const {
@@ -53,6 +79,9 @@ double DrawnBody::distance_to(const Vec3& place, std::uint32_t pose) const {
   double least = std::numeric_limits<double>::infinity();
   const Pose* there = pose_at(pose);
   if (there == nullptr) return least;
+  if (const double inside = squared_depth(*this, place, *there); inside > 0) {
+    return -std::sqrt(inside);
+  }
   for (const auto& corners : triangles) {
     const Triangle triangle{model[corners[0]], model[corners[1]], model[corners[2]]};
     least = std::min(least, squared_distance(place, transform(*there, triangle)));
@@ -67,11 +96,12 @@ std::vector<DrawnBody> drawn_bodies(const std::vector<Vec3>& model, const std::v
                                     const ReportOptions& options) {
   std::vector<DrawnBody> bodies;
   for (const Body& body : options.bodies) {
-    bodies.push_back(
-        {body.name, body.model, body.triangles, body.poses, body.path_pose, box_of(body.model)});
+    bodies.push_back({body.name, body.model, body.triangles, body.solid_of, body.poses,
+                      body.path_pose, box_of(body.model)});
   }
   if (bodies.empty()) {
-    bodies.push_back({{}, model, options.model_triangles, poses, {}, box_of(model)});
+    bodies.push_back(
+        {{}, model, options.model_triangles, options.model_solid_of, poses, {}, box_of(model)});
   }
   return bodies;
 }

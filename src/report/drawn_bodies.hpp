@@ -18,6 +18,7 @@ struct DrawnBody {
   std::string name;  ///< empty for the model
   std::span<const Vec3> model;
   std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::span<const std::uint32_t> solid_of;  ///< as Query has it
   std::span<const Pose> poses;
   std::span<const std::uint32_t> path_pose;  ///< as Body has it; none: poses are the path's
   Box box{};                                 ///< of the model's points
@@ -26,6 +27,7 @@ struct DrawnBody {
   /// At a pose of the path; null where it is not there.
   const Pose* pose_at(std::uint32_t pose) const;
   /// The least distance of its points or triangles to a place, where it is there; else infinity.
+  /// Inside its solids the depth, below 0: as a search has it.
   double distance_to(const Vec3& place, std::uint32_t pose) const;
 };
 

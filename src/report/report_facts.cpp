@@ -26,11 +26,29 @@ void write_box(JsonText& json, const char* name, const Box& box) {
   json.key(name).begin('{').field("lo", box.lo).field("hi", box.hi).end('}');
 }
 
+/// Triangles of parts without an inside. of: a body, or the options' model.
+std::uint64_t surface_triangles(std::uint64_t triangles, std::span<const std::uint32_t> solid_of) {
+  if (solid_of.empty()) return triangles;
+  return static_cast<std::uint64_t>(std::ranges::count(solid_of, kNoSolid));
+}
+
+std::uint64_t surface_triangles(const ReportOptions& options) {
+  std::uint64_t count = surface_triangles(options.model_triangles.size(), options.model_solid_of);
+  for (const Body& body : options.bodies) {
+    count += surface_triangles(body.triangles.size(), body.solid_of);
+  }
+  return count;
+}
+
 void write_bodies(JsonText& json, const ReportFacts& facts) {
   json.key("bodies").begin('[');
-  for (const DrawnBody& body : facts.bodies) {
+  for (std::size_t i = 0; i < facts.bodies.size(); ++i) {
+    const DrawnBody& body = facts.bodies[i];
+    const std::vector<std::uint32_t>& solid_of = facts.options.bodies[i].solid_of;
     json.begin('{').field("name", body.name).field("points", std::uint64_t{body.model.size()});
     json.field("triangles", std::uint64_t{body.triangles.size()});
+    json.field("solids", solid_count(solid_of));
+    json.field("surface_triangles", surface_triangles(body.triangles.size(), solid_of));
     json.field("poses", std::uint64_t{body.poses.size()});
     json.field("shown_points", std::uint64_t{body.shown_points});
     write_box(json, "box", body.box);
@@ -59,6 +77,8 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.field("crs_wkt", header.crs_wkt).end('}');
   json.key("model").begin('{').field("name", options.model_name);
   json.field("points", header.model_points).field("hash", hash_text(header.model_hash));
+  json.field("triangles", header.model_triangles).field("solids", header.model_solids);
+  json.field("surface_triangles", surface_triangles(options));
   write_box(json, "box", facts.model_box);
   json.field("above", options.model_above).field("left_out", options.model_left_out);
   if (!header.bodies.empty()) write_bodies(json, facts);
@@ -123,6 +143,7 @@ void write_conflict(JsonText& json, const Conflict& conflict, const ReportFacts&
       .field("nearest_pose", conflict.nearest_pose);
   json.field("nearest_source", conflict.nearest_source)
       .field("encroachment", conflict.encroachment);
+  json.field("depth", conflict.depth).field("points_inside", conflict.points_inside);
   const auto place = conflict.nearest_source ? facts.points.places.find(*conflict.nearest_source)
                                              : facts.points.places.end();
   json.key("nearest_point");
@@ -188,6 +209,20 @@ void write_least(JsonText& json, const ReportFacts& facts) {
   json.field("height", facts.least->height).field("of", facts.least_of).end('}');
 }
 
+/// What is inside solids of the model; null where that is not known.
+void write_inside(JsonText& json, const ReportFacts& facts) {
+  const ResultHeader& header = facts.result.reader().header();
+  json.key("inside");
+  if (header.model_solids == 0 || !(std::max(header.clearance, header.profile) > 0)) {
+    json.raw("null");
+    return;
+  }
+  const bool counts = header.clearance > 0;
+  const double depth = facts.least ? std::max(0.0, -facts.least->distance) : 0;
+  json.begin('{').field("points", counts ? std::optional(facts.points.inside) : std::nullopt);
+  json.field("depth", depth).end('}');
+}
+
 void write_lattice(JsonText& json, const char* name, const PageLattice& lattice) {
   json.key(name).begin('{').field("origin", lattice.origin).field("step", lattice.step).end('}');
 }
@@ -207,6 +242,7 @@ void write_page_facts(JsonText& json, const ReportFacts& facts) {
   write_lattice(json, "environment_lattice", facts.environment_lattice);
   write_lattice(json, "model_lattice", facts.model_lattice);
   json.field("rotation_step", kRotationStep).field("distance_step", kDistanceStep);
+  json.field("no_distance", double{kNoDistance});
   json.field("chainage_step", kChainageStep).field("time_step", kTimeStep);
   const auto& times = facts.options.labels.time;
   json.field("time_origin", times.empty() ? 0.0 : times[0]);
@@ -239,6 +275,7 @@ std::string json_of(const ReportFacts& facts) {
   json.field("colliding_points", facts.result.size());
   json.field("unit", facts.store.length_unit());
   write_least(json, facts);
+  write_inside(json, facts);
   write_query(json, facts);
   write_inputs(json, facts);
   write_warnings(json, facts.options.warnings);

@@ -91,6 +91,7 @@ class PointReader {
   }
 
   void note_least(const RowCursor& row, const ClearanceCursor& clearance, bool collides) {
+    if (clearance.distance() < 0) ++out_.inside;
     if (out_.least && out_.least->distance <= clearance.distance()) return;
     out_.least = {clearance.distance(), clearance.pose(), clearance.source(), {}, {}, {}, {}};
     out_.least->body = clearance.body();

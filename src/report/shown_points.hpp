@@ -31,7 +31,8 @@ struct ShownPoints {
   std::array<std::uint64_t, kMostClasses> of_class{};  ///< in the result
   std::array<std::uint64_t, kMostClasses> shown_class{};  ///< and on the page
   std::uint64_t without_place =
-      0;  ///< closer than the last class, of a result without their places
+      0;                     ///< closer than the last class, of a result without their places
+  std::uint64_t inside = 0;  ///< points with a clearance below 0
   std::optional<LeastDistance> least;    ///< of the clearances
   std::map<std::uint64_t, Vec3> places;  ///< of the sources asked for that collide
 };

@@ -56,7 +56,7 @@ void add_places(PoseColumns& out, std::span<const Pose> poses, const PageLattice
 void add_profile(PoseColumns& out, const Profile& profile, const PageLattice& lattice) {
   static constexpr const char* kPoint[] = {"pose.px", "pose.py", "pose.pz"};
   out.add("pose.distance", [&](std::uint32_t i) {
-    return std::isfinite(profile.distance[i]) ? profile.distance[i] / kDistanceStep : -1;
+    return std::isfinite(profile.distance[i]) ? profile.distance[i] / kDistanceStep : kNoDistance;
   });
   for (int k = 0; k < 3; ++k) {
     out.add(kPoint[k], [&](std::uint32_t i) {

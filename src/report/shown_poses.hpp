@@ -28,6 +28,8 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
                          std::vector<PageColumn>& columns);
 
 /// What the integers of these columns count.
+/// Of a pose without a point within the profile's distance. Depths are above it.
+inline constexpr std::int32_t kNoDistance = -2147483647;
 inline constexpr double kRotationStep = 1.0 / (1 << 17), kDistanceStep = 1e-4, kChainageStep = 1e-3,
                         kTimeStep = 1e-3;
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "core/geometry/inside.hpp"
 #include "core/query/ignored_text.hpp"
 
 namespace clearway {
@@ -76,6 +77,28 @@ void check_ignored(const QueryParameters& query) {
 
 /// of: a query, or a body.
 template <typename ModelOwner>
+void check_solids(const std::string& what, const ModelOwner& of) {
+  if (!of.is_solid()) return;
+  if (of.solid_of.size() != of.triangles.size()) {
+    throw InputError(what + " has " + std::to_string(of.triangles.size()) +
+                     " triangles and the solids of " + std::to_string(of.solid_of.size()) +
+                     ", expected one for each");
+  }
+  if (const std::uint64_t solids = solid_count(of.solid_of); solids > of.triangles.size()) {
+    throw InputError(what + " names solid " + std::to_string(solids - 1) +
+                     ", expected numbers below that of its triangles");
+  }
+  for (const Vec3& corner : of.model) {
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(corner[k]) < SolidLattice::kMostSide / 2) continue;
+      throw InputError("a corner of " + what + " has the coordinate " + std::to_string(corner[k]) +
+                       ", expected one below 5e149 m for a model with solids");
+    }
+  }
+}
+
+/// of: a query, or a body.
+template <typename ModelOwner>
 void check_model_size(const std::string& what, const ModelOwner& of) {
   if (of.model.empty()) throw InputError(what + " has no points");
   if (of.model.size() > std::numeric_limits<std::uint32_t>::max()) {
@@ -94,6 +117,7 @@ void check_model_size(const std::string& what, const ModelOwner& of) {
                        std::to_string(of.model.size()));
     }
   }
+  check_solids(what, of);
 }
 
 }  // namespace
@@ -158,6 +182,13 @@ void check_surface(const QueryParameters& query, const SearchOptions& options) {
     throw UsageError("motion between poses needs a model of points, and this one is a surface",
                      Remedy::kModelPoints);
   }
+}
+
+void check_solid(const QueryParameters& query) {
+  if (!(query.tolerance > 0)) return;
+  throw UsageError(
+      "a tolerance and a model with solids cannot be combined: without a tolerance, "
+      "engine sweep answers it exactly");
 }
 
 void check_sizes(const Query& query) {

@@ -14,8 +14,11 @@ void check_query(const QueryParameters& query, const SearchOptions& options);
 /// The same of a query whose model is a surface.
 void check_surface(const QueryParameters& query, const SearchOptions& options);
 
-/// Throws InputError where a triangle has a corner that is not there, and where the trees over
-/// model and poses cannot have as many nodes.
+/// And where it has solids.
+void check_solid(const QueryParameters& query);
+
+/// Throws InputError where a triangle has a corner that is not there, where solids are not those of
+/// the triangles or too large, and where the trees over model and poses cannot have as many nodes.
 void check_sizes(const Query& query);
 
 /// Throws UsageError where the engine cannot search bodies so, and InputError where they contradict

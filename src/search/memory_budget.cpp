@@ -15,11 +15,13 @@ std::uint64_t program_bytes(int threads) {
 std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
   std::uint64_t bytes = store.allocated_bytes() + query.model.size() * sizeof(Vec3) +
                         query.triangles.size() * sizeof(query.triangles[0]) +
+                        query.solid_of.size() * sizeof(query.solid_of[0]) +
                         query.poses.size() * sizeof(Pose);
   for (const Body& body : query.bodies) {
     // The search has a copy of them.
     bytes += 2 * body.model.size() * sizeof(Vec3) +
              2 * body.triangles.size() * sizeof(body.triangles[0]) +
+             2 * body.solid_of.size() * sizeof(body.solid_of[0]) +
              body.poses.size() * (2 * sizeof(Pose) + sizeof(std::uint32_t));
   }
   return bytes;
@@ -34,7 +36,9 @@ std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) 
 
 std::uint64_t tree_building_bytes(const Query& query) {
   const auto of_model = [](const auto& model) {
-    return model.is_surface() ? 240 * model.triangles.size() : 52 * model.model.size();
+    const std::uint64_t of_solids = 400 * model.solid_of.size();  // each once more, by solid
+    return of_solids +
+           (model.is_surface() ? 240 * model.triangles.size() : 52 * model.model.size());
   };
   if (query.bodies.empty()) return of_model(query) + 168 * query.poses.size();
   std::uint64_t bytes = 0;

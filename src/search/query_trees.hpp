@@ -4,6 +4,7 @@
 
 #include "clearway/query.hpp"
 #include "core/geometry/model_tree.hpp"
+#include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle_box.hpp"
 #include "core/trajectory/motion_tree.hpp"
 #include "core/util/stopwatch.hpp"
@@ -17,12 +18,14 @@ struct QueryTrees {
   explicit QueryTrees(const Query& query, int threads = 1, const Stopwatch& clock = {})
       : model(query.is_surface() ? std::span<const Vec3>() : query.model, threads),
         triangles(triangles_of(query.model, query.triangles), threads),
+        solids(query, threads),
         model_seconds(clock.seconds()),
         motion(query.poses, box(), query.between_poses, threads),
         motion_seconds(clock.seconds() - model_seconds) {}
 
   std::uint64_t allocated_bytes() const {
-    return model.allocated_bytes() + triangles.allocated_bytes() + motion.allocated_bytes();
+    return model.allocated_bytes() + triangles.allocated_bytes() + solids.allocated_bytes() +
+           motion.allocated_bytes();
   }
 
   /// Of the model, which is not empty.
@@ -30,7 +33,7 @@ struct QueryTrees {
 
   /// Of the model's elements.
   template <typename Element>
-  const ModelTreeOf<Element>& of() const {
+  const ModelTreeOf<StoredElement<Element>>& of() const {
     if constexpr (kIsTriangle<Element>) {
       return triangles;
     } else {
@@ -38,8 +41,15 @@ struct QueryTrees {
     }
   }
 
+  /// For a field of these elements; null where they are no solids.
+  template <typename Element>
+  const SolidParts* solids_of() const {
+    return kIsSolid<Element> ? &solids : nullptr;
+  }
+
   ModelTree model;         ///< empty for a surface
   TriangleTree triangles;  ///< of a surface
+  SolidParts solids;       ///< of it, if any
   double model_seconds;    ///< wall clock
   MotionTree motion;
   double motion_seconds;

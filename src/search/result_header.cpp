@@ -61,8 +61,9 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
                       metadata.input_points,
                       metadata.points_hash,
                       points_of(query),
-                      query.bodies.empty() ? hash_of_model(query.model, query.triangles)
-                                           : hash_of_bodies(query.bodies),
+                      query.bodies.empty()
+                          ? hash_of_model(query.model, query.triangles, query.solid_of)
+                          : hash_of_bodies(query.bodies),
                       query.poses.size(),
                       hash_of_trajectory(query.poses),
                       query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
@@ -73,6 +74,7 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
                       model_box(query),
                       std::nullopt,
                       triangles_of(query),
+                      solid_count(query),
                       std::move(ignored),
                       by_class ? metadata.classes->hash : 0,
                       names_of(query)};

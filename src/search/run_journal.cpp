@@ -62,7 +62,9 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
     identity.emplace_back("ignored_classes", classes_text(header));
     identity.emplace_back("ignored_boxes", boxes_text(header.ignore_boxes));
   }
-  if (header.model_triangles > 0) identity.emplace_back("model_as", "surface");
+  if (header.model_triangles > 0) {
+    identity.emplace_back("model_as", header.model_solids > 0 ? "solid" : "surface");
+  }
   if (header.profile > 0) identity.emplace_back("profile", format_number(header.profile));
   if (header.tolerance > 0) {  // then the answer depends on the field
     identity.emplace_back("field_voxel", format_number(options.field_voxel));

@@ -1,7 +1,6 @@
 #include "clearway/search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -10,12 +9,12 @@
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/choice/choose_engine.hpp"
 #include "search/choice/device_estimate.hpp"
+#include "search/counts/report_counts.hpp"
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
 #include "search/ignored/count_ignored.hpp"
@@ -57,10 +56,11 @@ class Search {
 
   SearchReport run() {
     check();
-    report_sizes();
+    report_sizes(store_, query_, report_);
+    report_.ignored = header_.ignored;
     divide();
     if (journal_.already_done(store_, header_, progress_)) {
-      report_finished();
+      report_finished(ResultReader(journal_.output(), Parts::kAccepted), report_);
     } else {
       resolve_device();
       Found found = find();
@@ -85,21 +85,6 @@ class Search {
     if (options_.strict) refuse_warnings(report_.warnings);
   }
 
-  void report_sizes() {
-    report_.environment_points = store_.point_count();
-    report_.model_points = query_.model.size();
-    report_.model_triangles = query_.triangles.size();
-    report_.poses = query_.poses.size();
-    report_.searches = report_.poses * element_count(query_);
-    for (const Body& body : query_.bodies) {
-      report_.model_points += body.model.size();
-      report_.model_triangles += body.triangles.size();
-      report_.searches += body.poses.size() * element_count(body);
-    }
-    report_.cells_total = store_.cells().size();
-    report_.ignored = header_.ignored;
-  }
-
   /// Of a shard, which cells it has.
   void divide() {
     if (!options_.shard) return;
@@ -119,18 +104,6 @@ class Search {
   }
 
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
-
-  /// The result that was there already.
-  void report_finished() {
-    const ResultReader result(journal_.output(), Parts::kAccepted);
-    report_.was_finished = true;
-    report_.colliding_points = result.collisions();
-    report_.clearance_points = result.clearances();
-    ProfileRowStream profile(result);
-    for (ProfileRows rows; profile.read(rows);) {
-      for (const double distance : rows.distance) count_pose(distance);
-    }
-  }
 
   /// Device kAuto goes on where the run that is resumed was.
   void resolve_device() {
@@ -243,7 +216,8 @@ class Search {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
       report_written(write_result(store_, found.result, header_, pending_.partial(),
-                                  found.write_bytes, progress_, chainage, options_.threads));
+                                  found.write_bytes, progress_, chainage, options_.threads),
+                     found.result.profile, report_);
       pending_.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);
@@ -253,7 +227,6 @@ class Search {
     report_.cells_read = touched.cells;
     report_.ignored_looked_at = found.result.ignored_points;
     report_.bytes_read = touched.bytes;
-    report_profile(found.result.profile);
     report_.seconds.write = write.seconds();
   }
 
@@ -266,25 +239,6 @@ class Search {
     header_.part->device = name_of(report_.device);
     header_.part->field_voxel = report_.field_voxel;
     header_.part->grid_cell = report_.grid_cell;
-  }
-
-  void report_written(const WrittenResult& written) {
-    report_.colliding_points = written.collisions;
-    report_.clearance_points = written.clearances;
-    report_.first_place = written.first_place;
-    report_.least_clearance = written.least_clearance;
-    report_.least_profile = written.least_profile;
-  }
-
-  void report_profile(const ProfileSet& profile) {
-    for (std::uint32_t pose = 0; pose < profile.poses(); ++pose) {
-      count_pose(profile.at(pose).squared);
-    }
-  }
-
-  /// distance: or its square.
-  void count_pose(double distance) {
-    if (!std::isinf(distance)) ++report_.profile_poses;
   }
 
   const Stopwatch total_;
@@ -319,6 +273,7 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
   check_query(query, options);
   check_bodies(query, options);
   if (query.is_surface()) check_surface(query, options);
+  if (query.is_solid()) check_solid(query);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

@@ -61,6 +61,7 @@ class SearchJournal final : public PoseJournal {
   void append_profile(std::span<const PlannedCell> cells, std::span<const ProfileFact> facts,
                       const ProfileSet& profile);
   void replay_all(const Target& target) const;
+  bool is_square(double squared) const;
   void replay_cell(JournalPayload& payload, HitSet* hits, ClearanceSet* clearances) const;
   void replay_profile(JournalPayload& payload, ProfileSet* profile) const;
   void replay_marks(JournalPayload& payload, HitSet* hits) const;

@@ -1,5 +1,6 @@
 // What a journal's file holds, checked record by record and added to an answer.
 #include <algorithm>
+#include <cmath>
 
 #include "core/geometry/predicate.hpp"
 #include "core/query/body_numbers.hpp"
@@ -95,6 +96,11 @@ std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t 
   return bits;
 }
 
+/// Inside solids it is below 0.
+bool SearchJournal::is_square(double squared) const {
+  return squared >= 0 || (query_.has_solids() && squared < 0 && std::isfinite(squared));
+}
+
 void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
                                 ClearanceSet* clearances) const {
   const std::uint64_t cell_word = std::uint64_t{take_cell(payload)} * cloud_.blocks_per_cell();
@@ -121,7 +127,7 @@ void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
     for_each_bit(bits, [&](std::size_t i) {
       const auto squared = payload.take<double>();
       const Clearance clearance{squared, take_number(payload)};
-      if (!(squared >= 0 && clearance.found())) payload.refuse("a distance that is none");
+      if (!(is_square(squared) && clearance.found())) payload.refuse("a distance that is none");
       if (clearances != nullptr) clearances->set(word * kBlockPoints + i, clearance);
     });
   });
@@ -151,7 +157,7 @@ void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile)
   for (std::uint64_t facts = payload.take_count(); facts > 0; --facts) {
     const std::uint32_t pose = take_pose(payload);
     const auto squared = payload.take<double>();
-    if (!(squared >= 0 && squared < limit)) payload.refuse("a distance that is none");
+    if (!(is_square(squared) && squared < limit)) payload.refuse("a distance that is none");
     const std::uint64_t entry = payload.take_count();
     const std::uint64_t cell = entry / cloud_.cell_entries(), index = entry % cloud_.cell_entries();
     if (cell >= cloud_.cells().size() || index >= cloud_.cells()[cell].count) {

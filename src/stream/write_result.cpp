@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/query/signed_root.hpp"
 #include "io/system/thread_limit.hpp"
 #include "stream/write/encode_rows.hpp"
 #include "stream/write/gather_rows.hpp"
@@ -135,7 +136,7 @@ class ResultWriting {
                             });
   }
 
-  void write_clearances(const SetCells& in, std::optional<FoundPlace>& least) {
+  void write_clearances(const SetCells& in, WrittenResult& out) {
     const WritePlan plan = plan_of<ClearanceRow>(store_, memory_bytes_);
     const ClearanceSet& clearances = answer_.clearances;
     const auto rows_of = [&](std::uint32_t cell) {
@@ -143,15 +144,16 @@ class ResultWriting {
                                                std::uint32_t i) {
         const Clearance clearance = clearances.at(entry);
         return ClearanceRow{
-            source, std::sqrt(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
+            source, signed_root(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
       };
     };
     const auto encode_rows = [&](std::span<const ClearanceRow> rows) {
       return clearway::encode_rows(writer_, meaning_, rows);
     };
     const auto keep_least = [&](const ClearancePiece& piece) {
-      if (least && least->distance <= piece.place->distance) return;
-      least = piece.place;
+      out.inside_points += piece.inside;
+      std::optional<FoundPlace>& least = out.least_clearance;
+      if (!least || piece.place->distance < least->distance) least = piece.place;
     };
     write_set<ClearanceRow>(store_, clearances, in, plan, progress_, rows_of,
                             [&](std::span<const ClearanceRow> rows) {
@@ -183,7 +185,7 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
   progress.begin("write", out.collisions + out.clearances, "points");
   ResultWriting writing(store, answer, header, memory_bytes, writer, progress);
   writing.write_collisions(collisions, out.first_place);
-  writing.write_clearances(clearances, out.least_clearance);
+  writing.write_clearances(clearances, out);
   if (header.profile > 0) {
     out.least_profile =
         write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress);

@@ -17,6 +17,7 @@ namespace clearway {
 /// smallest source, in the profile the first pose), where it has one.
 struct WrittenResult {
   std::uint64_t collisions = 0, clearances = 0;
+  std::uint64_t inside_points = 0;        ///< of the clearances those below 0
   std::optional<FoundPlace> first_place;  ///< with first poses only
   std::optional<FoundPlace> least_clearance, least_profile;
 };

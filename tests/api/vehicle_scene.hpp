@@ -65,6 +65,7 @@ struct Vehicle {
   Query of(std::size_t body) const {
     Query own(query.bodies[body].model, query.bodies[body].poses, query);
     own.triangles = query.bodies[body].triangles;
+    own.solid_of = query.bodies[body].solid_of;
     return own;
   }
   /// For brute force: ignored points are far away.

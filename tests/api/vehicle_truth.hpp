@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "api/vehicle_scene.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/query/hit_set.hpp"
+#include "core/query/signed_root.hpp"
 #include "cpu/brute_force.hpp"
 
 /// Runs of vehicles against brute force, body by body, merged by hand.
@@ -77,7 +79,7 @@ inline void check_clearances(Vehicle& vehicle) {
     if (!(expected[i].squared < limit)) continue;
     REQUIRE(row < found.source.size());
     CHECK(found.source[row] == i);
-    CHECK(found.distance[row] == std::sqrt(expected[i].squared));
+    CHECK(found.distance[row] == signed_root(expected[i].squared));
     CHECK(found.pose[row] == expected[i].first.pose);
     CHECK(found.body[row] == expected[i].first.body);
     ++row;
@@ -103,7 +105,7 @@ inline void check_profile(Vehicle& vehicle) {
   }
   REQUIRE(found.distance.size() == expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    CHECK(found.distance[i] == std::sqrt(expected[i].squared));
+    CHECK(found.distance[i] == signed_root(expected[i].squared));
     CHECK(found.source[i] == expected[i].source);
   }
   CHECK(vehicle.report.profile_poses > 10);

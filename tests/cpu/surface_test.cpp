@@ -119,9 +119,9 @@ TEST_CASE("points on a surface and at the radius from it") {
 
 TEST_CASE("random surfaces") {
 #ifdef CLEARWAY_SANITIZED
-  constexpr std::uint64_t kScenes = 6;
+  constexpr std::uint64_t kScenes = 30;
 #else
-  constexpr std::uint64_t kScenes = 25;
+  constexpr std::uint64_t kScenes = 500;
 #endif
   std::uint64_t with_hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
@@ -132,14 +132,17 @@ TEST_CASE("random surfaces") {
     const double size = std::exp(uniform(random, -3, 4));
     const Box room{{-size, -size, -size / 3}, {size, size, size / 3}};
     const double part = size * uniform(random, 0.01, 0.4);
+    const bool large = seed % 100 == 0;
     scene.surface = random_surface(random, {{-part, -part, -part / 2}, {part, part, part}},
                                    1 + below(random, 30));
-    scene.poses = smooth_path(random, room, 1 + below(random, 40));
-    scene.radius = size * std::exp(uniform(random, -5, 0));
+    scene.poses = smooth_path(random, room, 1 + below(random, large ? 40 : 12));
+    // A radius far below the model's size takes a large field.
+    scene.radius =
+        large ? size * std::exp(uniform(random, -5, 0)) : part * std::exp(uniform(random, -1, 1.5));
     scene.quantisation = {{size * 1e-6, size * 1e-6, size * 2e-6}, {0, 0, 0}};
-    scene.points =
-        quantise(places_beside(random, scene.surface, scene.poses, 2 * scene.radius, 300),
-                 scene.quantisation);
+    scene.points = quantise(
+        places_beside(random, scene.surface, scene.poses, 2 * scene.radius, large ? 200 : 30),
+        scene.quantisation);
     if (below(random, 3) == 0) scene.move_far_away({5e5, 5e6, 300});
     const std::uint32_t cell_points = std::uint32_t{64} << below(random, 4);
     with_hits += check_engines(scene.points, scene.quantisation, scene.query(),

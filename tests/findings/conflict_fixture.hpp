@@ -26,6 +26,7 @@ struct Found {
   std::vector<Pose> poses{translation({0, 0, 0}), translation({1, 0, 0})};
   double clearance = 0;
   ClearanceRows clearances = {};
+  std::uint64_t solids = 0;
 
   ResultHeader header() const {
     ResultHeader out;
@@ -36,6 +37,8 @@ struct Found {
     out.radius = 0.5;
     out.first_pose = true;
     out.clearance = clearance;
+    out.model_triangles = 12 * solids;
+    out.model_solids = solids;
     out.quantisation = quantisation;
     out.model_box = {{-1, -1, -1}, {1, 1, 1}};
     return out;

@@ -156,8 +156,39 @@ TEST_CASE("least distances come from the clearances, of equal ones the smallest 
   CHECK(out.listed[0].nearest_source == 2);
   CHECK(out.listed[0].nearest_pose == 1);
   CHECK(out.listed[0].encroachment == 0.25);
+  CHECK_FALSE(out.listed[0].depth);  // of points
   CHECK(out.listed[1].least_distance == 0.5);
   CHECK(out.listed[1].nearest_source == 8);
+}
+
+TEST_CASE("conflicts with solids tell depth and points inside") {
+  Found found;
+  found.quanta = {{0, 0, 0}, {100, 0, 0}, {200, 0, 0}, {5000, 0, 0}, {5100, 0, 0}, {9000, 0, 0}};
+  found.clearance = 0.4;
+  found.clearances.source = {0, 1, 2, 4};
+  found.clearances.distance = {-0.25, 0.125, -0.5, 0.25};
+  found.clearances.pose = {0, 1, 1, 0};
+  found.clearances.xyz.resize(4, found.rows().xyz[0]);
+  found.solids = 2;
+  ConflictOptions options;
+  options.min_points = 1;
+  const Conflicts out = conflicts_of(found, options);
+  REQUIRE(out.listed.size() == 3);
+  CHECK(out.listed[0].least_distance == -0.5);
+  CHECK(out.listed[0].nearest_source == 2);
+  CHECK(out.listed[0].nearest_pose == 1);
+  CHECK(out.listed[0].encroachment == 1);
+  CHECK(out.listed[0].depth == 0.5);
+  CHECK(out.listed[0].points_inside == 2);
+  CHECK(out.listed[1].depth == 0);
+  CHECK(out.listed[1].points_inside == 0);
+  CHECK(out.listed[2].depth == 0);
+  CHECK(out.listed[2].points_inside == 0);
+  found.clearance = 0;
+  found.clearances = {};
+  const Conflicts without = conflicts_of(found, options);
+  CHECK_FALSE(without.listed[0].depth);
+  CHECK_FALSE(without.listed[0].points_inside);
 }
 
 TEST_CASE("threads and the order of work change nothing") {

@@ -11,6 +11,7 @@
 #include "cli/ignored/ignored_options.hpp"
 #include "cli/support/sources_json.hpp"
 #include "cli/support/standard_output.hpp"
+#include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/inspect/file_kind.hpp"
@@ -81,9 +82,12 @@ ordered_json describe(const ResultReader& result) {
                            {"colliding_points", result.collisions()},
                            {"environment_points", h.environment_points},
                            {"radius", h.radius},
-                           {"model_as", h.model_triangles > 0 ? "surface" : "points"},
+                           {"model_as", h.model_solids > 0      ? "solid"
+                                        : h.model_triangles > 0 ? "surface"
+                                                                : "points"},
                            {"model_points", h.model_points},
                            {"model_triangles", h.model_triangles},
+                           {"model_solids", h.model_solids},
                            {"model_box", h.has_model_box() ? box_json(h.model_box) : nullptr},
                            {"poses", h.poses},
                            {"first_pose", h.first_pose},
@@ -98,6 +102,13 @@ ordered_json describe(const ResultReader& result) {
                            {"model_hash", hash_text(h.model_hash)},
                            {"trajectory_hash", hash_text(h.trajectory_hash)}};
   if (!h.bodies.empty()) description["bodies"] = h.bodies;
+  if (h.model_solids > 0) {
+    const Verdict verdict = verdict_of(result, {});
+    const std::optional<double> depth = greatest_depth(verdict);
+    description["points_inside"] = nullptr;
+    if (verdict.points_inside) description["points_inside"] = *verdict.points_inside;
+    description["greatest_depth"] = depth ? ordered_json(*depth) : ordered_json(nullptr);
+  }
   if (h.ignores_points()) {
     description["ignored"] = ignored_json(h, h.ignored);
     if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);

@@ -75,7 +75,9 @@ void read_model_again(ReportCommand& options, const Result& result, Query& query
     ModelShape model = read_model_shape(options.model, how, &warnings);
     query.model = std::move(model.points);
     query.triangles = std::move(model.triangles);
+    query.solid_of = std::move(model.solid_of);
     options.report.model_triangles = query.triangles;
+    options.report.model_solid_of = query.solid_of;
     return;
   }
   if (how.as == ModelAs::kSurface) how.as = ModelAs::kSurfaceOfMesh;  // others may be points

@@ -108,9 +108,12 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["radius"] = options.query.radius;
   out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
-  out["model_as"] = report.model_triangles > 0 ? "surface" : "points";
+  out["model_as"] = report.model_solids > 0      ? "solid"
+                    : report.model_triangles > 0 ? "surface"
+                                                 : "points";
   out["model_points"] = report.model_points;
   out["model_triangles"] = report.model_triangles;
+  out["model_solids"] = report.model_solids;
   out["poses"] = report.poses;
   out["colliding_points"] = report.colliding_points;
   out["clearance_points"] = report.clearance_points;

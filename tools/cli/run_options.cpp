@@ -44,12 +44,15 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       .add_option_function<std::string>(
           "--model-as",
           [&options](const std::string& name) {
-            options.model_as = name == "surface" ? ModelAs::kSurface : ModelAs::kPoints;
+            options.model_as = name == "solid"     ? ModelAs::kSolid
+                               : name == "surface" ? ModelAs::kSurface
+                                                   : ModelAs::kPoints;
           },
-          "surface: search the triangles of a mesh as they are; points: search points on its "
-          "surface (default: surface, for what engine sweep searches at poses)")
+          "surface: search the triangles of a mesh as they are. solid: and what its closed parts "
+          "enclose. points: search points on its surface. (Default: surface, for what engine sweep "
+          "searches at poses)")
       ->type_name("KIND")
-      ->check(CLI::IsMember({"surface", "points"}));
+      ->check(CLI::IsMember({"surface", "solid", "points"}));
   add_model_options(command, options.model_options, options.lengths);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
@@ -193,7 +196,8 @@ ModelOptions model_options_of(const RunOptions& options) {
   ModelOptions how = options.model_options;
   how.as = options.model_as.value_or(asks_for_points(options) ? ModelAs::kPoints
                                                               : ModelAs::kSurfaceOfMesh);
-  if (how.as == ModelAs::kSurface) {
+  if (how.as == ModelAs::kSolid) check_solid(options.query);
+  if (how.as == ModelAs::kSurface || how.as == ModelAs::kSolid) {
     if (how.spacing > 0 || how.vertices_only) {
       throw UsageError(
           "a surface is searched as it is: --model-spacing and --model-vertices are of points",

@@ -30,11 +30,12 @@ std::optional<AnswerPlace> first_place(const ResultReader& result) {
   return first;
 }
 
-std::optional<AnswerPlace> least_clearance(const ResultReader& result) {
+std::optional<AnswerPlace> least_clearance(const ResultReader& result, std::uint64_t& inside) {
   std::optional<AnswerPlace> least;
   ClearanceRowStream stream(result);
   for (ClearanceRows rows; stream.read(rows);) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (rows.distance[i] < 0) ++inside;
       if (least && rows.distance[i] >= *least->distance) continue;
       least = {.source = rows.source[i], .pose = rows.pose[i], .distance = rows.distance[i]};
       if (!rows.xyz.empty()) least->xyz = rows.xyz[i];
@@ -78,6 +79,14 @@ std::string place_text(const AnswerPlace& place, const PoseLabels& labels,
 std::string nearest_text(const Verdict& verdict, const PoseLabels& labels,
                          const std::string& unit) {
   const auto& nearest = verdict.nearest();
+  if (nearest && *nearest->distance < 0) {
+    std::string text;
+    if (const std::uint64_t inside = verdict.points_inside.value_or(0); inside > 0) {
+      text = "; " + counted(inside, "point is", "points are") + " inside the model";
+    }
+    return text + fmt::format("; the greatest depth inside the model is {:.4g} {} at {}",
+                              -*nearest->distance, unit, place_text(*nearest, labels, unit));
+  }
   if (nearest) {
     return fmt::format("; the least distance is {:.4g} {} at {}", *nearest->distance, unit,
                        place_text(*nearest, labels, unit));
@@ -129,6 +138,8 @@ Verdict verdict_of_found(const Report& report, const QueryParameters& query, boo
   out.first = answer_place(report.first_place, false);
   out.least_clearance = answer_place(report.least_clearance, true);
   out.least_profile = answer_place(report.least_profile, true);
+  out.has_depths = report.model_solids > 0;
+  if (out.has_depths && query.clearance > 0) out.points_inside = report.inside_points;
   return out;
 }
 
@@ -166,10 +177,19 @@ Verdict verdict_of(const ResultReader& result, const std::vector<Pose>& poses) {
   if (result.header().part) out.shard = result.header().part->shard;
   out.float_precision = result.header().float_precision;
   if (result.header().first_pose) out.first = first_place(result);
-  out.least_clearance = least_clearance(result);
+  std::uint64_t inside = 0;
+  out.least_clearance = least_clearance(result, inside);
+  out.has_depths = result.header().model_solids > 0;
+  if (out.has_depths && out.query.clearance > 0) out.points_inside = inside;
   out.least_profile = least_of_profile(result);
   if (!poses.empty()) set_chainages(out, poses);
   return out;
+}
+
+std::optional<double> greatest_depth(const Verdict& verdict) {
+  const bool is_known = std::max(verdict.query.clearance, verdict.query.profile) > 0;
+  if (!verdict.has_depths || !is_known) return std::nullopt;
+  return verdict.nearest() ? std::max(0.0, -*verdict.nearest()->distance) : 0;
 }
 
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points) {
@@ -220,6 +240,10 @@ void add_verdict(const Verdict& verdict, const PoseLabels& labels, ordered_json&
   out["verdict"] = verdict.is_clear() ? "clear" : verdict.is_conflict() ? "conflict" : "unknown";
   out["ignored"] = ignored_json(verdict.query, verdict.ignored);
   out["shard"] = verdict.shard ? ordered_json(to_string(*verdict.shard)) : ordered_json(nullptr);
+  const std::optional<double> depth = greatest_depth(verdict);
+  out["points_inside"] = nullptr;
+  if (verdict.points_inside) out["points_inside"] = *verdict.points_inside;
+  out["greatest_depth"] = depth ? ordered_json(*depth) : ordered_json(nullptr);
   out["least_clearance"] = place_json(verdict.least_clearance, labels);
   out["least_profile"] = place_json(verdict.least_profile, labels);
   out["first_place"] = place_json(verdict.first, labels);

@@ -34,6 +34,8 @@ struct Verdict {
   std::optional<AnswerPlace> first;            ///< with first poses: at the smallest, least source
   std::optional<AnswerPlace> least_clearance;  ///< of equals the least source
   std::optional<AnswerPlace> least_profile;    ///< of equals the first pose
+  bool has_depths = false;  ///< of a model with solids: distances below 0 are depths
+  std::optional<std::uint64_t> points_inside{};  ///< then, with clearances
 
   bool is_conflict() const { return colliding_points > 0; }
   bool is_clear() const { return !is_conflict() && !shard; }
@@ -67,8 +69,12 @@ std::string caveat_of(std::size_t warnings);
 std::string verdict_text(const Verdict& verdict, const PoseLabels& labels, const std::string& unit,
                          const std::string& caveat);
 
+/// The greatest depth inside the model, metres; 0 where nothing is inside. None where that is not
+/// known.
+std::optional<double> greatest_depth(const Verdict& verdict);
+
 /// Adds the keys verdict ("unknown" of a part without colliding points), shard, ignored,
-/// least_clearance, least_profile and first_place.
+/// points_inside, greatest_depth, least_clearance, least_profile and first_place.
 void add_verdict(const Verdict& verdict, const PoseLabels& labels, nlohmann::ordered_json& out);
 
 }  // namespace clearway::tool

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/util/format.hpp"
 
@@ -73,7 +74,11 @@ std::string cell_distance(const Task& task, const TaskLook& look) {
   if (look.status != TaskStatus::kDone) return "";
   const ordered_json& facts = look.state->facts;
   const ordered_json& least = facts["least"];
-  if (!least.is_null()) return format_brief(least["distance"].get<double>()) + " " + task.unit;
+  if (!least.is_null()) {
+    const auto distance = least["distance"].get<double>();
+    const std::string length = format_brief(std::abs(distance)) + " " + task.unit;
+    return distance < 0 ? length + " deep inside" : length;
+  }
   const auto radius = task.question["radius"].get<double>();
   const double asked = std::max(
       {radius, task.question["clearance"].get<double>(), task.question["profile"].get<double>()});

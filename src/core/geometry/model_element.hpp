@@ -3,14 +3,22 @@
 #include <type_traits>
 
 #include "core/geometry/box.hpp"
+#include "core/geometry/inside.hpp"
 #include "core/geometry/triangle.hpp"
 
-/// What a model consists of: points (Vec3) or triangles. Trees, bounds and bodies of a search are
-/// templates over one of them, the element.
+/// What a model consists of: points (Vec3), triangles, or triangles of which some are solids.
+/// Trees, bounds and bodies of a search are templates over one of them, the element.
 namespace clearway {
 
 template <typename Element>
-inline constexpr bool kIsTriangle = std::is_same_v<Element, Triangle>;
+inline constexpr bool kIsTriangle = std::is_base_of_v<Triangle, Element>;
+
+template <typename Element>
+inline constexpr bool kIsSolid = std::is_same_v<Element, SolidTriangle>;
+
+/// What a model's tree holds.
+template <typename Element>
+using StoredElement = std::conditional_t<kIsSolid<Element>, Triangle, Element>;
 
 /// Whether the predicate says yes for every point of the box and a moved element. rounding: metres,
 /// of a test of one point at one pose.

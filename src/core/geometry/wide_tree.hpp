@@ -8,28 +8,36 @@
 
 namespace clearway {
 
-/// A bounding volume hierarchy of eight children a node over the parts of a ModelTree, so that
-/// eight boxes or points are tested by one instruction each. It is a third as deep.
-class WideTree {
+/// A bounding volume hierarchy of eight children a node over the parts of a ModelTreeOf, so that
+/// eight boxes or elements are tested by one instruction each. It is a third as deep.
+template <typename Element>
+class WideTreeOf {
  public:
-  WideTree() = default;
-  explicit WideTree(const ModelTree& model);
+  using Ref = WideTreeRefOf<Element>;
+
+  WideTreeOf() = default;
+  explicit WideTreeOf(const ModelTreeOf<Element>& model);
 
   /// Valid while the tree lives.
-  WideTreeRef ref() const;
+  Ref ref() const;
 
   std::uint64_t allocated_bytes() const {
-    return nodes_.capacity() * sizeof(WideTreeRef::Node) +
-           packets_.capacity() * sizeof(PointPacket);
+    return nodes_.capacity() * sizeof(WideBoxes::Node) +
+           packets_.capacity() * sizeof(PacketOf<Element>);
   }
 
  private:
   void add_level(const std::vector<Box>& children);
 
-  std::vector<WideTreeRef::Node> nodes_;
-  std::vector<PointPacket> packets_;
+  std::vector<WideBoxes::Node> nodes_;
+  std::vector<PacketOf<Element>> packets_;
   std::vector<std::uint32_t> first_;  ///< node of each level
   Vec3 origin_{};
 };
+
+using WideTree = WideTreeOf<Vec3>;
+
+extern template class WideTreeOf<Vec3>;
+extern template class WideTreeOf<Triangle>;
 
 }  // namespace clearway

@@ -9,7 +9,8 @@
 namespace clearway {
 
 /// The least computed d2 between an environment point and the model over all poses, square metres,
-/// and the lowest pose that has it. The distance is the root of it.
+/// and the lowest pose that has it. The distance is the root of it. Of a point inside solids it is
+/// below 0: minus the square of the greatest depth.
 struct Clearance {
   double squared = std::numeric_limits<double>::infinity();
   std::uint32_t pose = std::numeric_limits<std::uint32_t>::max();

@@ -21,6 +21,7 @@ Clearance ClearanceSearchOf<Element>::nearest(const Vec3& e, std::span<const std
   // Pose 0, so that a tie with the limit is no improvement.
   PointClearance<Element> search(sweep_, e, {limit_, 0}, statistics);
   search.offer(guess_pose_, guess_);
+  if (guess_is_inside_) search.offer_inside(guess_pose_);
   while (!nodes.empty()) {
     const auto part =
         nodes.first(std::min<std::size_t>(nodes.size(), PointClearance<Element>::kMostNodes));
@@ -29,11 +30,13 @@ Clearance ClearanceSearchOf<Element>::nearest(const Vec3& e, std::span<const std
   }
   if (!(search.best().squared < limit_)) return Clearance{};
   guess_pose_ = search.best().pose;
-  guess_ = search.element();
+  guess_is_inside_ = search.is_inside();
+  if (!guess_is_inside_) guess_ = search.element();
   return search.best();
 }
 
 template class ClearanceSearchOf<Vec3>;
 template class ClearanceSearchOf<Triangle>;
+template class ClearanceSearchOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -18,7 +18,7 @@ class ClearanceSearchOf {
   explicit ClearanceSearchOf(const SweepFilterOf<Element>& filter);
 
   /// Over the poses of `nodes`; not found where there is no d2 below the squared clearance asked
-  /// for.
+  /// for. Inside solids below 0.
   Clearance nearest(const Vec3& e, std::span<const std::uint32_t> nodes,
                     SweepStatistics& statistics);
 
@@ -26,10 +26,12 @@ class ClearanceSearchOf {
   const SweepRefOf<Element>& sweep_;
   const double limit_;  ///< the square of the clearance asked for
   std::uint32_t guess_pose_ = 0;
-  Element guess_;  ///< of the model, of the last answer
+  bool guess_is_inside_ = false;
+  Element guess_;  ///< of the model, of the last answer that was not inside
 };
 
 extern template class ClearanceSearchOf<Vec3>;
 extern template class ClearanceSearchOf<Triangle>;
+extern template class ClearanceSearchOf<SolidTriangle>;
 
 }  // namespace clearway

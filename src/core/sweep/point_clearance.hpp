@@ -5,14 +5,17 @@
 
 #include "core/query/clearance_set.hpp"
 #include "core/sweep/point_curve.hpp"
+#include "core/sweep/solid_depth.hpp"
 #include "core/sweep/sweep_ref.hpp"
+#include "core/sweep/triangle_curve.hpp"
 #include "core/util/bit_reversal_order.hpp"
 
 namespace clearway {
 
 /// The exact clearance of one environment point: branch and bound over motion tree and model. What
 /// is given up is proven to have only computed d2 above the best so far, so that ties reach the
-/// lowest pose (docs/design/numerics.md, "Clearance").
+/// lowest pose (docs/design/numerics.md, "Clearance"). Of solids the depth comes first: below 0, it
+/// is the answer.
 template <typename Element>
 class PointClearance {
  public:
@@ -20,12 +23,23 @@ class PointClearance {
   CLEARWAY_HD PointClearance(const SweepRefOf<Element>& sweep, const Vec3& e, const Clearance& best,
                              SweepStatistics& statistics)
       : sweep_(sweep), statistics_(statistics), e_(e) {
-    set_best(best.squared, best.pose);
+    best_ = best;
+    if (!is_inside()) set_best(best.squared, best.pose);
   }
 
   CLEARWAY_HD const Clearance& best() const { return best_; }
-  /// That the best was found with.
+  CLEARWAY_HD bool is_inside() const { return best_.squared < 0; }
+  /// That the best was found with, unless it is inside.
   CLEARWAY_HD const Element& element() const { return near_; }
+
+  /// Looks whether the point is inside at a pose.
+  CLEARWAY_HD void offer_inside(std::uint32_t pose) {
+    if constexpr (kIsSolid<Element>) {
+      SolidDepth<Element> depth(sweep_, e_, best_, statistics_);
+      depth.offer(pose);
+      if (depth.best().squared < 0) best_ = depth.best();
+    }
+  }
 
   CLEARWAY_HD void offer(std::uint32_t pose, const Element& m) {
     const double squared = squared_distance(e_, transform(sweep_.motion.poses[pose], m));
@@ -37,6 +51,8 @@ class PointClearance {
   /// Every pose of some nodes, at most kMostNodes. First a look at all, far apart ones first, for a
   /// best that is close from the start; then the one that may be nearest comes first.
   CLEARWAY_HD void search(const std::uint32_t* nodes, std::uint32_t count) {
+    search_inside(nodes, count);
+    if (is_inside()) return;
     double squared_lower[kMostNodes];
     BitReversalOrder(count).for_each([&](std::uint32_t i) {
       squared_lower[i] = look(nodes[i]);
@@ -60,6 +76,14 @@ class PointClearance {
 
   CLEARWAY_HD std::uint32_t size_of(std::uint32_t at) const {
     return 2 * sweep_.motion.nodes[at].count - 1;
+  }
+
+  CLEARWAY_HD void search_inside(const std::uint32_t* nodes, std::uint32_t count) {
+    if constexpr (kIsSolid<Element>) {
+      SolidDepth<Element> depth(sweep_, e_, best_, statistics_);
+      for (std::uint32_t i = 0; i < count; ++i) depth.search(nodes[i]);
+      if (depth.best().squared < 0) best_ = depth.best();
+    }
   }
 
   /// What the square of the distance is at least, pulled back by the middle pose of the node.
@@ -110,10 +134,7 @@ class PointClearance {
     if (!one_place && !is_close_enough(error)) return false;
     const auto least = static_cast<double>(smooth.least);
     if constexpr (kIsTriangle<Element>) {
-      const CurveBall places(sweep_.motion, node, e_);
-      if (!one_place) error += places.radius;
-      if (!one_place && !is_close_enough(error)) return false;
-      search_triangles(node, places.centre, one_place, least, error);
+      search_triangles(node, TriangleCurve(sweep_.motion, node, e_), one_place, least, error);
     } else {
       const PointCurve curve(sweep_.motion, node, e_, ball(least, error));
       error += curve.beside();
@@ -127,37 +148,66 @@ class PointClearance {
                                  double least, double error) {
     ++statistics_.exact_tests;
     double squared = squared_ball(least, error);
-    sweep_.wide.visit_nearest_first(
+    sweep_.wide.any_nearest_first(
         curve.box(), [&] { return squared; },
         [&](const PointPacket& packet, double(&out)[PointPacket::kMost]) {
           curve.to_points(packet, out);
         },
-        [&](const Vec3& m) {
+        [&](const PointPacket& packet, std::uint32_t i) {
+          const Vec3 m = packet.point(i);
           if (one_place) {
             offer(node.first, m);
           } else {
             search_poses(node, m, curve, least, error);
           }
           squared = squared_ball(least, error);
+          return false;
         });
   }
 
-  /// x: none of the places of the poses is farther from it than the error.
-  CLEARWAY_HD void search_triangles(const MotionNode& node, const Vec3& x, bool one_place,
-                                    double least, double error) {
+  CLEARWAY_HD void search_triangles(const MotionNode& node, const TriangleCurve& curve,
+                                    bool one_place, double least, double error) {
     ++statistics_.exact_tests;
-    const std::uint32_t end = node.first + (one_place ? 1 : node.count);
     double squared = squared_ball(least, error);
-    sweep_.model.any(
-        [&](const Box& box) {
-          return least_squared_distance(box, x) > squared ? ModelStep::kSkip : ModelStep::kEnter;
+    sweep_.wide.any_nearest_first(
+        curve.box(), [&] { return squared; },
+        [&](const TrianglePacket& packet, double(&out)[TrianglePacket::kMost]) {
+          curve.to_triangles(packet, out);
         },
-        [&](const Element& t) {
-          if (squared_distance(x, t) > squared) return false;
-          for (std::uint32_t pose = node.first; pose < end; ++pose) offer(pose, t);
+        [&](const TrianglePacket& packet, std::uint32_t i) {
+          if (one_place) {
+            offer(node.first, sweep_.model.elements[packet.index[i]]);
+          } else {
+            search_poses(node, packet, i, curve, least, error);
+          }
           squared = squared_ball(least, error);
           return false;
         });
+  }
+
+  /// One triangle against the poses of a smooth node, the likely nearest first.
+  CLEARWAY_HD void search_poses(const MotionNode& node, const TrianglePacket& packet,
+                                std::uint32_t i, const TriangleCurve& curve, double least,
+                                double error) {
+    constexpr std::uint32_t kMost = TriangleCurve::kMostPlaces;
+    const StoredElement<Element>& t = sweep_.model.elements[packet.index[i]];
+    const double per_last = 1.0 / (node.count - 1);
+    const double guess = curve.place(packet, i) * (node.count - 1) + 0.5;
+    const auto nearest = static_cast<std::uint32_t>(guess);
+    offer(node.first + nearest, t);
+    const std::uint32_t length = node.count > kMost * kMost ? (node.count - 1) / kMost + 1 : kMost;
+    double from_part[kMost];
+    curve.from_parts(packet, i, length, per_last, from_part);
+    for (std::uint32_t part = 0; part < kMost && part * length < node.count; ++part) {
+      if (from_part[part] > squared_ball(least, error)) continue;
+      const std::uint32_t begin = part * length, left = node.count - begin;
+      double from_pose[kMost];
+      for (std::uint32_t k = 0; k < (length < left ? length : left); ++k) {
+        if (k % kMost == 0) curve.from_places(packet, i, begin + k, per_last, from_pose);
+        const bool is_open = !(from_pose[k % kMost] > squared_ball(least, error));
+        if (is_open && begin + k != nearest) offer(node.first + begin + k, t);
+      }
+    }
   }
 
   CLEARWAY_HD double squared_ball(double least, double error) const {

@@ -15,8 +15,10 @@ using Verdict = SweepVerdict;
 
 double rounding_of(const Query& query, const MotionTree& motion, const ModelField& field,
                    const PackedCloud& cloud) {
+  // What the question for an inside rounds counts as so much more of a lattice.
+  const double lattice = field.margin() + field.inside_rounding() / (1024 * kUnitRoundoff);
   const double rounding =
-      motion.rounding(largest_coordinate(cloud) + search_radius(query), field.margin()) + 1e-150;
+      motion.rounding(largest_coordinate(cloud) + search_radius(query), lattice) + 1e-150;
   // Between poses, the part of a computed hit's error that does not grow with the step.
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
@@ -29,8 +31,9 @@ constexpr double kOpenArea = 1;
 
 template <typename Element>
 SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& motion,
-                                      const ModelTreeOf<Element>& model, const ModelField& field,
-                                      const PackedCloud& cloud, int threads)
+                                      const ModelTreeOf<StoredElement<Element>>& model,
+                                      const ModelField& field, const PackedCloud& cloud,
+                                      int threads)
     : query_(query),
       motion_(motion),
       model_(model),
@@ -50,10 +53,8 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
     curves_ = MotionCurves(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
                            model.spacing(), threads);
     ref_.motion.curves = curves_.data();
-    if constexpr (!kIsTriangle<Element>) {
-      wide_ = WideTree(model);
-      ref_.wide = wide_.ref();
-    }
+    wide_ = WideTreeOf<StoredElement<Element>>(model);
+    ref_.wide = wide_.ref();
   }
   for_plan_ = ref_;
   for_plan_.field = field.ref_as_made();
@@ -201,5 +202,6 @@ void SweepFilterOf<Element>::first_pose_below(const Vec3& e, std::uint32_t index
 
 template class SweepFilterOf<Vec3>;
 template class SweepFilterOf<Triangle>;
+template class SweepFilterOf<SolidTriangle>;
 
 }  // namespace clearway

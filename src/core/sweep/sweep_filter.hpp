@@ -23,13 +23,14 @@ class SweepFilterOf final : public PoseReach {
  public:
   /// All arguments outlive it. cloud: for the largest coordinates, which the rounding bound needs.
   /// threads: to build with.
-  SweepFilterOf(const Query& query, const MotionTree& motion, const ModelTreeOf<Element>& model,
-                const ModelField& field, const PackedCloud& cloud, int threads = 1);
+  SweepFilterOf(const Query& query, const MotionTree& motion,
+                const ModelTreeOf<StoredElement<Element>>& model, const ModelField& field,
+                const PackedCloud& cloud, int threads = 1);
 
   const Query& query() const { return query_; }
   const SweepRefOf<Element>& ref() const { return ref_; }
   const MotionTree& motion() const override { return motion_; }
-  const ModelTreeOf<Element>& model() const { return model_; }
+  const ModelTreeOf<StoredElement<Element>>& model() const { return model_; }
   std::uint64_t allocated_bytes() const {
     return curves_.allocated_bytes() + wide_.allocated_bytes();
   }
@@ -75,16 +76,17 @@ class SweepFilterOf final : public PoseReach {
 
   const Query& query_;
   const MotionTree& motion_;
-  const ModelTreeOf<Element>& model_;
+  const ModelTreeOf<StoredElement<Element>>& model_;
   SweepRefOf<Element> ref_;
-  MotionCurves curves_;           ///< with a clearance
-  WideTree wide_;                 ///< likewise, of points
-  SweepRefOf<Element> for_plan_;  ///< makes no bricks: cells are too large to need them
+  MotionCurves curves_;                      ///< with a clearance
+  WideTreeOf<StoredElement<Element>> wide_;  ///< likewise
+  SweepRefOf<Element> for_plan_;             ///< makes no bricks: cells are too large to need them
 };
 
 using SweepFilter = SweepFilterOf<Vec3>;
 
 extern template class SweepFilterOf<Vec3>;
 extern template class SweepFilterOf<Triangle>;
+extern template class SweepFilterOf<SolidTriangle>;
 
 }  // namespace clearway

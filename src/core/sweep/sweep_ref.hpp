@@ -42,7 +42,7 @@ struct PointBox {
 /// What becomes of a motion node for the points of a box.
 enum class SweepBoxClass {
   kDismissed,  ///< no pose of the node matters
-  kAccepted,   ///< its middle pose touches every point of the box
+  kAccepted,   ///< its middle pose touches, or contains, every point of the box
   kSplit,      ///< to be looked at in halves
   kKept,       ///< fine enough for a box of this size
 };
@@ -65,10 +65,10 @@ struct SweepRefOf {
   static constexpr double kMotionPerBox = 1.0;
 
   MotionTreeRef motion;
-  ModelTreeRefOf<Element> model;
+  ModelTreeRefOf<StoredElement<Element>> model;
   ModelFieldRef field;
-  WideTreeRef wide;  ///< the model's points again, with a clearance; not of triangles
-  double radius;     ///< whatever is closer is a hit; with a tolerance search_radius()
+  WideTreeRefOf<StoredElement<Element>> wide;  ///< the model's elements again, with a clearance
+  double radius;  ///< whatever is closer is a hit; with a tolerance search_radius()
   double
       resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
   double clearance;   ///< 0: not asked for
@@ -109,7 +109,12 @@ struct SweepRefOf {
     const InversePose& back = motion.inverse_poses[node.mid];
     const double reach = limit + node.delta + rho + rounding;
     const ModelFieldRef::Bounds bounds = field.bounds(back.apply(centre));
-    if (farther(back.least, bounds.squared_lower, reach)) return BoxClass::kDismissed;
+    if (farther(back.least, bounds.squared_lower, reach)) {
+      if (!is_inside(back.apply(centre), bounds.squared_lower)) return BoxClass::kDismissed;
+      if (accept) return BoxClass::kAccepted;
+      return node.count > 1 && node.delta > kMotionPerBox * rho ? BoxClass::kSplit
+                                                                : BoxClass::kKept;
+    }
     if (accept && rho < radius && bounds.near != ModelFieldRef::kNone &&
         collides_with_all(points.box,
                           transform(motion.poses[node.mid], model.elements[bounds.near]), radius,
@@ -149,6 +154,13 @@ struct SweepRefOf {
     return hits_follow_from_clearance() ? limit : greater_of(limit, radius);
   }
 
+  /// Whether a solid contains x, where a bound proves that no surface is within the rounding. Then
+  /// it is so wherever, and at whatever poses, the same proof holds.
+  CLEARWAY_HD bool is_inside(const Vec3& x, double squared_lower) const {
+    if constexpr (kIsSolid<Element>) return field.contains(x, squared_lower);
+    return false;
+  }
+
   using Verdict = SweepVerdict;
 
   /// Looks at a node for the point e without a search of the model. squared_lower: of the field at
@@ -160,9 +172,9 @@ struct SweepRefOf {
     const ModelFieldRef::Bounds bounds = field.bounds(back.apply(e));
     squared_lower = bounds.squared_lower;
     if (farther(back.least, squared_lower, radius + node.delta + rounding)) {
-      return Verdict::kDismissed;
+      return is_inside(back.apply(e), squared_lower) ? Verdict::kHitAtMid : Verdict::kDismissed;
     }
-    if (bounds.near != ModelFieldRef::kNone &&
+    if (bounds.near != ModelFieldRef::kNone && may_hit_at_mid(back, squared_lower) &&
         collides(e, transform(motion.poses[node.mid], model.elements[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
@@ -173,6 +185,12 @@ struct SweepRefOf {
       return Verdict::kDismissed;
     }
     return Verdict::kOpen;
+  }
+
+  /// Whether the predicate is worth asking: that of points costs no more than the test.
+  CLEARWAY_HD bool may_hit_at_mid(const InversePose& back, double squared_lower) const {
+    if constexpr (!kIsTriangle<Element>) return true;
+    return !farther(back.least, squared_lower, radius + rounding);
   }
 
   CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node,
@@ -190,6 +208,9 @@ struct SweepRefOf {
     }
     const InversePose& back = motion.inverse_poses[node.mid];
     const Pose& pose = motion.poses[node.mid];
+    if constexpr (kIsSolid<Element>) {
+      if (field.inside.solids.contains(pulled_back(pose, e))) return true;
+    }
     const double ball = (resolved_from + rounding) / back.least * kRoundedUp;
     return model.any_within(back.apply(e), ball * ball * kRoundedUp, [&](const Element& m) {
       return collides(e, transform(pose, m), radius);

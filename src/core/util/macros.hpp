@@ -18,3 +18,11 @@
 #else
 #define CLEARWAY_SIMD_CLONES
 #endif
+
+/// CLEARWAY_IN_CLONE: a member that clones are made of is compiled into each of them, whatever its
+/// size. On its own it would be compiled once, without their vectors.
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define CLEARWAY_IN_CLONE __attribute__((always_inline)) inline
+#else
+#define CLEARWAY_IN_CLONE
+#endif

@@ -39,4 +39,18 @@ CLEARWAY_HD inline void lower_shared(double* value, double to) {
 #endif
 }
 
+/// Lowers a value to one below 0.
+CLEARWAY_HD inline void lower_shared_below_0(double* value, double to) {
+#ifdef __CUDA_ARCH__
+  auto* const bits = reinterpret_cast<unsigned long long*>(value);
+  const auto wanted = static_cast<unsigned long long>(__double_as_longlong(to));
+  for (double seen = load_shared(value); to < seen;) {
+    const auto expected = static_cast<unsigned long long>(__double_as_longlong(seen));
+    seen = __longlong_as_double(static_cast<long long>(atomicCAS(bits, expected, wanted)));
+  }
+#else
+  lower_shared(value, to);
+#endif
+}
+
 }  // namespace clearway

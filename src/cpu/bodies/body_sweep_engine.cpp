@@ -146,8 +146,9 @@ std::uint64_t BodySweepEngine::worker_bytes(const PackedCloud& cloud, const Quer
   return sizeof(Worker) + cloud.blocks_per_cell() * sizeof(std::uint64_t) +
          cloud.cell_entries() * an_entry +
          query.bodies.size() *
-             std::max(CellSearchOf<Vec3>::most_bytes(cloud, query, most_poses),
-                      CellSearchOf<Triangle>::most_bytes(cloud, query, most_poses));
+             std::max({CellSearchOf<Vec3>::most_bytes(cloud, query, most_poses),
+                       CellSearchOf<Triangle>::most_bytes(cloud, query, most_poses),
+                       CellSearchOf<SolidTriangle>::most_bytes(cloud, query, most_poses)});
 }
 
 /// Facts of one body, of all bodies, and twice these while their list grows.

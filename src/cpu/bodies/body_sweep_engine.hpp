@@ -10,13 +10,14 @@
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/query/body_numbers.hpp"
-#include "core/sweep/host_profile.hpp"
+#include "core/sweep/profile/host_profile.hpp"
 #include "cpu/cell_search.hpp"
 
 namespace clearway {
 
 /// Of a body's model and its poses, by what the model consists of.
-using BodyFilter = std::variant<const SweepFilterOf<Vec3>*, const SweepFilterOf<Triangle>*>;
+using BodyFilter = std::variant<const SweepFilterOf<Vec3>*, const SweepFilterOf<Triangle>*,
+                                const SweepFilterOf<SolidTriangle>*>;
 
 /// A body as the engine searches it.
 struct SweptBody {
@@ -49,9 +50,11 @@ class BodySweepEngine final : public PageEngine {
   const SweepStatistics& statistics() const { return statistics_; }
 
  private:
+  using AnyCellSearch =
+      std::variant<CellSearchOf<Vec3>, CellSearchOf<Triangle>, CellSearchOf<SolidTriangle>>;
   /// What one thread searches with: a search a body, and the answer of one cell for one body.
   struct Worker {
-    std::vector<std::variant<CellSearchOf<Vec3>, CellSearchOf<Triangle>>> searches;
+    std::vector<AnyCellSearch> searches;
     std::vector<std::uint64_t> hits;
     std::vector<std::uint32_t> first_poses;
     std::vector<Clearance> clearances;

@@ -36,7 +36,9 @@ std::vector<ConflictField> fields_of(const Conflict& c, const ResultHeader& head
                                     {"side", std::string_view(name_of(c.side))},
                                     {"lateral", value_of<double>(c.lateral)},
                                     {"height", value_of<double>(c.height)},
-                                    {"group", c.group}};
+                                    {"group", c.group},
+                                    {"depth", value_of<double>(c.depth)},
+                                    {"points_inside", value_of<std::uint64_t>(c.points_inside)}};
   if (c.body) {
     fields.push_back({"body", std::uint64_t{*c.body}});
     fields.push_back({"body_name", std::string_view(header.bodies.at(*c.body))});

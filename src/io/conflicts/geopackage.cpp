@@ -81,8 +81,8 @@ std::vector<Layer> layers_of(const std::vector<Pose>& poses) {
 const char* sql_type(const FieldValue& value, std::string_view name) {
   if (std::holds_alternative<std::string_view>(value)) return "TEXT";
   if (std::holds_alternative<double>(value)) return "DOUBLE";
-  const bool a_length =
-      name == "least_distance" || name == "encroachment" || name == "lateral" || name == "height";
+  const bool a_length = name == "least_distance" || name == "encroachment" || name == "lateral" ||
+                        name == "height" || name == "depth";
   return a_length ? "DOUBLE" : "INTEGER";
 }
 

@@ -112,6 +112,7 @@ class PartMerge {
       rows.xyz.push_back(row.xyz());
       rows.distance.push_back(row.distance());
       rows.pose.push_back(row.pose());
+      if (row.distance() < 0) ++out_.inside_points;
       if (!out_.least_clearance || row.distance() < out_.least_clearance->distance) {
         out_.least_clearance = {row.source(), row.pose(), row.xyz(), row.distance(),
                                 row.body().value_or(0)};

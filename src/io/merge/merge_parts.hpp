@@ -11,7 +11,7 @@
 namespace clearway {
 
 struct MergedResult {
-  std::uint64_t profile_poses = 0;
+  std::uint64_t profile_poses = 0, inside_points = 0;
   std::optional<FoundPlace> first_place = {}, least_clearance = {}, least_profile = {};
 };
 

@@ -60,6 +60,7 @@ struct ResultHeader : QueryParameters {
   /// Of a surface, whose corners the model's points are; 0: the points are the model. Of several
   /// bodies those of all.
   std::uint64_t model_triangles = 0;
+  std::uint64_t model_solids = 0;  ///< parts of it with an inside; then distances may be below 0
   IgnoredPointCounts ignored{};  ///< of ignore_classes and ignore_boxes, as sort_ignored() has them
   std::uint64_t classes_hash = 0;        ///< of all points; 0 where no class is ignored
   std::vector<std::string> bodies = {};  ///< names, of a query with several; else none

@@ -191,6 +191,9 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.model_triangles > 0) {
     hdf5::write_number(file, names::kModelTriangles, header.model_triangles);
   }
+  if (header.model_solids > 0) {
+    hdf5::write_number(file, names::kModelSolids, header.model_solids);
+  }
   if (header.ignores_points()) write_ignored(file, header);
   if (!header.bodies.empty()) {
     hdf5::write_attribute(file, names::kBodies, lines_of(header.bodies));
@@ -222,6 +225,9 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   }
   if (hdf5::has_attribute(file, names::kModelTriangles, name)) {
     header.model_triangles = hdf5::read_number<std::uint64_t>(file, names::kModelTriangles, name);
+  }
+  if (hdf5::has_attribute(file, names::kModelSolids, name)) {
+    header.model_solids = hdf5::read_number<std::uint64_t>(file, names::kModelSolids, name);
   }
   header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
   header.ways_without_ends =

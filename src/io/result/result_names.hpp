@@ -37,6 +37,7 @@ inline constexpr const char* kClosedWay = "closed way";
 
 inline constexpr const char* kBodies = "bodies";  // names, a line each; only where there are any
 inline constexpr const char* kModelTriangles = "model_triangles";  // only of a surface
+inline constexpr const char* kModelSolids = "model_solids";        // only with solids
 
 inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
 inline constexpr const char* kDivision = "division";

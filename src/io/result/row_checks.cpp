@@ -51,9 +51,13 @@ void RowChecks::bodies(std::span<const std::uint32_t> body) const {
   }
 }
 
+bool RowChecks::is_distance(double distance) const {
+  return distance >= 0 || (header.model_solids > 0 && distance < 0 && std::isfinite(distance));
+}
+
 void RowChecks::clearances(std::span<const double> distance) const {
   for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (!(distance[i] >= 0 && distance[i] <= header.clearance)) {
+    if (!(is_distance(distance[i]) && distance[i] <= header.clearance)) {
       refuse_row(names::kDistance, i, "a distance from 0 to the clearance");
     }
   }
@@ -75,7 +79,7 @@ void RowChecks::profile(std::span<const double> distance, std::span<const std::u
       refuse_row(names::kSource, i, "an index below environment_points, or 2^64 - 1 for none");
     }
     // The root of a number below fl(D D) may round to D.
-    if (!(distance[i] >= 0 && distance[i] <= header.profile)) {
+    if (!(is_distance(distance[i]) && distance[i] <= header.profile)) {
       refuse_row(names::kDistance, i, "a distance from 0 to the profile's");
     }
     if (!is_finite(xyz[i])) refuse_row(names::kXyz, i, "finite coordinates");

@@ -20,6 +20,8 @@ struct RowChecks {
   void points(std::span<const Vec3> xyz) const;
   void poses(const char* dataset, std::span<const std::uint32_t> pose) const;
   void bodies(std::span<const std::uint32_t> body) const;
+  /// Of a model with solids, one below 0 too.
+  bool is_distance(double distance) const;
   void clearances(std::span<const double> distance) const;
   /// Distance, source and point of a pose belong together.
   void profile(std::span<const double> distance, std::span<const std::uint64_t> source,

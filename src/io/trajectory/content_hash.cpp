@@ -12,10 +12,12 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Pose) == 12 * sizeof(
 std::uint64_t hash_of_model(std::span<const Vec3> points) { return xxh64(std::as_bytes(points)); }
 
 std::uint64_t hash_of_model(std::span<const Vec3> points,
-                            std::span<const std::array<std::uint32_t, 3>> triangles) {
+                            std::span<const std::array<std::uint32_t, 3>> triangles,
+                            std::span<const std::uint32_t> solid_of) {
   Xxh64Stream hash;
   hash.update(std::as_bytes(points));
   hash.update(std::as_bytes(triangles));
+  hash.update(std::as_bytes(solid_of));
   return hash.digest();
 }
 
@@ -31,7 +33,7 @@ std::uint64_t hash_of_bodies(std::span<const Body> bodies) {
   for (const Body& body : bodies) {
     add(body.name.size());
     hash.update(std::as_bytes(std::span(body.name)));
-    add(hash_of_model(body.model, body.triangles));
+    add(hash_of_model(body.model, body.triangles, body.solid_of));
     add(body.path_pose.size());
     hash.update(std::as_bytes(std::span(body.path_pose)));
     add(hash_of_trajectory(body.poses));

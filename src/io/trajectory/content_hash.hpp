@@ -15,9 +15,11 @@ namespace clearway {
 std::uint64_t hash_of_model(std::span<const Vec3> points);
 
 /// Of a surface: the same over the corners, then the indices of each triangle as 4 little-endian
-/// bytes each. Without triangles that of the points.
+/// bytes each, then of each triangle the number of its solid, where there are any, as 4 more.
+/// Without triangles that of the points.
 std::uint64_t hash_of_model(std::span<const Vec3> points,
-                            std::span<const std::array<std::uint32_t, 3>> triangles);
+                            std::span<const std::array<std::uint32_t, 3>> triangles,
+                            std::span<const std::uint32_t> solid_of = {});
 
 /// The same over the 12 numbers of every pose: the rotation row by row, then the translation.
 std::uint64_t hash_of_trajectory(std::span<const Pose> poses);

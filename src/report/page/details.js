@@ -6,8 +6,20 @@ const kKinds = [["front", "From the front", "The conflict and what is within a f
 
 /** What the slice goes through: without clearances the nearest point is not known. */
 function sliceWords(conflict) {
-  return conflict.nearest_point ? "A slice through the nearest point."
+  const which = isInside(conflict.least_distance) ? "deepest" : "nearest";
+  return conflict.nearest_point ? `A slice through the ${which} point.`
       : "A slice through the middle of its points, at the first pose that comes too close.";
+}
+
+function nearestPoseWords({ nearest_pose: pose, least_distance: distance }) {
+  if (pose === null) return "";
+  return `, ${isInside(distance) ? "deepest" : "nearest"} at ${count(pose)}`;
+}
+
+function detailedDistance({ least_distance: distance }) {
+  const required = shortLength(page.facts.query.radius);
+  return isInside(distance) ? `${depthWords(distance)} inside the vehicle; required is ${required} outside`
+                            : `${metres(distance)} of ${required}`;
 }
 
 function conflictFacts(conflict) {
@@ -19,15 +31,17 @@ function conflictFacts(conflict) {
     offsetWords(conflict) && ["Offset", offsetWords(conflict)],
   ].filter(Boolean);
   if (conflict.least_distance !== null) {
-    rows.push(["Distance", `${words.symbol} ${words.name}: ${metres(conflict.least_distance)} of ` +
-                           `${shortLength(query.radius)}`],
+    rows.push(["Distance", `${words.symbol} ${words.name}: ${detailedDistance(conflict)}`],
               ["Missing", missingWords(conflict.encroachment, conflict.least_distance)]);
   } else {
     rows.push(["Distance", `closer than ${shortLength(query.radius)}; run with --clearance to know it`]);
   }
+  if (conflict.points_inside > 0) {
+    rows.push(["Inside", `${count(conflict.points_inside)} of its points`]);
+  }
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
             ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +
-             (conflict.nearest_pose !== null ? `, nearest at ${count(conflict.nearest_pose)}` : "")]);
+             nearestPoseWords(conflict)]);
   return make("table", { class: "facts" }, make("tbody", {},
               rows.map(([name, value]) => factRow(name, value))));
 }

@@ -34,16 +34,21 @@ function drawScaleBar(context, perMetre, unitSize) {
 function drawDistance(context, painter, conflict, vehicle, unitSize) {
   const place = placeOf(conflict), near = nearestOfModel(vehicle.shown, place);
   const a = painter.project(place), b = painter.project(near.point);
-  context.strokeStyle = "#111827";
-  context.lineWidth = 1.6 * unitSize;
-  context.beginPath();
-  context.moveTo(a[0], a[1]);
-  context.lineTo(b[0], b[1]);
-  context.stroke();
+  const distance = conflict.least_distance, inside = isInside(distance);
+  // A wall of another part may be nearer to what lies inside.
+  if (!inside || near.distance > -0.9 * distance) {
+    context.strokeStyle = "#111827";
+    context.lineWidth = 1.6 * unitSize;
+    context.beginPath();
+    context.moveTo(a[0], a[1]);
+    context.lineTo(b[0], b[1]);
+    context.stroke();
+  }
   drawRing(context, a, unitSize);
   context.fillStyle = "#111827";
   setFont(context, 14 * unitSize, "600");
-  const text = `${metres(conflict.least_distance)} of ${metres(page.facts.query.radius)}`;
+  const text = inside ? depthWords(distance)
+                      : `${metres(distance)} of ${metres(page.facts.query.radius)}`;
   const right = a[0] < context.canvas.width / 2;
   haloText(context, text, a[0] + (right ? 14 : -14) * unitSize, a[1] - 14 * unitSize,
            right ? "left" : "right");

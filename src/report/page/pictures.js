@@ -92,7 +92,8 @@ function viewOf(kind, conflict, vehicle, place, aspect) {
     return { camera, lo: -2, hi: 1 };
   }
   const radius = page.facts.query.radius;
-  camera.halfHeight = Math.max(4 * radius, 0.27 * Math.max(vehicle.height, vehicle.width), 0.15);
+  camera.halfHeight = Math.max(4 * radius, 0.27 * Math.max(vehicle.height, vehicle.width), 0.15,
+                               1.4 * (conflict.depth ?? 0));
   camera.halfWidth = camera.halfHeight * aspect;
   camera.origin = place;
   return { camera, lo: -0.05, hi: 0.05 };

@@ -1,6 +1,6 @@
 // The least distance of every pose against chainage, with the required distance and the conflicts.
 
-const profile = { from: 0, to: 1, width: 1000, height: 300, left: 62, right: 16, top: 26, bottom: 68,
+const profile = { from: 0, to: 1, low: 0, width: 1000, height: 300, left: 62, right: 16, top: 26, bottom: 68,
                   onPaper: false };
 
 function profileX(chainage) {
@@ -13,9 +13,18 @@ function profileTop() {
   return Math.max(1.25 * query.radius, query.profile > 0 ? query.profile : query.clearance);
 }
 
+/** 0, or the greatest depth inside the vehicle with some room below it. */
+function profileLow() {
+  let least = 0;
+  for (let i = 0; page.poses.distance && i < page.poses.count; ++i) {
+    least = Math.min(least, distanceAt(i) ?? 0);
+  }
+  return 1.08 * least;
+}
+
 function profileY(distance) {
-  const inner = profile.height - profile.top - profile.bottom;
-  return profile.top + inner * (1 - Math.min(distance, profileTop()) / profileTop());
+  const inner = profile.height - profile.top - profile.bottom, top = profileTop();
+  return profile.top + inner * (top - Math.min(distance, top)) / (top - profile.low);
 }
 
 function profileLength() {
@@ -73,10 +82,11 @@ function profileLine() {
 
 function profileAxes() {
   const { width, height, left, right, bottom, top } = profile, out = [];
-  for (const d of ticks(0, profileTop(), 6)) {
+  for (const d of ticks(profile.low, profileTop(), 6)) {
     out.push(make("line", { x1: left, x2: width - right, y1: profileY(d), y2: profileY(d),
                             class: "grid" }),
-             make("text", { x: left - 6, y: profileY(d) + 4, class: "end" }, String(d)));
+             make("text", { x: left - 6, y: profileY(d) + 4, class: "end" },
+                  String(d).replace("-", "−")));
   }
   const wide = width / 90;
   for (const c of ticks(profile.from, profile.to, wide)) {
@@ -106,7 +116,8 @@ function profileCurve() {
 
 /** What a gap of the curve means. */
 function profileBeyond() {
-  if (!page.poses.distance || !page.poses.distance.some((d) => d < 0)) return [];
+  const { no_distance: none } = page.facts.page;
+  if (!page.poses.distance || !page.poses.distance.some((d) => d === none)) return [];
   const far = shortLength(page.facts.query.profile);
   return make("text", { x: profile.left, y: profile.top - 8 },
               `Where there is no curve, nothing is closer than ${far}.`);
@@ -143,10 +154,20 @@ function profileRequired() {
                `required ${shortLength(page.facts.query.radius)}`)];
 }
 
+/** Below it the environment is inside the vehicle. */
+function profileSurface() {
+  if (profile.low === 0) return [];
+  const y = profileY(0), { left, width, right } = profile;
+  return [make("line", { x1: left, x2: width - right, y1: y, y2: y, class: "surface" }),
+          make("text", { x: left + 6, y: y + 16, class: "strong halo" },
+               "inside the vehicle")];
+}
+
 function drawProfile() {
   const holder = byId("profile-chart"), { query } = page.facts;
   profile.width = profile.onPaper ? 720 : Math.max(520, holder.clientWidth || 1000);
   profile.height = profile.onPaper ? 360 : clamp(profile.width * 0.24, 220, 420);
+  profile.low = profileLow();
   profile.bottom = conflictList().length > 0 ? 68 : 42;
   const { width, height, left, right, top, bottom } = profile;
   const hatch = make("pattern", { id: "hatch", width: 7, height: 7, patternUnits: "userSpaceOnUse",
@@ -159,7 +180,7 @@ function drawProfile() {
     make("defs", {}, hatch),
     make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom,
                    class: "field" }),
-    profileAxes(), profileCurve(), profileRequired(), profileBeyond(), profileConflicts(),
+    profileAxes(), profileCurve(), profileSurface(), profileRequired(), profileBeyond(), profileConflicts(),
     make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
   if (!(query.profile > 0)) {
     svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong" },

@@ -5,7 +5,8 @@ function profileValueWords(i) {
   if (d === undefined) return "";
   if (d === null) return `: beyond ${shortLength(query.profile)}, nothing is closer`;
   const missing = query.radius - d;
-  return `: ${metres(d)}` + (missing > 0 ? `, ${missingWords(missing, d)} missing` : ", enough");
+  const distance = isInside(d) ? `${depthWords(d)} inside the vehicle` : metres(d);
+  return `: ${distance}` + (missing > 0 ? `, ${missingWords(missing, d)} missing` : ", enough");
 }
 
 function showProfileValue(i) {
@@ -14,7 +15,8 @@ function showProfileValue(i) {
   const d = distanceAt(i);
   if (d !== undefined && d !== null) {
     const step = page.facts.page.lattice.step, { px, py, pz } = page.poses;
-    text += `. Nearest point: ${coordinates(inScan([px[i] * step, py[i] * step, pz[i] * step]))}`;
+    const point = coordinates(inScan([px[i] * step, py[i] * step, pz[i] * step]));
+    text += `. ${isInside(d) ? "Deepest" : "Nearest"} point: ${point}`;
   }
   byId("profile-readout").textContent = text[0].toUpperCase() + text.slice(1);
   placeProfileCursor(i);
@@ -53,10 +55,11 @@ function goToNearest() {
 function buildProfile() {
   profile.from = profileStart();
   profile.to = profileStart() + profileLength();
+  const { least_distance: least } = page.facts;
   byId("profile-tools").append(
     button("Zoom in", () => zoomProfile(0.5)), button("Zoom out", () => zoomProfile(2)),
     button("All", () => zoomProfile(1e9)),
-    page.facts.least_distance ? button("Nearest pose", goToNearest) : "",
+    least ? button(isInside(least.distance) ? "Deepest pose" : "Nearest pose", goToNearest) : "",
     make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, arrow keys step."));
   drawProfile();
   on("pose", moveProfileCursor);

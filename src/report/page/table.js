@@ -15,6 +15,8 @@ function tableColumns() {
   const list = conflictList(), measured = list.some((c) => c.least_distance !== null);
   const digits = digitsFor(list.map((c) => c.least_distance));
   const lengths = (key) => (c) => c[key] === null ? "" : fixed(c[key], digits);
+  const deep = list.some((c) => isInside(c.least_distance));
+  const outside = (c) => isInside(c.least_distance) ? "inside" : lengths("least_distance")(c);
   const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key])];
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
@@ -24,9 +26,11 @@ function tableColumns() {
     list.some((c) => c.lateral !== null) && ["Lateral", ...offset("lateral")],
     list.some((c) => c.height !== null) && ["Height", ...offset("height")],
     measured && classesDiffer() && ["Class", (c) => c.least_distance ?? Infinity, classCell],
-    measured && ["Least distance", (c) => c.least_distance ?? Infinity, lengths("least_distance")],
+    measured && ["Least distance", (c) => c.least_distance ?? Infinity, outside],
+    deep && ["Depth", (c) => c.depth ?? 0, (c) => c.depth ? fixed(c.depth, digits) : ""],
     measured && ["Missing", (c) => c.encroachment ?? -1, lengths("encroachment")],
     ["Points", (c) => c.points, (c) => count(c.points)],
+    deep && ["Inside", (c) => c.points_inside ?? 0, (c) => count(c.points_inside ?? 0)],
     ["Size", (c) => Math.max(...sizeOf(c)), (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × ")],
     ["Pose", poseOf, (c) => String(poseOf(c))],
     ["Place x, y, z", (c) => (c.nearest_point ?? c.centroid)[0],
@@ -49,7 +53,7 @@ function classCell(conflict) {
 
 /** Column titles with the unit, where all of its numbers have one. */
 function titleWithUnit(title) {
-  const has = ["Chainage", "Lateral", "Height", "Least distance", "Missing", "Size", "Place x, y, z"].includes(title);
+  const has = ["Chainage", "Lateral", "Height", "Least distance", "Depth", "Missing", "Size", "Place x, y, z"].includes(title);
   return has ? `${title} (${unitSymbol})` : title;
 }
 

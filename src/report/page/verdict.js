@@ -34,17 +34,23 @@ function conflictTiles() {
   if (facts.conflicts) tiles.push(tile(count(facts.conflicts.count), "conflicts"));
   tiles.push(tile(count(facts.colliding_points), "colliding points"));
   if (worst) {
-    const missing = worst.encroachment;
-    tiles.push(tile(missing === null ? plural(worst.points, "point")
-                        : missingWords(missing, worst.least_distance),
-                    missing === null ? "most in one conflict"
-                        : worst.least_distance < kTouching ? "missing at least: it touches"
-                        : "missing at the worst place"));
+    const inside = insidePoints();
+    if (inside > 0) tiles.push(tile(count(inside), "of them inside the vehicle"));
+    tiles.push(worstTile(worst));
     tiles.push(tile(`No. ${worst.id}`,
                     `worst: chainage ${station(stationOf(worst))}${after(kSides[worst.side])}`,
                     () => goTo(worst)));
   }
   return tiles;
+}
+
+/** How bad the worst conflict is. */
+function worstTile({ points, encroachment: missing, least_distance: distance }) {
+  if (missing === null) return tile(plural(points, "point"), "most in one conflict");
+  if (isInside(distance)) return tile(metres(-distance), "deepest inside the vehicle");
+  return tile(missingWords(missing, distance),
+              distance < kTouching && !isSolid() ? "missing at least: it touches"
+                                                 : "missing at the worst place");
 }
 
 function clearTiles() {
@@ -73,9 +79,22 @@ function placesText({ count: listed, small_groups: small }) {
   return ` at ${plural(listed, "place")}${more}`;
 }
 
-/** The least distance of a conflict. How deep something is inside is not known. */
+/** The least distance of a conflict. How deep it is inside is known of a solid vehicle only. */
 function nearnessText(distance, radius) {
+  if (isInside(distance)) return `${depthWords(distance)} inside the vehicle`;
   return distance < kTouching ? "it touches the vehicle" : `${metres(distance)} instead of ${radius}`;
+}
+
+const isSolid = () => page.facts.inputs.model.solids > 0;
+
+/** How many points were inside the vehicle at any pose; null where that is not known. */
+const insidePoints = () => page.facts.inside === null ? null : page.facts.inside.points;
+
+function insideText() {
+  const inside = insidePoints();
+  if (inside === null) return "";
+  if (inside === 0) return " No point is inside it.";
+  return ` ${plural(inside, "point")} ${inside === 1 ? "is" : "are"} inside it.`;
 }
 
 function verdictSentences() {
@@ -85,7 +104,7 @@ function verdictSentences() {
             `at all ${plural(facts.inputs.trajectory.poses, "pose")}.`, leastSentence()];
   }
   const where = facts.conflicts ? placesText(facts.conflicts) : "";
-  const first = `The environment is closer than ${radius} to the vehicle${where}.`;
+  const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}`;
   if (!worst) return [first, leastSentence()];
   const worstText = worst.least_distance === null
       ? `Conflict ${worst.id} has the most points. It begins at chainage ` +
@@ -93,7 +112,8 @@ function verdictSentences() {
       : `The worst place is conflict ${worst.id}, at chainage ${station(stationOf(worst))}` +
         `${after(sideWords(worst.side))}${bodyWords(worst)}: ` +
         `${nearnessText(worst.least_distance, radius)}.` +
-        nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" });
+        nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" },
+                             worst.least_distance);
   const least = facts.least_distance;  // of a group that is too small for the list, perhaps
   const nearer = least && worst.least_distance !== null && least.distance < worst.least_distance;
   return [first, nearer ? `${worstText} ${leastSentence()}` : worstText];
@@ -141,8 +161,8 @@ function questionTable() {
             `of ${plural(inputs.environment.files, "file")}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
             `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
     inputs.model.bodies ? factRow("Vehicle (bodies)", bodyList(inputs.model), hash(inputs.model.hash))
-        : factRow("Vehicle (model)", `${inputs.model.name}: ${count(inputs.model.points)} points, ` +
-                  `${size} ${unitSymbol}. `, hash(inputs.model.hash)),
+        : factRow("Vehicle (model)", `${inputs.model.name}: ${modelParts(inputs.model)}, ` +
+                  `${size} ${unitSymbol}.${solidText(inputs.model)} `, hash(inputs.model.hash)),
     inputs.model.above === null ? "" : factRow("Left out", leftOut(inputs.model), optionName("--model-above")),
     factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
             `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
@@ -151,15 +171,26 @@ function questionTable() {
     page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored))));
 }
 
+/** What the search took the model, or a body, for. */
+function modelParts({ points, triangles }) {
+  return triangles > 0 ? plural(triangles, "triangle") : plural(points, "point");
+}
+
+function solidText({ solids, surface_triangles: open }) {
+  if (solids === 0) return "";
+  const rest = open > 0 ? `; ${plural(open, "triangle")} of its other parts have none` : "";
+  return ` ${plural(solids, "closed part")} ${solids === 1 ? "has" : "have"} an inside${rest}.`;
+}
+
 /** Each with what it consists of, its size, and where it lacks poses. */
 function bodyList({ name, bodies }) {
   const { poses } = page.facts.inputs.trajectory;
   return make("div", {}, `${name}: ${plural(bodies.length, "body", "bodies")}`,
               make("ul", { class: "bodies" }, bodies.map(({ box, ...body }) => make("li", {},
-      make("strong", {}, body.name), ": ",
-      body.triangles > 0 ? plural(body.triangles, "triangle") : plural(body.points, "point"), ", ",
+      make("strong", {}, body.name), `: ${modelParts(body)}, `,
       box.hi.map((h, k) => (h - box.lo[k]).toFixed(2)).join(" × "), ` ${unitSymbol}`,
-      body.poses < poses ? `; it has ${count(body.poses)} of ${plural(poses, "pose")}` : ""))));
+      body.poses < poses ? `; it has ${count(body.poses)} of ${plural(poses, "pose")}` : "",
+      body.solids > 0 ? `.${solidText(body)}` : ""))));
 }
 
 /** What --ignore-class and --ignore-box left out of the search. */
@@ -194,10 +225,11 @@ function legend() {
     const words = kClassWords[c.name], from = k > 0 ? page.facts.classes[k - 1].below : 0;
     const range = k > 0 ? `${shortLength(from)} to ${shortLength(c.below)}`
                         : `below ${shortLength(c.below)}`;
+    const inside = k === 0 && insidePoints() > 0 ? `, ${count(insidePoints())} of them inside` : "";
     const thinned = c.shown < c.points ? `, of which ${count(c.shown)} are drawn` : "";
     return make("li", {}, make("span", { style: `color:${words.colour}`, class: "symbol" },
                                words.symbol),
-                ` ${c.name}: ${range}, ${plural(c.points, "point")}${thinned}`);
+                ` ${c.name}: ${range}, ${plural(c.points, "point")}${inside}${thinned}`);
   });
   return make("ul", { class: "legend" }, rows,
               make("li", {}, make("span", { style: `color:${kModelColour}`, class: "symbol" }, "■"),

@@ -16,7 +16,10 @@ const plural = (n, one, many = one + "s") => `${count(n)} ${n === 1 ? one : many
 const digitsFor = (values) => values.some((v) => v && Math.abs(v) < 0.001) ? 4 : 3;
 /** A distance; what is less than half of the last digit is said to be below it. */
 const fixed = (v, digits) => v > 0 && v < 0.5 * 10 ** -digits ? `< ${(10 ** -digits).toFixed(digits)}`
-    : v.toFixed(digits);
+    : v.toFixed(digits).replace("-", "−");
+/** Below 0 it is a depth inside a solid vehicle. */
+const isInside = (distance) => distance !== null && distance !== undefined && distance < 0;
+const depthWords = (distance) => `${metres(-distance)} deep`;
 const metres = (v, digits = digitsFor([v])) => v === null || v === undefined ? "unknown"
     : `${fixed(v, digits)} ${unitSymbol}`;
 /** Below it the surfaces meet, as far as scans can tell. */
@@ -92,18 +95,21 @@ function missingParts() {
 }
 
 /** of: a place with side, lateral and height. */
-function nearestPointSentence({ point, ...of }) {
+function nearestPointSentence({ point, ...of }, distance) {
   if (!point) return "";
   const where = [sideWords(of.side), offsetWords(of)].filter(Boolean).join(", ");
-  return ` The nearest point is ${where}${where ? "," : ""} at ${coordinates(point)}.`;
+  const which = isInside(distance) ? "deepest" : "nearest";
+  return ` The ${which} point is ${where}${where ? "," : ""} at ${coordinates(point)}.`;
 }
 
 function leastSentence() {
   const { least_distance: least, query } = page.facts;
   if (least) {
-    return `The least distance is ${metres(least.distance)}, at chainage ` +
-        `${station(least.chainage)} (pose ${count(least.pose)}${bodyWords(least)}).` +
-        nearestPointSentence(least);
+    const where = `at chainage ${station(least.chainage)} (pose ${count(least.pose)}` +
+        `${bodyWords(least)}).${nearestPointSentence(least, least.distance)}`;
+    return isInside(least.distance)
+        ? `The greatest depth inside the vehicle is ${metres(-least.distance)}, ${where}`
+        : `The least distance is ${metres(least.distance)}, ${where}`;
   }
   const looked = Math.max(query.clearance, query.profile);
   if (looked > 0) return `Nothing is closer than ${shortLength(looked)}.`;
@@ -128,9 +134,9 @@ function poseLabel(i) {
   return parts.join(", ");
 }
 
-/** Metres of the profile at shown pose i: null where none was found, undefined without profile. */
+/** Metres of the profile at shown pose i, below 0 inside the vehicle: null where none was found, undefined without profile. */
 function distanceAt(i) {
   if (!page.poses.distance) return undefined;
-  const d = page.poses.distance[i];
-  return d < 0 ? null : d * page.facts.page.distance_step;
+  const d = page.poses.distance[i], { no_distance: none, distance_step: step } = page.facts.page;
+  return d === none ? null : d * step;
 }

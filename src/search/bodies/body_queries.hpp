@@ -13,6 +13,7 @@ inline std::vector<Query> body_queries(const Query& query) {
   for (const Body& body : query.bodies) {
     out.emplace_back(body.model, body.poses, query);
     out.back().triangles = body.triangles;
+    out.back().solid_of = body.solid_of;
   }
   return out;
 }

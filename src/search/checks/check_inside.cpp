@@ -3,6 +3,7 @@
 
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/geometry/solid_parts.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/drive.hpp"
@@ -19,8 +20,9 @@ constexpr std::size_t kFewInside = 10;       ///< points: fewer may be noise
 constexpr std::size_t kMeasuredInside = 64;
 constexpr double kOpen = 0.4;  ///< share of the view along the way
 
-/// The scan's points in the model's box at the first pose, in the model's frame.
-std::vector<Vec3> points_in_box(const Question& question) {
+/// The scan's points in the model's box at the first pose, in the model's frame. Without those in
+/// its solids, which collide.
+std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
   std::vector<Vec3> inside;
   try {
     ScanPoints(question.cloud)
@@ -30,6 +32,10 @@ std::vector<Vec3> points_in_box(const Question& question) {
         });
   } catch (const InputError&) {
     inside.clear();  // a damaged cell is for the search to meet, where it matters
+  }
+  if (asked.is_solid() && !inside.empty()) {
+    const SolidParts solids(asked);
+    std::erase_if(inside, [&](const Vec3& p) { return solids.ref().contains(p); });
   }
   return inside;
 }
@@ -66,8 +72,8 @@ int axis_of_motion(const Question& question) {
 
 }  // namespace
 
-void check_inside(const Question& question, MessageLog& log) {
-  const std::vector<Vec3> in_box = points_in_box(question);
+void check_inside(const Question& question, const Query& asked, MessageLog& log) {
+  const std::vector<Vec3> in_box = points_in_box(question, asked);
   std::vector<Vec3> enclosed = in_box;
   keep_enclosed(question, question.query.radius, enclosed);
   if (enclosed.size() < kFewInside) return;
@@ -77,8 +83,8 @@ void check_inside(const Question& question, MessageLog& log) {
   log.warn("inside-model",
            "at pose " + std::to_string(question.number_of(0)) + " about " + format_count(count) +
                " scanned points lie inside the model and do not touch it: only its surface is "
-               "tested. Does it stand on an obstacle there? Let the path begin outside of it, or "
-               "give a model that is filled with points",
+               "tested. Does it stand on an obstacle there? Let the path begin outside of it, "
+               "search a closed mesh as a solid, or give a model that is filled with points",
            {{"points", static_cast<double>(count)}});
 }
 

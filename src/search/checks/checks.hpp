@@ -24,7 +24,8 @@ void check_surroundings(const Question& question, const PathCover& cover, bool f
 void check_model(const Question& question, MessageLog& log);
 
 /// The model stands over something at the first pose: "inside-model". Reads the points there.
-void check_inside(const Question& question, MessageLog& log);
+/// asked: the question's query, before its surface was sampled; what its solids contain collides.
+void check_inside(const Question& question, const Query& asked, MessageLog& log);
 
 /// Things can pass through the model: "open-model".
 void check_open_model(const Question& question, MessageLog& log);

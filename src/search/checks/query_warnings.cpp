@@ -56,9 +56,11 @@ Query sampled(const Query& query, ModelForm& view) {
   return {sample_mesh(mesh, spacing, "the model"), query.poses, query};
 }
 
-void check_model_itself(const Question& question, ModelForm view, MessageLog& log) {
+/// asked: the question before its surface was sampled.
+void check_model_itself(const Question& question, const Query& asked, ModelForm view,
+                        MessageLog& log) {
   const bool close = view != ModelForm::kCoarseSurface;  // else gaps are those of the samples
-  if (close) check_inside(question, log);
+  if (close) check_inside(question, asked, log);
   check_model(question, log);
   if (close) check_open_model(question, log);
   if (view == ModelForm::kPoints) check_model_spacing(question, log);
@@ -73,14 +75,15 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   ModelForm form = ModelForm::kPoints;
   Query own(body.model, body.poses, query);
   own.triangles = body.triangles;
-  if (own.is_surface()) own = sampled(own, form);
-  const Question question(store, store.metadata().unit, own, body.path_pose);
+  own.solid_of = body.solid_of;
+  const Query points = own.is_surface() ? sampled(own, form) : own;
+  const Question question(store, store.metadata().unit, points, body.path_pose);
   note_sizes(question, log);
   const PathCover cover(question);
   check_reach(question, cover, log);
   check_height(question, log);
   check_surroundings(question, cover, false, log);
-  check_model_itself(question, form, log);
+  check_model_itself(question, own, form, log);
   check_radius(question, log);
   check_steps(question, log);
   check_heading(question, log);
@@ -100,7 +103,9 @@ void warn_of_bodies(const StoreReader& store, const Query& query, MessageLog& lo
   tell_of_bodies(told, log);
 }
 
-void warn_of_points(const StoreReader& store, const Query& query, ModelForm view, MessageLog& log) {
+/// query: of points. asked: the same, before its surface was sampled.
+void warn_of_points(const StoreReader& store, const Query& query, const Query& asked,
+                    ModelForm view, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;
   if (query.poses.empty()) {
     log.warn("no-poses", "the trajectory has no poses: nothing can collide");
@@ -127,7 +132,7 @@ void warn_of_points(const StoreReader& store, const Query& query, ModelForm view
   check_reach(question, cover, log);
   const bool floats = check_height(question, log);
   check_surroundings(question, cover, floats, log);
-  check_model_itself(question, view, log);
+  check_model_itself(question, asked, view, log);
   check_radius(question, log);
   check_steps(question, log);
   check_heading(question, log);
@@ -136,10 +141,10 @@ void warn_of_points(const StoreReader& store, const Query& query, ModelForm view
 }  // namespace
 
 void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
-  if (!query.is_surface()) return warn_of_points(store, query, ModelForm::kPoints, log);
+  if (!query.is_surface()) return warn_of_points(store, query, query, ModelForm::kPoints, log);
   ModelForm view{};
   const Query points = sampled(query, view);
-  warn_of_points(store, points, view, log);
+  warn_of_points(store, points, query, view, log);
 }
 
 }  // namespace clearway

@@ -11,6 +11,7 @@ namespace {
 
 /// What cpu_sweep_kind()'s index is.
 BodyFilter filter_of(const PoseReach& reach, const Query& body) {
+  if (body.is_solid()) return &dynamic_cast<const SweepFilterOf<SolidTriangle>&>(reach);
   if (body.is_surface()) return &dynamic_cast<const SweepFilterOf<Triangle>&>(reach);
   return &dynamic_cast<const SweepFilterOf<Vec3>&>(reach);
 }

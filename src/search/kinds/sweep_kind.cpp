@@ -40,14 +40,15 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
                                                    std::uint64_t most_bytes) {
   filter_.reset();
   field_.reset();
-  const ModelTreeOf<Element>& model = trees.of<Element>();
+  const ModelTreeOf<StoredElement<Element>>& model = trees.of<Element>();
   field_.emplace(model, search_radius(query_),
                  ModelFieldOptions{.voxel = options_.field_voxel,
                                    .fineness = fineness_for_query(),
                                    .cheaply_finer = !(query_.tolerance > 0),
                                    .reach = std::max(query_.clearance, query_.profile),
                                    .most_bytes = most_bytes,
-                                   .by_need = !this->needs().on_gpu},
+                                   .by_need = !this->needs().on_gpu,
+                                   .solids = trees.solids_of<Element>()},
                  options_.threads);
   return filter_.emplace(query_, trees.motion, model, *field_, store_, options_.threads);
 }
@@ -85,7 +86,8 @@ CpuSweepKindOf<Element>::CpuSweepKindOf(const StoreReader& store, const Query& q
                                         const SearchOptions& options)
     : SweepKindOf<Element>({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
                             .threads = options.threads},
-                           store, query, options, query.profile > 0 ? kProfileFineness : 1) {}
+                           store, query, options,
+                           query.profile > 0 && !kIsTriangle<Element> ? kProfileFineness : 1) {}
 
 template <typename Element>
 std::uint64_t CpuSweepKindOf<Element>::host_bytes(const SlotLayout& layout,
@@ -113,14 +115,19 @@ void CpuSweepKindOf<Element>::report_search(const PageEngines& engines, SearchRe
 
 template class SweepKindOf<Vec3>;
 template class SweepKindOf<Triangle>;
+template class SweepKindOf<SolidTriangle>;
 
 std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Query& query,
                                                const SearchOptions& options) {
+  if (query.is_solid()) {
+    return std::make_unique<CpuSweepKindOf<SolidTriangle>>(store, query, options);
+  }
   if (query.is_surface()) return std::make_unique<CpuSweepKindOf<Triangle>>(store, query, options);
   return std::make_unique<CpuSweepKindOf<Vec3>>(store, query, options);
 }
 
 template class CpuSweepKindOf<Vec3>;
 template class CpuSweepKindOf<Triangle>;
+template class CpuSweepKindOf<SolidTriangle>;
 
 }  // namespace clearway

@@ -69,7 +69,9 @@ std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Q
 
 extern template class SweepKindOf<Vec3>;
 extern template class SweepKindOf<Triangle>;
+extern template class SweepKindOf<SolidTriangle>;
 extern template class CpuSweepKindOf<Vec3>;
 extern template class CpuSweepKindOf<Triangle>;
+extern template class CpuSweepKindOf<SolidTriangle>;
 
 }  // namespace clearway

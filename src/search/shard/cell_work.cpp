@@ -33,7 +33,8 @@ class WorkFilter {
       : field_(trees.of<Element>(), search_radius(query),
                {.reach = std::max(query.clearance, query.profile),
                 .most_bytes = kFieldBytes,
-                .by_need = true},
+                .by_need = true,
+                .solids = trees.solids_of<Element>()},
                threads),
         filter_(query, trees.motion, trees.of<Element>(), field_, cloud, threads) {}
 
@@ -95,6 +96,7 @@ std::vector<std::uint64_t> cell_work_of(const PackedCloud& cloud, const Query& q
 
 std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
                                      const QueryTrees& trees, int threads) {
+  if (query.is_solid()) return cell_work_of<SolidTriangle>(cloud, query, trees, threads);
   return query.is_surface() ? cell_work_of<Triangle>(cloud, query, trees, threads)
                             : cell_work_of<Vec3>(cloud, query, trees, threads);
 }

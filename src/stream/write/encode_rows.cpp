@@ -77,6 +77,7 @@ std::shared_ptr<ClearancePiece> encode_rows(const ResultWriter& writer, const Ro
     set_column(columns.source, strip, [](const auto& row) { return row.source; });
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
     set_column(columns.distance, strip, [](const auto& row) { return row.distance; });
+    for (const double distance : columns.distance) out->inside += distance < 0;
     set_column(columns.pose, strip, pose_of);
     if (!meaning.header.bodies.empty()) set_column(columns.body, strip, body_of);
     out->rows.add(columns.source, columns.xyz, columns.distance, columns.pose, columns.body);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/query/signed_root.hpp"
+
 namespace clearway {
 namespace {
 
@@ -37,7 +39,7 @@ std::optional<FoundPlace> write_profile(const StoreReader& store, const ProfileS
     squared.clear();
     for (std::uint64_t pose = first; pose < end; ++pose) {
       const ProfilePoint& point = profile.at(pose);
-      distance.push_back(std::sqrt(point.squared));
+      distance.push_back(signed_root(point.squared));
       source.push_back(point.source);
       if (is_part) squared.push_back(point.squared);
       xyz.push_back(point.found() ? position_of(store, point.entry)

@@ -23,6 +23,7 @@ struct WritePiece {
 
   Encoded rows;
   std::optional<FoundPlace> place;
+  std::uint64_t inside = 0;  ///< rows with a distance below 0
 };
 
 /// Encodes rows, kEncodedRows at a time, on many threads, and hashes and writes them in order.

@@ -20,14 +20,17 @@ bool less(const Vec3& a, const Vec3& b) {
 /// What a search from a box visits, in order of the coordinates.
 std::vector<Vec3> visited_from(const WideTree& tree, const Box& box, double squared_reach) {
   std::vector<Vec3> visited;
-  tree.ref().visit_nearest_first(
+  tree.ref().any_nearest_first(
       box, [&] { return squared_reach; },
       [&](const PointPacket& packet, double(&out)[PointPacket::kMost]) {
         for (std::uint32_t i = 0; i < PointPacket::kMost; ++i) {
           out[i] = least_squared_distance(box, packet.point(i));
         }
       },
-      [&](const Vec3& m) { visited.push_back(m); });
+      [&](const PointPacket& packet, std::uint32_t i) {
+        visited.push_back(packet.point(i));
+        return false;
+      });
   std::sort(visited.begin(), visited.end(), less);
   return visited;
 }

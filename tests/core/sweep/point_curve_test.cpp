@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/predicate.hpp"
+#include "core/sweep/triangle_curve.hpp"
 #include "core/trajectory/motion_curves.hpp"
 
 using namespace clearway;
@@ -186,4 +187,61 @@ TEST_CASE("a point's curve bounds distances and the places within them") {
   }
   CHECK(bounded > 10000);
   CHECK(only_middles > 10);
+}
+
+TEST_CASE("a triangle's bound from a curve is below its distance from every place of it") {
+  std::mt19937_64 random(3);
+  std::size_t above = 0, clear = 0, close = 0, off_pose = 0;
+  for (const std::vector<Pose>& poses : paths()) {
+    const MotionTree motion(poses, kModel);
+    const MotionTreeRef ref = motion.ref();
+    for (std::uint32_t at = 0; at < motion.nodes().size(); at += 1 + at / 20) {
+      const MotionNode& node = motion.nodes()[at];
+      const Vec3 e = transform(poses[node.mid], random_place(random, kReach));
+      const TriangleCurve curve(ref, node, e);
+      const auto place = [&](double t) {
+        const Place of = place_at(ref, node, e, t);
+        return Vec3{static_cast<double>(of.x), static_cast<double>(of.y),
+                    static_cast<double>(of.z)};
+      };
+      TrianglePacket packet;
+      Triangle triangles[TrianglePacket::kMost];
+      for (std::uint32_t i = 0; i < TrianglePacket::kMost; ++i) {
+        std::normal_distribution<double> beside(0, i < 4 ? 0.05 : 0.5);
+        Vec3* const corners[3] = {&triangles[i].a, &triangles[i].b, &triangles[i].c};
+        for (Vec3* corner : corners) {
+          *corner = place(std::uniform_real_distribution<double>(-0.1, 1.1)(random));
+          for (int k = 0; k < 3; ++k) (*corner)[k] += beside(random);
+        }
+        packet.set(i, triangles[i], i);
+      }
+      packet.close(TrianglePacket::kMost);
+      double squared[TrianglePacket::kMost], from_place[TriangleCurve::kMostPlaces];
+      curve.to_triangles(packet, squared);
+      for (std::uint32_t i = 0; i < TrianglePacket::kMost; ++i) {
+        double least = kInfinity;
+        for (int k = 0; k <= 100; ++k) {
+          const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
+          above += std::sqrt(squared[i]) > distance + 1e-9;
+          least = std::min(least, distance);
+        }
+        clear += least > 0.05;
+        close += least > 0.05 && std::sqrt(squared[i]) > 0.8 * least;
+        curve.from_parts(packet, i, 13, 0.01, from_place);
+        for (int k = 0; k <= 100; ++k) {
+          const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
+          above += std::sqrt(from_place[k / 13]) > distance + 1e-9;
+        }
+        curve.from_places(packet, i, 90, 0.01, from_place);
+        for (int k = 0; k < 8; ++k) {
+          const double exact = squared_distance(place(0.9 + 0.01 * k), triangles[i]);
+          off_pose += !(std::abs(std::sqrt(from_place[k]) - std::sqrt(exact)) < 1e-9);
+        }
+      }
+    }
+  }
+  CHECK(above == 0);
+  CHECK(off_pose == 0);
+  CHECK(clear > 1000);
+  CHECK(close > clear / 2);
 }

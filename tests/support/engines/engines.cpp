@@ -225,7 +225,8 @@ std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std
   Oracle least = brute_force_clearances(environment, query);
   for (std::size_t i = 0; i < ignored.size(); ++i) {
     if (!ignored[i]) continue;
-    expected.at_poses[i] = expected.between_poses[i] = HitSet::kNever;
+    expected.at_poses[i] = HitSet::kNever;
+    if (!query.is_surface()) expected.between_poses[i] = HitSet::kNever;
     least[i] = {};
   }
   const std::vector<NearestPoint> nearest = nearest_of_searched(environment, ignored, query);

@@ -26,7 +26,7 @@ struct Engine {
 
 std::span<const Engine> engines();
 
-/// Makes a sweep engine, of points and of triangles; what it is given outlives it.
+/// Makes a sweep engine, of points, of triangles and of solids; what it is given outlives it.
 struct MakeSweep {
   template <typename Element>
   using Of = std::function<std::unique_ptr<PageEngine>(
@@ -34,10 +34,11 @@ struct MakeSweep {
 
   /// make: a generic function.
   template <typename Make>
-  MakeSweep(Make make) : points(make), triangles(make) {}  // NOLINT(*-explicit-*)
+  MakeSweep(Make make) : points(make), triangles(make), solids(make) {}  // NOLINT(*-explicit-*)
 
   Of<Vec3> points;
   Of<Triangle> triangles;
+  Of<SolidTriangle> solids;
 };
 
 /// Plans the query, and runs it in an engine of as many slots and cells a page as the cloud's

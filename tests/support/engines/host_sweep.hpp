@@ -7,8 +7,8 @@
 
 #include "core/page/page_engine.hpp"
 #include "core/page/page_pool.hpp"
-#include "core/sweep/host_profile.hpp"
-#include "core/sweep/profile_page.hpp"
+#include "core/sweep/profile/host_profile.hpp"
+#include "core/sweep/profile/profile_page.hpp"
 #include "core/sweep/sweep_block.hpp"
 
 namespace clearway {

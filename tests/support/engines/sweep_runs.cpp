@@ -3,6 +3,7 @@
 #include <list>
 #include <optional>
 
+#include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle_box.hpp"
 #include "core/sweep/tolerance.hpp"
 #include "stream/plan.hpp"
@@ -31,14 +32,19 @@ class PreparedModel {
         reach_(reach_of(query)),
         threads_(threads),
         tree_(elements_),
+        solids_(query),
+        solid_of_(query.solid_of),
         whole_(whole),
-        field_(tree_, radius_, {.reach = reach_, .by_need = !whole}, threads) {}
+        field_(
+            tree_, radius_,
+            {.reach = reach_, .by_need = !whole, .solids = query.is_solid() ? &solids_ : nullptr},
+            threads) {}
   PreparedModel(const PreparedModel&) = delete;
   PreparedModel& operator=(const PreparedModel&) = delete;
 
   bool is_for(const Query& query, int threads, bool whole) const {
     return whole_ == whole && radius_ == search_radius(query) && reach_ == reach_of(query) &&
-           threads_ == threads &&
+           threads_ == threads && solid_of_ == query.solid_of &&
            std::ranges::equal(elements_, elements_of<Element>(query), same_bits);
   }
   const ModelTreeOf<Element>& tree() const { return tree_; }
@@ -56,6 +62,8 @@ class PreparedModel {
   double radius_, reach_;
   int threads_;
   ModelTreeOf<Element> tree_;
+  SolidParts solids_;
+  std::vector<std::uint32_t> solid_of_;
   bool whole_;
   ModelField field_;
 };
@@ -81,8 +89,9 @@ SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int thre
   if (query.model.empty()) {
     return {HitSet(cloud.entry_count(), query.first_pose), ClearanceSet(cloud.entry_count())};
   }
-  const PreparedModel<Element>& prepared = prepared_model<Element>(query, threads, whole_field);
-  const ModelTreeOf<Element>& model = prepared.tree();
+  using Stored = StoredElement<Element>;
+  const PreparedModel<Stored>& prepared = prepared_model<Stored>(query, threads, whole_field);
+  const ModelTreeOf<Stored>& model = prepared.tree();
   const ModelField& field = prepared.field();
   const MotionTree motion(query.poses, model.box(), query.between_poses);
   const SweepFilterOf<Element> filter(query, motion, model, field, cloud);
@@ -102,6 +111,9 @@ SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int thre
 
 SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads,
                        const MakeSweep& make, bool whole_field) {
+  if (query.is_solid()) {
+    return run_sweep_of<SolidTriangle>(cloud, query, threads, make.solids, whole_field);
+  }
   return query.is_surface()
              ? run_sweep_of<Triangle>(cloud, query, threads, make.triangles, whole_field)
              : run_sweep_of<Vec3>(cloud, query, threads, make.points, whole_field);

@@ -121,6 +121,82 @@ TEST_CASE("run of a mesh searches its surface") {
                 2, "surface.h5");
 }
 
+TEST_CASE("run of a solid finds what is inside") {
+  const Meshes meshes;
+  const std::string options = "--model-unit mm --clearance 0.5 --profile 0.5 --first-pose --json ";
+  const Outcome surface = meshes.run("car.stl", "surface.h5", options);
+  const Outcome solid = meshes.run("car.stl", "solid.h5", options + "--model-as solid");
+  REQUIRE(solid.exit_code == 0);
+  const json told = json::parse(solid.out);
+  CHECK(told["model_as"] == "solid");
+  CHECK(told["model_solids"] == 1);
+  CHECK(told["colliding_points"] >= json::parse(surface.out)["colliding_points"]);
+  CHECK_THAT(solid.err, Contains("1 closed parts of 12 triangles are solid"));
+  CHECK_THAT(solid.err, Contains("the greatest depth inside the model is"));
+  const auto inside = told["points_inside"].get<std::uint64_t>();
+  const auto depth = told["greatest_depth"].get<double>();
+  CHECK(inside > 0);
+  CHECK(inside <= told["colliding_points"]);
+  CHECK(depth > 0);
+  CHECK(depth <= 0.7);  // half the height of the box
+  CHECK(told["least_clearance"]["distance"] == -depth);
+  CHECK(told["least_profile"]["distance"] == -depth);
+  CHECK(json::parse(surface.out)["points_inside"].is_null());
+  CHECK(json::parse(surface.out)["greatest_depth"].is_null());
+  const Outcome verified = meshes.work.run("verify " + meshes.work.path("solid.h5"));
+  CHECK(verified.exit_code == 0);
+  const json info = json::parse(meshes.work.run("info --json " + meshes.work.path("solid.h5")).out);
+  CHECK(info["model_as"] == "solid");
+  CHECK(info["points_inside"] == inside);
+  CHECK(info["greatest_depth"] == depth);
+  // In parts too.
+  const std::string shard = "--model-as solid " + options + "--shard ";
+  REQUIRE(meshes.run("car.stl", "part1.h5", shard + "1/2").exit_code == 0);
+  REQUIRE(meshes.run("car.stl", "part2.h5", shard + "2/2").exit_code == 0);
+  const Outcome merged =
+      meshes.work.run("merge --json " + meshes.work.path("part1.h5") + " " +
+                      meshes.work.path("part2.h5") + " -o " + meshes.work.path("merged.h5"));
+  REQUIRE(merged.exit_code == 0);
+  CHECK(json::parse(merged.out)["points_inside"] == inside);
+  CHECK(json::parse(merged.out)["greatest_depth"] == depth);
+  CHECK(meshes.work.bytes("merged.h5") == meshes.work.bytes("solid.h5"));
+  check_refused(meshes.run("car.stl", "no.h5", "--model-as solid --model-unit mm --tolerance 0.01"),
+                2, "a tolerance and a model with solids cannot be combined");
+  check_refused(meshes.run("car.stl", "no.h5", "--model-as solid --model-unit mm --model-above 0"),
+                2, "no longer solid");
+}
+
+TEST_CASE("conflicts of a solid tell its depth") {
+  const Meshes meshes;
+  const Outcome run = meshes.run("car.stl", "solid.h5",
+                                 "--model-as solid --model-unit mm --clearance 0.2 --first-pose "
+                                 "--json");
+  REQUIRE(run.exit_code == 0);
+  const json told = json::parse(run.out);
+  const auto conflicts = [&](const std::string& output) {
+    return meshes.work.run("conflicts " + meshes.work.path("solid.h5") + " --trajectory " +
+                           (meshes.work.hall / "trajectory.txt") + " --min-points 1 -o " +
+                           meshes.work.path(output));
+  };
+  const Outcome table = conflicts("listed.json");
+  REQUIRE(table.exit_code == 0);
+  CHECK_THAT(table.out, Contains("depth (m)") && Contains("inside"));
+  std::uint64_t inside = 0;
+  double deepest = 0;
+  const json listed = json::parse(meshes.work.bytes("listed.json"));
+  for (const json& c : listed["conflicts"]) {
+    const auto depth = c["depth"].get<double>();
+    if (depth > 0) CHECK(c["least_distance"] == -depth);
+    inside += c["points_inside"].get<std::uint64_t>();
+    deepest = std::max(deepest, depth);
+  }
+  CHECK(inside == told["points_inside"]);
+  CHECK(deepest == told["greatest_depth"]);
+  for (const char* name : {"listed.csv", "listed.geojson", "listed.gpkg", "listed.bcf"}) {
+    CHECK(conflicts(name).exit_code == 0);
+  }
+}
+
 TEST_CASE("what has no surface is refused and points are named") {
   const Meshes meshes;
   const std::string surface = "--model-as surface --model-unit mm ";

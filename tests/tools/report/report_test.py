@@ -14,7 +14,7 @@ import unittest
 import scenes
 from browser import Browser, find_chromium
 from page_checks import PageChecks
-from scenes import Scene, clearway, make_empty, make_hall
+from scenes import Scene, clearway, make_car, make_empty, make_hall
 
 CHROMIUM = find_chromium()
 
@@ -160,6 +160,47 @@ class ReportTest(PageChecks, unittest.TestCase):
         for option in ("--first-pose", "--clearance", "--profile"):
             self.assertIn(option, text)
         self.check_quiet(page)
+
+    def test_depths_of_a_solid(self):
+        solid = Scene(self.hall.folder)
+        solid.model, solid.store = f"{solid.folder}/car.off", self.hall.store
+        make_car(solid.model)
+        asked = ("--radius", 0.1, "--first-pose", "--model-as", "solid")
+        result = solid.search("solid", *asked, "--clearance", 0.3, "--profile", 0.5)
+        path, facts = solid.report(result, "solid")
+        info = json.loads(clearway("info", result, "--json"))
+        self.assertEqual(info["model_solids"], 1)
+        inside, depth = facts["inside"]["points"], facts["inside"]["depth"]
+        self.assertEqual([inside, depth], [info["points_inside"], info["greatest_depth"]])
+        self.assertGreater(inside, 10)
+        self.assertTrue(0.05 < depth <= 0.7, depth)
+        self.assertEqual(facts["least_distance"]["distance"], -depth)
+        listed = facts["conflicts"]["list"]
+        self.assertEqual(max(c["depth"] for c in listed), depth)
+        self.assertLessEqual(sum(c["points_inside"] for c in listed), inside)
+        page = self.open(path)
+        self.check_words(page, facts)
+        text = page.run("byId('verdict').innerText")
+        for words in (f"{inside:,} points are inside it.", f"{depth:.3f} m deep inside the vehicle",
+                      "The deepest point is", "1 closed part has an inside",
+                      "deepest inside the vehicle"):
+            self.assertIn(words, text)
+        titles = page.run("tableColumns().map((c) => c.title)")
+        cells = page.run(f"conflictList().map((c) => tableColumns()[{titles.index('Depth')}]"
+                         ".cell(c))")
+        for cell, conflict in zip(cells, listed):
+            self.assertEqual(cell, f"{conflict['depth']:.3f}" if conflict["depth"] else "")
+        self.assertIn("deep inside the vehicle", page.run("byId('conflict-details').innerText"))
+        self.assertIn("inside the vehicle", page.run("byId('profile-chart').textContent"))
+        self.assertLess(page.run("profile.low"), -depth)
+        page.run("goToNearest()")
+        self.assertIn(f"{depth:.3f} m deep inside the vehicle",
+                      page.run("byId('profile-readout').textContent"))
+        self.check_quiet(page)
+        bare = solid.search("bare_solid", *asked)
+        path, facts = solid.report(bare, "bare_solid")
+        self.assertIsNone(facts["inside"])
+        self.check_words(self.open(path), facts)
 
     def test_empty_answer(self):
         result = self.empty.search("out", "--radius", 0.1, "--first-pose", "--clearance", 2)

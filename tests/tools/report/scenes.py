@@ -1,6 +1,7 @@
 """Small scenes with their results and pages, made by the program. Standard library only."""
 
 import json
+import math
 import subprocess
 
 PROGRAM = None
@@ -42,6 +43,36 @@ def make_hall(folder):
     hall = Scene(folder)
     clearway("convert", f"{folder}/environment.las", "-o", hall.store, "--force")
     return hall
+
+
+def make_car(path, rings=24):
+    """A closed body about as large as a car, as a mesh; its ends are single vertices."""
+    def power(x, e):
+        return math.copysign(abs(x) ** e, x)
+
+    corners, faces = [(2.1, 0, 0.75), (-2.1, 0, 0.75)], []
+    for i in range(1, rings):
+        t = math.pi * i / rings
+        for j in range(2 * rings):
+            p = math.pi * j / rings
+            across = power(math.sin(t), 0.4)
+            corners.append((2.1 * power(math.cos(t), 0.4), 1.2 * across * power(math.cos(p), 0.4),
+                            0.75 + 0.7 * across * power(math.sin(p), 0.4)))
+
+    def at(i, j):
+        return i // rings if i in (0, rings) else 2 + (i - 1) * 2 * rings + j % (2 * rings)
+
+    for i in range(rings):
+        for j in range(2 * rings):
+            a, b, c, d = at(i, j), at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)
+            if i > 0:
+                faces.append((a, b, c))
+            if i < rings - 1:
+                faces.append((b, d, c))
+    with open(path, "w") as file:
+        file.write(f"OFF\n{len(corners)} {len(faces)} 0\n")
+        file.writelines(f"{x:.6f} {y:.6f} {z:.6f}\n" for x, y, z in corners)
+        file.writelines(f"3 {a} {b} {c}\n" for a, b, c in faces)
 
 
 def make_empty(folder):

@@ -246,9 +246,10 @@ const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
   return named(run.vehicle.key, [&]() -> const ReadModel& {
     check_is_model(options.model);
     std::vector<Message> messages;
-    const auto [points, triangles] = read_model_shape(options.model, how, &messages);
+    const auto [points, triangles, solid_of] = read_model_shape(options.model, how, &messages);
     tell(run.vehicle.key, messages);
-    return models_[id] = {points.size(), triangles.size(), hash_of_model(points, triangles),
+    return models_[id] = {points.size(), triangles.size(),
+                          hash_of_model(points, triangles, solid_of),
                           points.empty() ? Box{} : box_of(points)};
   });
 }

@@ -62,16 +62,19 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
 }
 
 ModelAs model_kind_of(const Result& result) {
-  return result.reader().header().model_triangles > 0 ? ModelAs::kSurface : ModelAs::kPoints;
+  const ResultHeader& header = result.reader().header();
+  return header.model_solids > 0      ? ModelAs::kSolid
+         : header.model_triangles > 0 ? ModelAs::kSurface
+                                      : ModelAs::kPoints;
 }
 
 std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                                 const Result& result) {
   ModelOptions how = with_spacing(options, result.parameters().radius);
   how.as = model_kind_of(result);
-  const auto [points, triangles] = read_model_shape(path, how);
+  const auto [points, triangles, solid_of] = read_model_shape(path, how);
   const ResultHeader& header = result.reader().header();
-  const std::uint64_t hash = hash_of_model(points, triangles);
+  const std::uint64_t hash = hash_of_model(points, triangles, solid_of);
   if (points.size() == header.model_points && hash == header.model_hash) return points;
   refuse(path.string(), "is not the model of " + result.reader().name() + ": it has " +
                             format_count(points.size()) + " points with the hash " +

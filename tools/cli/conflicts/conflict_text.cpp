@@ -15,6 +15,11 @@ bool has_distances(const Conflicts& conflicts) {
                              [](const Conflict& c) { return c.least_distance.has_value(); });
 }
 
+bool has_depths(const Conflicts& conflicts) {
+  return std::ranges::any_of(conflicts.listed,
+                             [](const Conflict& c) { return c.points_inside.value_or(0) > 0; });
+}
+
 std::vector<Conflict> worst_of(const Conflicts& conflicts, std::size_t most) {
   std::vector<Conflict> out = conflicts.listed;
   std::ranges::stable_sort(out, [](const Conflict& a, const Conflict& b) {
@@ -27,7 +32,7 @@ std::vector<Conflict> worst_of(const Conflicts& conflicts, std::size_t most) {
   return out;
 }
 
-std::string row_text(const Conflict& c, bool distances) {
+std::string row_text(const Conflict& c, bool distances, bool depths) {
   std::string row = fmt::format("{:>5}  {:>19}  {:>11}  {:>7}", c.id,
                                 fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to),
                                 format_count(c.points), name_of(c.side));
@@ -35,6 +40,10 @@ std::string row_text(const Conflict& c, bool distances) {
     row += c.least_distance
                ? fmt::format("  {:>12.3f}  {:>16.3f}", *c.least_distance, *c.encroachment)
                : fmt::format("  {:>12}  {:>16}", "-", "-");
+  }
+  if (depths) {
+    row += fmt::format("  {:>9.3f}  {:>11}", c.depth.value_or(0),
+                       format_count(c.points_inside.value_or(0)));
   }
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
@@ -59,7 +68,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   const Conflicts& conflicts = file.conflicts;
   std::string text = totals_text(file);
   if (conflicts.listed.empty() || most == 0) return text;
-  const bool distances = has_distances(conflicts);
+  const bool distances = has_distances(conflicts), depths = has_depths(conflicts);
   const char* const unit = symbol_of(file.unit());
   const std::vector<Conflict> rows = worst_of(conflicts, most);
   if (rows.size() < conflicts.listed.size()) {
@@ -71,8 +80,9 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
     text += fmt::format("  {:>12}  {:>16}", fmt::format("distance ({})", unit),
                         fmt::format("encroachment ({})", unit));
   }
+  if (depths) text += fmt::format("  {:>9}  {:>11}", fmt::format("depth ({})", unit), "inside");
   text += "  centroid\n";
-  for (const Conflict& conflict : rows) text += row_text(conflict, distances);
+  for (const Conflict& conflict : rows) text += row_text(conflict, distances, depths);
   return text;
 }
 

@@ -48,6 +48,7 @@ class VehicleReader {
         named(entry.at.at("model"), [&] { return read_model_shape(entry.model, how, &warnings_); });
     body.model = std::move(model.points);
     body.triangles = std::move(model.triangles);
+    body.solid_of = std::move(model.solid_of);
     const auto* station = std::get_if<BodyStation>(&entry.mount);
     if (!entry.trajectory.empty()) {
       read_own(entry, body);

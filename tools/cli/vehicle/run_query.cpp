@@ -17,6 +17,7 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
     ModelShape model = read_model_shape(options.model, how, &warnings);
     query.model = std::move(model.points);
     query.triangles = std::move(model.triangles);
+    query.solid_of = std::move(model.solid_of);
   }
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);

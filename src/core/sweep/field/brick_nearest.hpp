@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/geometry/model_tree.hpp"
+#include "core/sweep/field/brick_part.hpp"
 #include "core/sweep/field/model_field_ref.hpp"
 
 namespace clearway {
@@ -23,17 +24,12 @@ class BrickNearest {
   void find(const Vec3& corner, double voxel, float* squared, std::uint32_t* nearest);
 
  private:
-  /// Nodes first[k] to last[k] of each axis.
-  struct Part {
-    std::uint32_t first[3], last[3];
-  };
+  using Part = BrickPart;
+  using Place = BrickPlace;
+
   struct Candidate {
     Vec3 point;
     std::uint32_t index;
-  };
-  /// All positions within `half` of `centre` along each axis.
-  struct Place {
-    Vec3 centre, half;
   };
 
   static constexpr std::uint32_t kMostGathered = 1024;
@@ -45,25 +41,15 @@ class BrickNearest {
                                       std::uint32_t level);
   void find_among(const Part& part, std::span<const Candidate> candidates);
   void find_in_tree(const Part& part);
-  Vec3 node(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
-  Place place_of(const Part& part) const;
   void keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared,
             std::uint32_t nearest);
 
   const ModelTree& tree_;
-  Vec3 corner_{};
-  double voxel_ = 0;
+  BrickLattice lattice_{};
   float* squared_ = nullptr;
   std::uint32_t* nearest_ = nullptr;
   std::uint32_t near_ = 0;  ///< a point near the last place
   std::array<std::array<Candidate, kMostGathered>, kLevels> kept_;
 };
-
-/// For each node as of BrickNearest::find, a nearest triangle.
-void find_nearest_triangles(const TriangleTree& tree, const Vec3& corner, double voxel,
-                            float* squared, std::uint32_t* nearest);
-
-/// Not above the true square: one rounding to float and a few in double are taken off.
-float rounded_down(double squared);
 
 }  // namespace clearway

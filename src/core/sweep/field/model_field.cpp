@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/sweep/field/brick_nearest.hpp"
+#include "core/sweep/field/brick_triangles.hpp"
 
 namespace clearway {
 namespace {
@@ -20,6 +21,9 @@ constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
 /// A node takes a search for the nearest triangle, of some microseconds: no more coarse ones.
 constexpr double kMostSurfaceNodes = 1 << 17;
+/// A surface has no spacing to go by: this many voxels, or more where they are close to the radius,
+/// cost about as much as the exact tests that finer ones would spare (measured).
+constexpr double kSurfaceVoxels = 1 << 19;
 /// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
 /// the model's points are worth.
 constexpr double kCheapNodes = 1 << 17;
@@ -46,14 +50,16 @@ ModelField::ModelField(Tree tree, const Box& model, double spacing, double radiu
                        const ModelFieldOptions& options, int threads)
     : tree_(tree), model_(model), by_need_(options.by_need) {
   if (threads == 0) threads = omp_get_max_threads();
+  if (options.solids != nullptr) inside_.emplace(*options.solids);
   choose_voxel(spacing, radius, options);
   for (;; voxel_ *= 2) {
     lay_out(margin_steps(options.reach));
     fill_coarse(options.reach > 0, threads);
     const double band = this->band(radius, options.reach);
     bricks_ = mark_bricks(band, threads);
-    if (bricks_ * kBrickBytes <= options.most_bytes) break;
+    if (bricks_ * brick_bytes() <= options.most_bytes) break;
   }
+  if (inside_) inside_->lay_out(size_, origin_, coarse_, brick_of_, bricks_);
   distances_ = std::make_unique_for_overwrite<float[]>(std::size_t{bricks_} * kBrickNodes);
   nearest_ = std::make_unique_for_overwrite<std::uint32_t[]>(std::size_t{bricks_} * kBrickNodes);
   if (!by_need_) make_all(threads);
@@ -63,11 +69,16 @@ void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOpt
   const Box& box = model_;
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
   const double of_points = kVoxelSpacings * spacing;
-  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
   const auto nodes_of = [&](double voxel) {
     const double around = 2 * radius + 4 * voxel;
     return (extent.x + around) * (extent.y + around) * (extent.z + around) / std::pow(voxel, 3);
   };
+  double chosen = std::clamp(of_points, radius / 2, 2 * radius);
+  if (is_surface()) {
+    const double around = 2 * radius;
+    const double volume = (extent.x + around) * (extent.y + around) * (extent.z + around);
+    chosen = std::clamp(std::cbrt(volume / kSurfaceVoxels), radius / 4, 2 * radius);
+  }
   while (options.cheaply_finer && chosen / 2 >= of_points && nodes_of(chosen / 2) <= kCheapNodes) {
     chosen /= 2;
   }
@@ -193,8 +204,9 @@ void ModelField::make_brick(std::size_t cell) const {
   if (const auto* points = std::get_if<const ModelTree*>(&tree_)) {
     BrickNearest(**points).find(corner, voxel_, squared, nearest);
   } else {
-    find_nearest_triangles(*std::get<const TriangleTree*>(tree_), corner, voxel_, squared, nearest);
+    BrickTriangles(*std::get<const TriangleTree*>(tree_)).find(corner, voxel_, squared, nearest);
   }
+  if (inside_) inside_->make_brick(brick, corner, voxel_, squared);
   std::atomic_ref(brick_of_[cell]).store(brick, std::memory_order_release);
 }
 
@@ -240,7 +252,8 @@ ModelFieldRef ModelField::ref() const {
           .brick_of = brick_of_.data(),
           .distances = distances_.get(),
           .nearest = nearest_.get(),
-          .by_need = by_need_ ? this : nullptr};
+          .by_need = by_need_ ? this : nullptr,
+          .inside = inside_ ? inside_->ref() : FieldInsideRef{}};
 }
 
 ModelFieldRef ModelField::ref_as_made() const {
@@ -252,7 +265,11 @@ ModelFieldRef ModelField::ref_as_made() const {
 std::uint64_t ModelField::allocated_bytes() const {
   return coarse_squared_.capacity() * sizeof(float) +
          (coarse_nearest_.capacity() + brick_of_.capacity()) * sizeof(std::uint32_t) +
-         bricks_ * kBrickBytes;
+         bricks_ * kBrickBytes + (inside_ ? inside_->allocated_bytes() : 0);
+}
+
+std::uint64_t ModelField::brick_bytes() const {
+  return kBrickBytes + (inside_ ? FieldInside::kBrickBytes : 0);
 }
 
 }  // namespace clearway

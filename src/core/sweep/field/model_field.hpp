@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
 #include "core/geometry/model_tree.hpp"
+#include "core/sweep/field/field_inside.hpp"
 #include "core/sweep/field/model_field_ref.hpp"
 
 namespace clearway {
@@ -17,6 +19,7 @@ struct ModelFieldOptions {
   double reach = 0;  ///< metres: good bounds and near points out to here; 0: to the radius only
   std::uint64_t most_bytes = std::uint64_t{64} << 20;
   bool by_need = false;  ///< bricks are made when they are first asked for; on the host only
+  const SolidParts* solids = nullptr;  ///< of the surface, if any; outlives the field
 };
 
 /// Bounds of d_M, the distance from any position in the model's frame to the nearest point of the
@@ -47,6 +50,8 @@ class ModelField {
   double voxel() const { return voxel_; }
   /// How far the lattice goes beyond the model at the most, metres.
   double margin() const { return margin_; }
+  /// Of the question what is inside, metres of the model's frame; 0 without solids.
+  double inside_rounding() const { return inside_ ? inside_->rounding() : 0; }
   /// Those not yet made included.
   std::uint64_t bricks() const { return bricks_; }
   /// Of all bricks, made or not.
@@ -83,6 +88,7 @@ class ModelField {
   template <typename Element>
   void mark_bricks_from(const ModelTreeOf<Element>& tree, double band, int threads);
   double node_error() const;
+  std::uint64_t brick_bytes() const;
   void make_all(int threads);
   void make_brick(std::size_t cell) const;
   Vec3 coarse_node(std::uint32_t ix, std::uint32_t iy, std::uint32_t iz) const;
@@ -101,6 +107,7 @@ class ModelField {
   std::uint32_t bricks_ = 0;
   std::unique_ptr<float[]> distances_;        // squared, per brick [z][y][x]
   std::unique_ptr<std::uint32_t[]> nearest_;  // likewise
+  mutable std::optional<FieldInside> inside_;
 };
 
 }  // namespace clearway

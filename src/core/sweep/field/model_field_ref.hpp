@@ -4,6 +4,7 @@
 
 #include "core/geometry/box.hpp"
 #include "core/geometry/sweep_bounds.hpp"
+#include "core/sweep/field/field_inside_ref.hpp"
 
 namespace clearway {
 
@@ -18,6 +19,8 @@ struct ModelFieldRef {
   static constexpr std::uint32_t kNoBrick = 0xffffffff;
   static constexpr std::uint32_t kToBeMade = 0x80000000;  ///< a bit of a brick that is not there
   static constexpr std::uint32_t kNone = 0xffffffff;
+  /// No place of a voxel is farther from its nearest node than the root of this, in voxels.
+  static constexpr double kNearNode = 0.76;
 
   struct Bounds {
     double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
@@ -39,13 +42,19 @@ struct ModelFieldRef {
   const float* distances;               ///< per brick [z][y][x]
   const std::uint32_t* nearest;         ///< likewise, the nearest model element
   const ModelField* by_need;            ///< makes bricks that are asked for, on the host; or null
+  FieldInsideRef inside;                ///< of a model with solids
 
   CLEARWAY_HD std::size_t coarse_nodes() const { return std::size_t{size[0]} * size[1] * size[2]; }
 
   CLEARWAY_HD Bounds bounds(const Vec3& x) const;
 
+  /// Whether a solid contains x, which bounds() proves to be farther from the surface than the
+  /// roundings of this question (docs/design/numerics.md, "Solids"). squared_lower: by bounds().
+  CLEARWAY_HD bool contains(const Vec3& x, double squared_lower) const;
+
  private:
   CLEARWAY_HD std::uint32_t brick_at(std::size_t cell) const;
+  CLEARWAY_HD std::uint32_t made_brick_at(std::size_t cell) const;
   CLEARWAY_HD std::uint32_t near_coarse_node(const double (&place)[3]) const;
 };
 
@@ -148,6 +157,36 @@ CLEARWAY_HD inline ModelFieldRef::Bounds ModelFieldRef::bounds(const Vec3& x) co
                corner);
   return {concave_bound(interpolated(place, corner), place, voxel, fine_slack),
           nearest[first + (round[2] * kRow + round[1]) * kRow + round[0]]};
+}
+
+CLEARWAY_HD inline std::uint32_t ModelFieldRef::made_brick_at(std::size_t cell) const {
+#ifdef __CUDA_ARCH__
+  return brick_of[cell];
+#else
+  return __atomic_load_n(brick_of + cell, __ATOMIC_ACQUIRE);
+#endif
+}
+
+/// Where the node nearest to x is nearer than the surface, no wall is between them.
+CLEARWAY_HD inline bool ModelFieldRef::contains(const Vec3& x, double squared_lower) const {
+  if (!inside.solids.lattice.has_in_box(x)) return false;
+  const double whole[3] = {(x.x - origin.x) * per_metre, (x.y - origin.y) * per_metre,
+                           (x.z - origin.z) * per_metre};
+  std::uint32_t cell[3], node[3];
+  for (int k = 0; k < 3; ++k) {
+    if (!(whole[k] >= 0 && whole[k] < size[k] - 1)) return inside.solids.contains(x);
+    cell[k] = static_cast<std::uint32_t>(whole[k]);
+    const double rounded = (whole[k] - cell[k]) * kBrick + 0.5;
+    node[k] = static_cast<std::uint32_t>(rounded);
+  }
+  const std::size_t at = (std::size_t{cell[2]} * size[1] + cell[1]) * size[0] + cell[0];
+  const std::uint32_t brick = made_brick_at(at);
+  if (brick == kNoBrick) return inside.cells[at] != 0;
+  if (brick >= kToBeMade || squared_lower <= kNearNode * voxel * voxel) {
+    return inside.solids.contains(x);
+  }
+  constexpr std::uint32_t kWords = FieldInsideRef::words_for(kBrickNodes);
+  return inside.node(std::size_t{brick} * kWords, (node[2] * kRow + node[1]) * kRow + node[0]);
 }
 
 }  // namespace clearway

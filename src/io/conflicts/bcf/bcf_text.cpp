@@ -76,14 +76,21 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
   std::string out = format_count(c.points) + (c.points == 1 ? " point is" : " points are") +
                     " closer than " + length_text(file, format_number(file.header.radius)) +
                     " to the moving model.";
-  if (c.least_distance) {
+  if (c.least_distance && *c.least_distance < 0) {
+    out += " The deepest point is " + length_text(file, format_brief(-*c.least_distance)) +
+           " inside the model, at pose " + std::to_string(*c.nearest_pose) + "; " +
+           format_count(*c.points_inside) +
+           (*c.points_inside == 1 ? " point is inside." : " points are inside.");
+  } else if (c.least_distance) {
     out += " The least distance is " + length_text(file, format_brief(*c.least_distance)) +
            ", at pose " + std::to_string(*c.nearest_pose) + "; " +
            length_text(file, format_brief(*c.encroachment)) + " are missing.";
   }
   if (c.lateral && c.height) {
-    out += std::string(c.nearest_point ? " Its nearest point" : " Its centroid") + " lies " +
-           offset_text(file, c) + ".";
+    out += std::string(!c.nearest_point          ? " Its centroid"
+                       : c.depth.value_or(0) > 0 ? " That point"
+                                                 : " Its nearest point") +
+           " lies " + offset_text(file, c) + ".";
   }
   return out + " First touched at poses " + std::to_string(c.first_pose) + " to " +
          std::to_string(c.last_pose) + ", counted from 0.";

@@ -10,6 +10,8 @@
 
 #include "core/geometry/predicate.hpp"
 #include "core/sweep/field/brick_nearest.hpp"
+#include "core/sweep/field/brick_triangles.hpp"
+#include "support/surface_scene.hpp"
 
 using namespace clearway;
 
@@ -169,6 +171,49 @@ TEST_CASE("the nodes of a brick have the model points that the tree finds") {
                    squared_distance(tree.element(point[i]), node) != least;
     }
     CHECK(differing == 0);
+  }
+}
+
+TEST_CASE("the nodes of a brick are as far from triangles as the tree says") {
+  Random random(9);
+  const Box part{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
+  std::vector<Triangle> model;
+  const auto add = [&](const test::Surface& surface, const Vec3& at) {
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+      Triangle t = surface.at(i);
+      for (Vec3* corner : {&t.a, &t.b, &t.c}) *corner = test::plus(*corner, 1, at);
+      model.push_back(t);
+    }
+  };
+  SECTION("of every shape") { add(test::random_surface(random, part, 60), {0, 0, 0}); }
+  SECTION("dense beside the brick") { add(test::random_surface(random, part, 5000), {0, 0, 0}); }
+  SECTION("far from the origin") { add(test::random_surface(random, part, 60), {5e5, -2e5, 100}); }
+  SECTION("large ones") { add(test::box_surface(part), {0, 0, 0}); }
+  SECTION("one") { add(test::random_surface(random, part, 1), {0, 0, 0}); }
+  SECTION("duplicates") { model.assign(5000, Triangle{{0.1, 0, 0}, {0, 0.2, 0}, {0, 0, 0.1}}); }
+  const TriangleTree tree(model);
+  const auto finder = std::make_unique<BrickTriangles>(tree);
+  std::vector<float> squared(ModelFieldRef::kBrickNodes);
+  std::vector<std::uint32_t> nearest(ModelFieldRef::kBrickNodes);
+  for (const double voxel : {1e-3, 0.01, 0.1, 1.0}) {
+    const Vec3& at = model[model.size() / 2].a;
+    const Vec3 corner{at.x - 3 * voxel, at.y - 5 * voxel, at.z - 4.5 * voxel};
+    finder->find(corner, voxel, squared.data(), nearest.data());
+    std::uint64_t too_far = 0, too_near = 0, others = 0;
+    for (std::uint32_t i = 0; i < ModelFieldRef::kBrickNodes; ++i) {
+      constexpr std::uint32_t kRow = ModelFieldRef::kRow;
+      const Vec3 node{corner.x + i % kRow * voxel, corner.y + i / kRow % kRow * voxel,
+                      corner.z + i / kRow / kRow * voxel};
+      const double least = std::sqrt(tree.nearest(node).squared_distance);
+      const double of_node = std::sqrt(static_cast<double>(squared[i]));
+      const double error = 2 * test::triangle_error(least, 2);
+      too_far += of_node > least + error;
+      too_near += of_node < least * (1 - 1e-6) - error;
+      others += !(std::sqrt(squared_distance(node, tree.element(nearest[i]))) <= least + error);
+    }
+    CHECK(too_far == 0);
+    CHECK(too_near == 0);
+    CHECK(others == 0);
   }
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
   CHECK(rows[0] ==
         "id,points,source,lo_x,lo_y,lo_z,hi_x,hi_y,hi_z,centroid_x,centroid_y,centroid_z,"
         "first_pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,"
-        "nearest_source,encroachment,side,lateral,height,group");
+        "nearest_source,encroachment,side,lateral,height,group,depth,points_inside");
   CHECK_THAT(rows[1], Catch::StartsWith("1," + all["conflicts"][0]["points"].dump() + "," +
                                         all["conflicts"][0]["source"].dump() + ","));
 }

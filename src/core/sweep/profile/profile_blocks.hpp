@@ -67,28 +67,17 @@ class ProfileBlocks {
   /// from which no model point is farther than delta are open at the next level. reach: a distance
   /// beyond which nothing matters to these poses. Whether any block is left.
   CLEARWAY_HD bool look(double delta, std::uint32_t pose, std::uint32_t level, double reach) {
-    delta_ = delta;
-    pose_ = pose;
-    reach_ = reach;
-    nearest_ = kNone;
-    nearest_squared_ = kInfinity;
-    PerLane<double> upper;
-    PerLane<double> squared_lower;
-    Warp::each([&](std::uint32_t lane) {
-      shared_.open[level + 1][lane] = 0;
-      upper[lane] = kInfinity;
-      if (shared_.open[level][lane] == 0) return;
-      squared_lower[lane] = look_at(shared_.words[lane], lane, upper[lane]);
-    });
-    lower_reach(Warp::least(upper));
-    std::uint32_t words = Warp::ballot([&](std::uint32_t lane) {
-      return shared_.open[level][lane] != 0 &&
-             matters(shared_.words[lane].rho, squared_lower[lane]);
-    });
-    bool any = false;
-    for (; words != 0; words &= words - 1) any |= look_at_word(lowest_bit(words), level);
-    return any;
+    inside_ = false;
+    return look_at_open(delta, pose, level, reach);
   }
+
+  /// The same with those open at the next level that may hold points inside solids.
+  CLEARWAY_HD bool look_inside(double delta, std::uint32_t pose, std::uint32_t level) {
+    inside_ = true;
+    return look_at_open(delta, pose, level, sweep_.rounding);
+  }
+
+  CLEARWAY_HD Sphere sphere(std::uint32_t block) const { return sphere_of(block, 1); }
 
   // After a look:
 
@@ -146,6 +135,31 @@ class ProfileBlocks {
     return {centre_of(positions), half_diagonal(positions)};
   }
 
+  CLEARWAY_HD bool look_at_open(double delta, std::uint32_t pose, std::uint32_t level,
+                                double reach) {
+    delta_ = delta;
+    pose_ = pose;
+    reach_ = reach;
+    nearest_ = kNone;
+    nearest_squared_ = kInfinity;
+    PerLane<double> upper;
+    PerLane<double> squared_lower;
+    Warp::each([&](std::uint32_t lane) {
+      shared_.open[level + 1][lane] = 0;
+      upper[lane] = kInfinity;
+      if (shared_.open[level][lane] == 0) return;
+      squared_lower[lane] = look_at(shared_.words[lane], lane, upper[lane]);
+    });
+    lower_reach(Warp::least(upper));
+    std::uint32_t words = Warp::ballot([&](std::uint32_t lane) {
+      return shared_.open[level][lane] != 0 &&
+             matters(shared_.words[lane].rho, squared_lower[lane]);
+    });
+    bool any = false;
+    for (; words != 0; words &= words - 1) any |= look_at_word(lowest_bit(words), level);
+    return any;
+  }
+
   CLEARWAY_HD bool look_at_word(std::uint32_t word, std::uint32_t level) {
     const std::uint32_t open = shared_.open[level][word];
     PerLane<double> upper;
@@ -177,11 +191,18 @@ class ProfileBlocks {
   }
 
   /// The field's bound at the centre. upper: a distance that no point of the sphere exceeds at any
-  /// of the poses, give or take the rounding of a test.
+  /// of the poses, give or take the rounding of a test. Asked for what is inside: 0 in place of the
+  /// bound where all of the sphere is, and no upper.
   CLEARWAY_HD double look_at(const Sphere& sphere, std::uint32_t lane, double& upper) {
     ++statistics_[lane].node_tests;
-    const ModelFieldRef::Bounds bounds =
-        sweep_.field.bounds(sweep_.motion.inverse_poses[pose_].apply(sphere.centre));
+    const Vec3 x = sweep_.motion.inverse_poses[pose_].apply(sphere.centre);
+    const ModelFieldRef::Bounds bounds = sweep_.field.bounds(x);
+    if constexpr (kIsSolid<Element>) {
+      if (inside_) {
+        const bool is_same = !matters(sphere.rho, bounds.squared_lower);
+        return is_same && sweep_.is_inside(x, bounds.squared_lower) ? 0 : bounds.squared_lower;
+      }
+    }
     if (bounds.near != ModelFieldRef::kNone) {
       const Element m = transform(sweep_.motion.poses[pose_], sweep_.model.elements[bounds.near]);
       upper = std::sqrt(squared_distance(sphere.centre, m)) * kRoundedUp + sphere.rho + delta_ +
@@ -204,6 +225,7 @@ class ProfileBlocks {
   double delta_ = 0;
   std::uint32_t pose_ = 0;
   double reach_ = 0;
+  bool inside_ = false;  ///< is asked for
   std::uint32_t nearest_ = kNone;
   double nearest_squared_ = kInfinity;
 };

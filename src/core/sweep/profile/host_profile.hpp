@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/cloud/packed_cloud.hpp"
-#include "core/sweep/profile_search.hpp"
+#include "core/sweep/profile/profile_search.hpp"
 #include "core/sweep/sweep_filter.hpp"
 
 namespace clearway {
@@ -89,5 +89,6 @@ using HostProfile = HostProfileOf<Vec3>;
 
 extern template class HostProfileOf<Vec3>;
 extern template class HostProfileOf<Triangle>;
+extern template class HostProfileOf<SolidTriangle>;
 
 }  // namespace clearway

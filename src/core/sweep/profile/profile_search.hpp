@@ -1,16 +1,19 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
-#include "core/sweep/profile_blocks.hpp"
-#include "core/sweep/sweep_profile.hpp"
+#include "core/sweep/profile/profile_blocks.hpp"
+#include "core/sweep/profile/profile_depths.hpp"
+#include "core/sweep/profile/profile_reaches.hpp"
+#include "core/sweep/profile/sweep_profile.hpp"
 
 namespace clearway {
 
 /// The points of a cell that are nearest to the model at the poses of motion nodes, by one warp: a
 /// descent of the motion tree that carries along which blocks are still open. Blocks and points
 /// are given up only where a bound proves every computed d2 to be above the best of each pose, so
-/// that ties stay (docs/design/numerics.md, "Profile").
+/// that ties stay (docs/design/numerics.md, "Profile"). With solids what is inside comes first.
 /// Ties: what becomes of points with the same d2 (UnresolvedTies, or SmallestSource).
 template <typename Warp, typename Ties, typename Element>
 class ProfileSearch {
@@ -33,10 +36,14 @@ class ProfileSearch {
         page_(page),
         quantisation_(quantisation),
         bests_(bests),
+        reaches_{sweep.motion, bests, sweep.rounding},
         ties_(ties),
         shared_(shared),
         statistics_(statistics),
-        blocks_(sweep, page, quantisation, shared.blocks, statistics) {}
+        blocks_(sweep, page, quantisation, shared.blocks, statistics),
+        depths_(sweep, page, quantisation, bests, blocks_, ties_, statistics) {}
+  ProfileSearch(const ProfileSearch&) = delete;
+  ProfileSearch& operator=(const ProfileSearch&) = delete;
 
   CLEARWAY_HD static std::uint32_t parts_of_cell(std::uint32_t blocks_per_cell) {
     return static_cast<std::uint32_t>(divide_up(blocks_per_cell, Blocks::kPartBlocks));
@@ -51,11 +58,16 @@ class ProfileSearch {
     has_guess_ = was_found_ = false;
     last_pose_ = kSweepNever;
     ties_.enter_cell(cell, *cell_);
+    if constexpr (kIsSolid<Element>) depths_.enter(cell, first_point_, first_slot_);
     return blocks_.enter(cell, part);
   }
 
   /// All poses of a motion node.
   CLEARWAY_HD void search(std::uint32_t top) {
+    if constexpr (kIsSolid<Element>) {
+      depths_.search(top);
+      last_pose_ = kSweepNever;
+    }
     const MotionNode* nodes = sweep_.motion.nodes;
     std::uint32_t path[kPathLevels];
     std::uint32_t level = 0, is_later = 0;  // is_later: a bit a level
@@ -70,7 +82,9 @@ class ProfileSearch {
       for (;; --level) {
         if (level == 0) return;
         if ((is_later >> level & 1) == 0) break;
-        note_halves(path[level - 1]);
+        Warp::each([&](std::uint32_t lane) {
+          if (lane == 0) reaches_.note_halves(path[level - 1]);
+        });
       }
       path[level] = nodes[path[level - 1]].later;
       is_later |= 1U << level;
@@ -80,8 +94,11 @@ class ProfileSearch {
   /// One pose, where d2 above `bound` do not matter, and those equal to it do.
   CLEARWAY_HD void search_pose(std::uint32_t pose, double bound) {
     bound_ = bound;
-    if (!blocks_.look(0, pose, 0, reach_of(bound))) return;
-    search_blocks(pose, 1);
+    found_ = kInfinity;
+    if constexpr (kIsSolid<Element>) {
+      if (bound < 0) found_ = depths_.search_pose(pose, 0, bound);
+    }
+    if (!(bound < 0) && blocks_.look(0, pose, 0, reaches_.of(bound))) search_blocks(pose, 1);
     Warp::each([&](std::uint32_t lane) {
       if (lane == 0 && found_ < kInfinity) ties_.keep(pose, found_);
     });
@@ -90,30 +107,6 @@ class ProfileSearch {
  private:
   /// Below, poses are looked at one by one.
   static constexpr std::uint32_t kPathLevels = Blocks::kLevels - 2;
-
-  /// A pose at which no model point is nearer than this has only d2 above `squared`.
-  CLEARWAY_HD double reach_of(double squared) const {
-    return std::sqrt(squared) * kRoundedUp + sweep_.rounding;
-  }
-
-  CLEARWAY_HD double reach_of_node(std::uint32_t index) const {
-    const MotionNode& node = sweep_.motion.nodes[index];
-    return node.count == 1 ? reach_of(load_shared(bests_.of_pose + node.mid))
-                           : load_shared(bests_.of_node + index);
-  }
-
-  CLEARWAY_HD void note_reach(std::uint32_t index, double reach) {
-    if (reach < load_shared(bests_.of_node + index)) store_shared(bests_.of_node + index, reach);
-  }
-
-  /// The larger reach of the halves is one of the node.
-  CLEARWAY_HD void note_halves(std::uint32_t index) {
-    Warp::each([&](std::uint32_t lane) {
-      if (lane != 0) return;
-      note_reach(index, greater_of(reach_of_node(index + 1),
-                                   reach_of_node(sweep_.motion.nodes[index].later)));
-    });
-  }
 
   /// Looks at a node, searches what can be searched, and says whether its halves are to be.
   CLEARWAY_HD bool descends(std::uint32_t index, std::uint32_t level) {
@@ -127,7 +120,7 @@ class ProfileSearch {
     const double reach = blocks_.reach();
     if (reach < known) {
       Warp::each([&](std::uint32_t lane) {
-        if (lane == 0) note_reach(index, reach);
+        if (lane == 0) reaches_.note(index, reach);
       });
     }
     if (level + 1 < kPathLevels) return true;
@@ -138,6 +131,10 @@ class ProfileSearch {
   /// A single pose, whose open blocks are those of the level.
   CLEARWAY_HD void search_single(std::uint32_t pose, std::uint32_t level) {
     bound_ = Warp::once([&] { return load_shared(bests_.of_pose + pose); });
+    if (kIsSolid<Element> && bound_ < 0) {
+      last_pose_ = kSweepNever;
+      return;
+    }
     if (last_pose_ != kSweepNever && last_pose_ + 1 == pose &&
         sweep_.motion.poses[pose] == sweep_.motion.poses[last_pose_]) {
       last_pose_ = pose;  // a stop: what was found is the same
@@ -146,7 +143,7 @@ class ProfileSearch {
     }
     last_pose_ = kSweepNever;
     if (has_guess_) lower_bound(squared_at(pose, shared_.point, shared_.element));
-    if (!blocks_.look(0, pose, level, reach_of(bound_))) return;
+    if (!blocks_.look(0, pose, level, reaches_.of(bound_))) return;
     search_blocks(pose, level + 1);
     last_pose_ = pose;
     was_found_ = found_ < kInfinity;
@@ -216,7 +213,7 @@ class ProfileSearch {
   CLEARWAY_HD void lower_bound(double squared) {
     if (!(squared < bound_)) return;
     bound_ = squared;
-    blocks_.lower_reach(reach_of(bound_));
+    blocks_.lower_reach(reaches_.of(bound_));
   }
 
   CLEARWAY_HD double squared_at(std::uint32_t pose, const Vec3& e, const Element& m) const {
@@ -252,7 +249,7 @@ class ProfileSearch {
 
   /// Model points beyond it, seen from the point pulled back, have only d2 above what is known.
   CLEARWAY_HD double squared_ball(const InversePose& back, double least) const {
-    const double ball = reach_of(least < bound_ ? least : bound_) / back.least * kRoundedUp;
+    const double ball = reaches_.of(least < bound_ ? least : bound_) / back.least * kRoundedUp;
     return ball * ball * kRoundedUp;
   }
 
@@ -281,6 +278,7 @@ class ProfileSearch {
   const PageRef& page_;
   const Quantisation& quantisation_;
   const ProfileBests& bests_;
+  ProfileReaches reaches_;
   Ties ties_;
   Shared& shared_;
   PerLane<SweepStatistics>& statistics_;
@@ -295,6 +293,7 @@ class ProfileSearch {
   std::uint32_t last_pose_ = kSweepNever;  ///< that was searched, with what was found
   bool was_found_ = false;
   bool has_guess_ = false;
+  std::conditional_t<kIsSolid<Element>, ProfileDepths<Warp, Ties, Element>, NoDepths> depths_;
 };
 
 }  // namespace clearway

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/sweep/profile_search.hpp"
+#include "core/sweep/profile/profile_search.hpp"
 
 namespace clearway {
 

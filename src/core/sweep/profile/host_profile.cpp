@@ -1,4 +1,4 @@
-#include "core/sweep/host_profile.hpp"
+#include "core/sweep/profile/host_profile.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -104,5 +104,6 @@ std::uint64_t HostProfileOf<Element>::most_facts(const PackedCloud& cloud, std::
 
 template class HostProfileOf<Vec3>;
 template class HostProfileOf<Triangle>;
+template class HostProfileOf<SolidTriangle>;
 
 }  // namespace clearway

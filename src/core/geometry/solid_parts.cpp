@@ -1,0 +1,43 @@
+#include "core/geometry/solid_parts.hpp"
+
+#include <algorithm>
+
+#include "core/geometry/model_tree.hpp"
+#include "core/geometry/triangle_box.hpp"
+
+namespace clearway {
+namespace {
+
+/// The triangles of each solid.
+std::vector<std::vector<Triangle>> by_solid(const Query& query) {
+  std::vector<std::vector<Triangle>> solids;
+  for (std::size_t i = 0; i < query.solid_of.size(); ++i) {
+    const std::uint32_t solid = query.solid_of[i];
+    if (solid == kNoSolid) continue;
+    if (solid >= solids.size()) solids.resize(solid + std::size_t{1});
+    const auto& [a, b, c] = query.triangles[i];
+    solids[solid].push_back({query.model[a], query.model[b], query.model[c]});
+  }
+  std::erase_if(solids, [](const auto& solid) { return solid.empty(); });
+  return solids;
+}
+
+}  // namespace
+
+SolidParts::SolidParts(const Query& query, int threads) {
+  for (const std::vector<Triangle>& solid : by_solid(query)) add(solid, threads);
+  if (!triangles_.empty()) lattice_ = SolidLattice(box_of(std::span<const Triangle>(triangles_)));
+}
+
+void SolidParts::add(const std::vector<Triangle>& solid, int threads) {
+  const ModelTreeOf<Triangle> tree(solid, threads);
+  const ModelTreeOf<Triangle>::Ref ref = tree.ref();
+  parts_.push_back({static_cast<std::uint32_t>(triangles_.size()), ref.size,
+                    static_cast<std::uint32_t>(boxes_.size()), ref.box_count});
+  triangles_.insert(triangles_.end(), ref.elements, ref.elements + ref.size);
+  boxes_.insert(boxes_.end(), ref.boxes, ref.boxes + ref.box_count);
+}
+
+double SolidParts::rounding() const { return 2 * lattice_.step; }
+
+}  // namespace clearway

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/sweep_bounds.hpp"
+#include "core/geometry/triangle.hpp"
+#include "core/util/macros.hpp"
+
+namespace clearway {
+
+/// Up to eight triangles of a model, with what distances to them need, so that one instruction
+/// works on several. For bounds, never for answers: the distance to any of them is as wrong as
+/// that of the predicate, and its last bits are others (docs/design/numerics.md, "Triangles").
+struct TrianglePacket {
+  static constexpr std::uint32_t kMost = 8;
+
+  double a[3][kMost];  ///< by axis; behind `count` the last triangle again
+  double ab[3][kMost], ac[3][kMost];
+  double height[3][kMost];  ///< over ab
+  double foot[kMost];       ///< of the height, as a share of ab
+  double per_ab[kMost];     ///< 1 / the squared length, which may be infinite
+  double per_ac[kMost], per_bc[kMost], per_height[kMost];
+  double tilt[kMost];          ///< square metres, see from_hull()
+  std::uint32_t index[kMost];  ///< of the triangle in the model's tree
+  std::uint32_t count;
+
+  /// Of the squares of a distance and of a triangle's longest edge: how much a plane across the way
+  /// between both is off because the way is not quite the shortest.
+  static constexpr double kTilt = 0x1p-21;
+
+  /// What is nearest of a triangle to a place.
+  struct Nearest {
+    double squared;
+    Vec3 way;  ///< from there to the place
+  };
+
+  void set(std::uint32_t i, const Triangle& t, std::uint32_t of) {
+    using triangle_detail::along;
+    const Vec3 to_b = difference(t.b, t.a), to_c = difference(t.c, t.a);
+    const Vec3 bc = difference(to_c, to_b);
+    const double ab2 = rounded_dot(to_b, to_b), ac2 = rounded_dot(to_c, to_c);
+    const double bc2 = rounded_dot(bc, bc);
+    foot[i] = rounded_dot(to_c, to_b) / ab2;
+    const Vec3 over = along(to_c, -foot[i], to_b);
+    for (int k = 0; k < 3; ++k) {
+      a[k][i] = t.a[k];
+      ab[k][i] = to_b[k];
+      ac[k][i] = to_c[k];
+      height[k][i] = over[k];
+    }
+    per_ab[i] = 1 / ab2;
+    per_ac[i] = 1 / ac2;
+    per_bc[i] = 1 / bc2;
+    per_height[i] = 1 / rounded_dot(over, over);
+    tilt[i] = kTilt * greater_of(greater_of(ab2, ac2), bc2) + 1e-280;
+    index[i] = of;
+  }
+
+  /// Lane `from` of another packet, or of this one.
+  void copy(std::uint32_t i, const TrianglePacket& other, std::uint32_t from) {
+    for (int k = 0; k < 3; ++k) {
+      a[k][i] = other.a[k][from];
+      ab[k][i] = other.ab[k][from];
+      ac[k][i] = other.ac[k][from];
+      height[k][i] = other.height[k][from];
+    }
+    foot[i] = other.foot[from];
+    per_ab[i] = other.per_ab[from];
+    per_ac[i] = other.per_ac[from];
+    per_bc[i] = other.per_bc[from];
+    per_height[i] = other.per_height[from];
+    tilt[i] = other.tilt[from];
+    index[i] = other.index[from];
+  }
+
+  /// Behind `used` triangles, at least one, the last of them again.
+  void close(std::uint32_t used) {
+    count = used;
+    for (std::uint32_t i = used; i < kMost; ++i) copy(i, *this, used - 1);
+  }
+
+  CLEARWAY_HD std::uint32_t element(std::uint32_t i) const { return index[i]; }
+
+  /// As the predicate, but with the ends of edges as feet, and shares as products.
+  CLEARWAY_IN_CLONE CLEARWAY_HD Nearest nearest(std::uint32_t i, const Vec3& x) const {
+    const Vec3 to_b{ab[0][i], ab[1][i], ab[2][i]}, to_c{ac[0][i], ac[1][i], ac[2][i]};
+    const Vec3 over{height[0][i], height[1][i], height[2][i]};
+    const Vec3 from_a{x.x - a[0][i], x.y - a[1][i], x.z - a[2][i]};
+    const double t = dot(from_a, to_b) * per_ab[i];
+    Nearest least = measured(beyond(from_a, clamped(t), to_b));
+    least = nearer(least, measured(beyond(from_a, clamped(dot(from_a, to_c) * per_ac[i]), to_c)));
+    const Vec3 from_b{from_a.x - to_b.x, from_a.y - to_b.y, from_a.z - to_b.z};
+    const Vec3 bc{to_c.x - to_b.x, to_c.y - to_b.y, to_c.z - to_b.z};
+    least = nearer(least, measured(beyond(from_b, clamped(dot(from_b, bc) * per_bc[i]), bc)));
+    const double of_c = dot(beyond(from_a, t, to_b), over) * per_height[i];
+    const double of_b = t - of_c * foot[i];
+    Nearest face = measured(beyond(beyond(from_a, of_b, to_b), of_c, to_c));
+    const bool inside = (of_c > 0) & (of_b > 0) & (of_b + of_c < 1);
+    if (!inside) face.squared = kInfinity;
+    return nearer(least, face);
+  }
+
+  /// At most the square of the distance from the triangle to every place of some hull, of which x
+  /// is one. along: at most 0, and at most the product of the way and any place of the hull as seen
+  /// from x, less its rounding. A plane across the way, where it starts, has the triangle behind
+  /// it.
+  CLEARWAY_HD double from_hull(std::uint32_t i, const Nearest& from_x, double along) const {
+    const double above = from_x.squared * (1 - kTilt) + along - tilt[i];
+    return above > 0 ? above / from_x.squared * above : 0;
+  }
+
+  CLEARWAY_HD static double dot(const Vec3& a, const Vec3& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+
+  CLEARWAY_HD static double clamped(double share) {
+    const double from_0 = share > 0 ? share : 0;  // also of what is no number
+    return from_0 < 1 ? from_0 : 1;
+  }
+
+ private:
+  CLEARWAY_HD static Vec3 beyond(const Vec3& from, double share, const Vec3& way) {
+    return {from.x - share * way.x, from.y - share * way.y, from.z - share * way.z};
+  }
+  CLEARWAY_HD static Nearest measured(const Vec3& way) { return {dot(way, way), way}; }
+  CLEARWAY_HD static Nearest nearer(const Nearest& one, const Nearest& other) {
+    const bool closer = other.squared < one.squared;
+    return {closer ? other.squared : one.squared,
+            {closer ? other.way.x : one.way.x, closer ? other.way.y : one.way.y,
+             closer ? other.way.z : one.way.z}};
+  }
+};
+
+}  // namespace clearway

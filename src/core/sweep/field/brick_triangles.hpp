@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/geometry/model_tree.hpp"
+#include "core/geometry/triangle_packet.hpp"
+#include "core/sweep/field/brick_part.hpp"
+#include "core/sweep/field/model_field_ref.hpp"
+
+namespace clearway {
+
+/// Finds the nearest triangles of all nodes of a brick together, as BrickNearest does points.
+/// Allocates nothing. Large: some 200 kB.
+class BrickTriangles {
+ public:
+  /// The tree is not empty and outlives it.
+  explicit BrickTriangles(const TriangleTree& tree) : tree_(tree) {}
+
+  /// corner: the brick's first node; voxel: from a node to the next, metres. For each node
+  /// [z][y][x] the squared distance, rounded down to float, and a nearest triangle
+  /// (ModelFieldRef::kBrickNodes of both).
+  void find(const Vec3& corner, double voxel, float* squared, std::uint32_t* nearest);
+
+ private:
+  static constexpr std::uint32_t kMostPackets = 64;
+  static constexpr std::uint32_t kLevels = 3;  ///< of parts: 9, 5 and 3 nodes along an axis
+
+  /// Candidates for a part, in full packets but for the last; none where there are too many.
+  struct Candidates {
+    std::array<TrianglePacket, kMostPackets> packets;
+    std::uint32_t count = 0;  ///< of triangles
+
+    std::uint32_t packet_count() const {
+      return (count + TrianglePacket::kMost - 1) / TrianglePacket::kMost;
+    }
+    /// Room for one more triangle; null where there is none.
+    TrianglePacket* room() {
+      return count == kMostPackets * TrianglePacket::kMost
+                 ? nullptr
+                 : &packets[count / TrianglePacket::kMost];
+    }
+    void close();
+  };
+
+  void find_in(const BrickPart& part, const Candidates* among, std::uint32_t level);
+  void gather(const BrickPlace& place, Candidates& out);
+  static void narrow(const BrickPlace& place, const Candidates& among, Candidates& out);
+  void find_among(const BrickPart& part, const Candidates& among);
+  void find_in_tree(const BrickPart& part);
+  void keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared,
+            std::uint32_t nearest);
+
+  const TriangleTree& tree_;
+  BrickLattice lattice_{};
+  float* squared_ = nullptr;
+  std::uint32_t* nearest_ = nullptr;
+  std::uint32_t near_ = 0;  ///< a triangle near the last place
+  std::array<Candidates, kLevels> kept_;
+};
+
+}  // namespace clearway

@@ -1,0 +1,235 @@
+#include "io/model/mesh_parts.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "core/util/format.hpp"
+#include "io/formats/mesh/vertex_welder.hpp"
+#include "io/system/input_error.hpp"
+
+namespace clearway {
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+/// One triangle's use of an edge between two vertices.
+struct EdgeUse {
+  std::uint32_t low, high;  ///< vertices
+  std::uint32_t triangle;
+  bool upwards;  ///< runs from low to high
+
+  auto ends() const { return std::tie(low, high); }
+};
+
+bool is_flat(const Corners& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+/// The same for all triangles with these corners in this turn.
+Corners turned_to_least(Corners t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+
+TriangleMesh merged(const TriangleMesh& mesh) {
+  TriangleMesh out;
+  VertexWelder welder(out.vertices);
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(mesh.vertices.size());
+  for (const Vec3& vertex : mesh.vertices) numbers.push_back(welder.number_of(vertex));
+  out.triangles = mesh.triangles;
+  for (Corners& triangle : out.triangles) {
+    for (std::uint32_t& corner : triangle) corner = numbers[corner];
+  }
+  return out;
+}
+
+/// Keeps the first of each. Returns how many are left out.
+std::uint64_t leave_out_duplicates(std::vector<Corners>& triangles) {
+  std::vector<std::pair<Corners, std::uint32_t>> sorted;
+  sorted.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    sorted.emplace_back(turned_to_least(triangles[i]), i);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> is_left_out(triangles.size());
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i].first == sorted[i - 1].first) is_left_out[sorted[i].second] = true;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (!is_left_out[i]) triangles[kept++] = triangles[i];
+  }
+  const std::uint64_t left_out = triangles.size() - kept;
+  triangles.resize(kept);
+  return left_out;
+}
+
+std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangles) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = triangles[i];
+    if (is_flat(triangles[i])) continue;
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      uses.push_back({std::min(from, to), std::max(from, to), i, from < to});
+    }
+  }
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return uses;
+}
+
+/// Disjoint sets of triangles; each is named by its first one.
+class PartFinder {
+ public:
+  explicit PartFinder(std::size_t triangles) : root_(triangles) {
+    std::iota(root_.begin(), root_.end(), 0U);
+  }
+
+  std::uint32_t part_of(std::uint32_t triangle) {
+    while (root_[triangle] != triangle) triangle = root_[triangle] = root_[root_[triangle]];
+    return triangle;
+  }
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t of_a = part_of(a), of_b = part_of(b);
+    root_[std::max(of_a, of_b)] = std::min(of_a, of_b);
+  }
+
+ private:
+  std::vector<std::uint32_t> root_;
+};
+
+/// visit(uses of one edge)
+template <typename Visit>
+void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
+  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+    while (end < uses.size() && uses[end].ends() == uses[begin].ends()) ++end;
+    visit(uses.subspan(begin, end - begin));
+  }
+}
+
+/// Whether an edge breaks its part, and then by what.
+bool is_faulty(std::span<const EdgeUse> edge, EdgeFault& fault) {
+  fault = edge.size() == 1  ? EdgeFault::kOpen
+          : edge.size() > 2 ? EdgeFault::kCrowded
+                            : EdgeFault::kSameWay;
+  return edge.size() != 2 || edge[0].upwards == edge[1].upwards;
+}
+
+void note(FaultyEdges& edges, const Vec3& from, const Vec3& to) {
+  ++edges.count;
+  if (edges.first.size() < FaultyEdges::kMostShown) edges.first.push_back({from, to});
+}
+
+/// With fewer triangles, a closed part encloses nothing.
+constexpr std::uint32_t kLeastOfSolid = 4;
+
+/// Numbers the solids; faulty: by a part's first triangle.
+void number_solids(PartFinder& finder, const std::vector<bool>& faulty, MeshParts& parts) {
+  const auto count = static_cast<std::uint32_t>(parts.mesh.triangles.size());
+  std::vector<std::uint32_t> size_of(count), number_of(count, kNoSolid);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_flat(parts.mesh.triangles[i])) ++size_of[finder.part_of(i)];
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (size_of[i] >= kLeastOfSolid && !faulty[i]) {
+      number_of[i] = parts.solids++;
+    } else {
+      parts.surface_parts += size_of[i] > 0 ? 1 : 0;
+    }
+  }
+  parts.solid_of.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool flat = is_flat(parts.mesh.triangles[i]);
+    parts.solid_of[i] = flat ? kNoSolid : number_of[finder.part_of(i)];
+    parts.flat += flat ? 1 : 0;
+    parts.surface_triangles += parts.solid_of[i] == kNoSolid ? 1 : 0;
+  }
+}
+
+std::string shown_place(const Vec3& p) {
+  return "(" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) + ")";
+}
+
+const char* words_for(EdgeFault fault) {
+  switch (fault) {
+    case EdgeFault::kOpen:
+      return "of one triangle only (an open border)";
+    case EdgeFault::kCrowded:
+      return "of more than two triangles";
+    case EdgeFault::kSameWay:
+      return "of two triangles that run the same way along it";
+  }
+  return "";
+}
+
+}  // namespace
+
+MeshParts find_parts(const TriangleMesh& mesh) {
+  MeshParts parts;
+  parts.mesh = merged(mesh);
+  parts.duplicates = leave_out_duplicates(parts.mesh.triangles);
+  const std::vector<EdgeUse> uses = edge_uses(parts.mesh.triangles);
+  PartFinder finder(parts.mesh.triangles.size());
+  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    for (const EdgeUse& use : edge) finder.join(edge[0].triangle, use.triangle);
+  });
+  std::vector<bool> faulty(parts.mesh.triangles.size());
+  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    EdgeFault fault{};
+    if (!is_faulty(edge, fault)) return;
+    faulty[finder.part_of(edge[0].triangle)] = true;
+    const auto& vertices = parts.mesh.vertices;
+    note(parts.faulty[static_cast<std::size_t>(fault)], vertices[edge[0].low],
+         vertices[edge[0].high]);
+  });
+  number_solids(finder, faulty, parts);
+  return parts;
+}
+
+std::string summary_of(const MeshParts& parts) {
+  const std::uint64_t of_solids = parts.mesh.triangles.size() - parts.surface_triangles;
+  std::string text = format_count(parts.solids) + " closed parts of " + format_count(of_solids) +
+                     " triangles are solid; " + format_count(parts.surface_triangles) +
+                     " other triangles are surface, in " + format_count(parts.surface_parts) +
+                     " open parts";
+  if (parts.flat > 0) text += "; " + format_count(parts.flat) + " have two equal corners";
+  if (parts.duplicates > 0) {
+    text += "; " + format_count(parts.duplicates) + " that occur twice are left out";
+  }
+  return text;
+}
+
+std::string faults_of(const MeshParts& parts) {
+  std::string text;
+  for (const EdgeFault fault : kEdgeFaults) {
+    const FaultyEdges& edges = parts.faulty[static_cast<std::size_t>(fault)];
+    if (edges.count == 0) continue;
+    if (!text.empty()) text += "; ";
+    text += format_count(edges.count) + (edges.count == 1 ? " edge is " : " edges are each ") +
+            words_for(fault) + ", ";
+    text += edges.count > 1 ? "the first from " : "from ";
+    for (std::size_t i = 0; i < edges.first.size(); ++i) {
+      if (i > 0) text += ", from ";
+      text += shown_place(edges.first[i][0]) + " to " + shown_place(edges.first[i][1]);
+    }
+  }
+  return text;
+}
+
+MeshParts parts_with_solids(const TriangleMesh& mesh, const std::string& name) {
+  MeshParts parts = find_parts(mesh);
+  if (parts.solids > 0) return parts;
+  const std::string faults = faults_of(parts);
+  refuse(name, "none of its " + format_count(parts.surface_parts) +
+                   " parts is closed, so none has an inside" +
+                   (faults.empty() ? std::string() : ": " + faults) +
+                   "; expected at least one part whose every edge is of two triangles, once in "
+                   "each direction; close the mesh, or search it as a surface");
+}
+
+}  // namespace clearway
