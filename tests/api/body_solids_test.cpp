@@ -18,6 +18,18 @@ Surface ball(const Vec3& at) {
   return mapped(unit_sphere(1), [&](const Vec3& v) { return plus(at, 0.35, v); });
 }
 
+/// So far apart that what is inside at one of them need not touch the surface at another.
+void keep_some_poses(Body& body) {
+  const Body all = body;
+  body.poses.clear();
+  body.path_pose.clear();
+  for (std::size_t i = 0; i < all.poses.size(); ++i) {
+    if (all.path_pose[i] % 4 != 0) continue;
+    body.poses.push_back(all.poses[i]);
+    body.path_pose.push_back(all.path_pose[i]);
+  }
+}
+
 /// The first and the last body are the same two solids and an open triangle, and tie at some
 /// poses. The second has points, or the triangles between them.
 struct SolidVehicle : Vehicle {
@@ -30,6 +42,7 @@ struct SolidVehicle : Vehicle {
       query.bodies[body].model = parts.surface.vertices;
       query.bodies[body].triangles = parts.surface.triangles;
       query.bodies[body].solid_of = parts.solid_of;
+      keep_some_poses(query.bodies[body]);
     }
     if (surface_too) make_surface(1);
     query.radius = 0.02;
@@ -68,7 +81,7 @@ TEST_CASE("depths in the solids of a vehicle are those of brute force") {
   vehicle.query.profile = 0.1;
   check_profile(vehicle);
   const auto depths = Result(vehicle.folder / "out.h5").profile().distance;
-  CHECK(std::ranges::count_if(depths, [](double d) { return d < 0; }) > 10);
+  CHECK(std::ranges::count_if(depths, [](double d) { return d < 0; }) > 5);
 }
 
 TEST_CASE("ignored points are in no solid of a vehicle") {
