@@ -23,7 +23,8 @@ Body make_body(std::string name, const py::object& model, const py::object& pose
             .model = std::move(shape.points),
             .poses = poses_of(poses_array(poses, "poses"), "poses"),
             .path_pose = {},
-            .triangles = std::move(shape.triangles)};
+            .triangles = std::move(shape.triangles),
+            .solid_of = std::move(shape.solid_of)};
   if (path_pose) {
     body.path_pose = std::move(*path_pose);
   } else {
@@ -49,7 +50,7 @@ void add_body(py::module_& module) {
       .def_property_readonly(
           "model",
           [](const Body& b) -> py::object {
-            if (b.is_surface()) return py::cast(ModelShape{b.model, b.triangles});
+            if (b.is_surface()) return py::cast(ModelShape{b.model, b.triangles, b.solid_of});
             return to_array(b.model);
           },
           "In the body's own frame: points, n x 3 float64, metres; or a ModelShape.")

@@ -49,6 +49,11 @@ void add_conflict(py::module_& module) {
       .def_readonly("nearest_source", &Conflict::nearest_source, "The point, or None.")
       .def_readonly("encroachment", &Conflict::encroachment,
                     "Radius - least_distance, metres, or None.")
+      .def_readonly("depth", &Conflict::depth,
+                    "Of a model with solids: how deep its deepest point is inside, metres; 0: "
+                    "none is. None: no solids, or no clearances.")
+      .def_readonly("points_inside", &Conflict::points_inside,
+                    "How many of its points are inside at any pose, or None.")
       .def_property_readonly(
           "nearest_point", [](const Conflict& c) { return place(c.nearest_point); },
           "3 float64, metres, or None.")

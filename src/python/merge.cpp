@@ -36,7 +36,10 @@ void add_merge_report(py::module_& module) {
       .def_readonly("environment_points", &Report::environment_points)
       .def_readonly("model_points", &Report::model_points)
       .def_readonly("poses", &Report::poses)
+      .def_readonly("model_solids", &Report::model_solids, "Parts of it that have an inside.")
       .def_readonly("colliding_points", &Report::colliding_points)
+      .def_readonly("inside_points", &Report::inside_points,
+                    "With clearances: colliding points inside a solid of the model at any pose.")
       .def_readonly("clearance_points", &Report::clearance_points)
       .def_readonly("profile_poses", &Report::profile_poses)
       .def_readonly("ignored", &Report::ignored, "IgnoredPointCounts.")

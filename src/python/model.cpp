@@ -20,8 +20,8 @@ using namespace py::literals;
 using Triangle = std::array<std::uint32_t, 3>;
 using Corners = py::array_t<std::uint32_t, py::array::c_style>;
 
-constexpr Named<ModelAs> kModelAs[] = {{"points", ModelAs::kPoints},
-                                       {"surface", ModelAs::kSurface}};
+constexpr Named<ModelAs> kModelAs[] = {
+    {"points", ModelAs::kPoints}, {"surface", ModelAs::kSurface}, {"solid", ModelAs::kSolid}};
 
 py::array triangles_array(const std::vector<Triangle>& triangles) {
   Corners array({static_cast<py::ssize_t>(triangles.size()), py::ssize_t{3}});
@@ -59,8 +59,10 @@ std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points)
 }
 
 void add_shape(py::module_& module) {
-  py::class_<ModelShape>(module, "ModelShape",
-                         "A model of points, or of triangles that are searched as they are.")
+  py::class_<ModelShape> shapes(
+      module, "ModelShape", "A model of points, or of triangles that are searched as they are.");
+  shapes.attr("NO_SOLID") = kNoSolid;
+  shapes
       .def(py::init([](const py::object& points, const py::object& triangles) {
              ModelShape shape;
              shape.points = points_of(points_array(points, "points"), "points");
@@ -74,6 +76,10 @@ void add_shape(py::module_& module) {
       .def_property_readonly(
           "triangles", [](const ModelShape& s) { return triangles_array(s.triangles); },
           "Three indices of points for each: n x 3 uint32. None: the points are the model.")
+      .def_property_readonly(
+          "solid_of", [](const ModelShape& s) { return to_array(s.solid_of); },
+          "The number of each triangle's solid, or NO_SOLID: n uint32. Empty: nothing has an "
+          "inside.")
       .def("__repr__", [](const ModelShape& s) {
         return text("<ModelShape: " + std::to_string(s.points.size()) + " points, " +
                     std::to_string(s.triangles.size()) + " triangles>");
@@ -133,9 +139,10 @@ void add_read_model_shape(py::module_& module) {
 Read a mesh, to be searched as its triangles are. Returns a ModelShape.
 
 model_as: 'surface': the triangles of the mesh; a file without any is refused.
+    'solid': the same, and what its closed parts enclose; a mesh without any is refused.
     'points': as read_model() reads it.
 spacing, vertices_only: for 'points', as read_model() takes them.
-above: cuts the triangles at this height, and leaves out what is below it; metres.
+above: cuts the triangles at this height, and leaves out what is below it; metres; not for 'solid'.
 unit, environment_unit, messages: as read_model() takes them.)");
 }
 

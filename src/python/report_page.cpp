@@ -33,7 +33,7 @@ void add_summary(py::module_& module) {
 }
 
 constexpr const char* kWriteReport =
-    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, warnings=(), overwrite=False, progress=None, stop=None)
+    R"(write_report(result, store, model, poses, output, *, title='', project='', client='', author='', date='', result_name='', environment_name='', model_name='', trajectory_name='', model_above=None, model_left_out=0, classes=(), max_points=1000000, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', memory_bytes=4294967296, threads=0, labels=None, warnings=(), bodies=(), overwrite=False, progress=None, stop=None)
 --
 
 Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view.
@@ -50,6 +50,7 @@ max_points: environment points on the page at most.
 gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes them.
 labels: PoseLabels of read_trajectory().
 warnings: messages of the inputs and of the search, which the page shows.
+bodies: of a vehicle, those of the search; then model is (), and poses are the path's.
 overwrite: an existing page.
 memory_bytes, threads, progress, stop: as search() takes them.)";
 
@@ -64,7 +65,8 @@ void add_write_report(py::module_& module) {
          std::vector<double> classes, std::uint64_t max_points, double gap,
          std::uint64_t min_points, double split, double chainage_start, const std::string& forward,
          const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels,
-         const py::object& warnings, bool overwrite, py::object progress, py::object stop) {
+         const py::object& warnings, std::vector<Body> bodies, bool overwrite, py::object progress,
+         py::object stop) {
         ReportOptions options{std::move(title),
                               std::move(project),
                               std::move(client),
@@ -88,6 +90,8 @@ void add_write_report(py::module_& module) {
         watch.attach(options.conflicts);
         ModelShape shape = model_of(model);
         options.model_triangles = std::move(shape.triangles);
+        options.model_solid_of = std::move(shape.solid_of);
+        options.bodies = std::move(bodies);
         return watch.run(
             [&, to = path_of(output), path = poses_of(poses_array(poses, "poses"), "poses")] {
               return in_turn(store, options.conflicts.stop, [&](const Store& own) {
@@ -103,8 +107,8 @@ void add_write_report(py::module_& module) {
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z",
       "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "labels"_a = py::none(),
-      "warnings"_a = py::tuple(), "overwrite"_a = false, "progress"_a = py::none(),
-      "stop"_a = py::none(), kWriteReport);
+      "warnings"_a = py::tuple(), "bodies"_a = py::tuple(), "overwrite"_a = false,
+      "progress"_a = py::none(), "stop"_a = py::none(), kWriteReport);
 }
 
 }  // namespace

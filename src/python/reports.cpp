@@ -49,7 +49,10 @@ void add_findings_of(py::class_<Report>& report) {
       .def_readonly("model_triangles", &Report::model_triangles,
                     "Of a surface, whose corners the model points are; otherwise 0.")
       .def_readonly("poses", &Report::poses)
+      .def_readonly("model_solids", &Report::model_solids, "Parts of it that have an inside.")
       .def_readonly("colliding_points", &Report::colliding_points)
+      .def_readonly("inside_points", &Report::inside_points,
+                    "With clearances: colliding points inside a solid of the model at any pose.")
       .def_readonly("clearance_points", &Report::clearance_points,
                     "Points closer than the clearance asked for.")
       .def_readonly("profile_poses", &Report::profile_poses,

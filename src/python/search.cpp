@@ -216,6 +216,7 @@ Query query_of(const ArrayQuery& query) {
   ModelShape shape = model_of(query.model);
   Query asked(std::move(shape.points), poses_of(query.poses, "poses"), query.parameters);
   asked.triangles = std::move(shape.triangles);
+  asked.solid_of = std::move(shape.solid_of);
   asked.bodies = query.bodies;
   return asked;
 }

@@ -29,6 +29,16 @@ class BodyTest(SceneTest):
         np.testing.assert_array_equal(result.first_pose(), least[found])
         np.testing.assert_array_equal(result.first_body(), (ahead != least)[found])
 
+    def test_a_page_of_bodies(self):
+        own = clearway.Body("own", self.model, self.poses)
+        query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=[own], first_pose=True)
+        self.search(query=query)
+        result = clearway.Result(self.folder / "out.h5")
+        store = clearway.Store(self.folder / "site.h5")
+        page = self.folder / "bodies.html"
+        clearway.write_report(result, store, (), self.poses, page, bodies=[own])
+        self.assertIn(b"own", page.read_bytes())
+
     def test_bodies_are_refused(self):
         with self.assertRaises(clearway.UsageError):
             clearway.follow("a", self.model, self.poses, at=1, pivots=(1, -1))

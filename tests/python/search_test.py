@@ -53,6 +53,35 @@ class FindsWhatBruteForceFinds(SceneTest):
         with self.assertRaises(clearway.InputError):  # its corners alone are another model
             clearway.write_report(result, store, square.points, self.poses, page, overwrite=True)
 
+    def test_a_solid(self):
+        corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        faces = ["0 1 3", "0 3 2", "4 6 7", "4 7 5", "0 4 5", "0 5 1",
+                 "2 3 7", "2 7 6", "0 2 6", "0 6 4", "1 5 7", "1 7 3"]
+        (self.folder / "box.off").write_text(
+            "OFF\n8 12 0\n" + "".join(f"{x} {y} {z}\n" for x, y, z in corners)
+            + "".join(f"3 {face}\n" for face in faces))
+        box = clearway.read_model_shape(self.folder / "box.off", "solid")
+        np.testing.assert_array_equal(box.solid_of, np.zeros(12))
+        query = clearway.Query(box, self.poses, RADIUS, first_pose=True, clearance=0.5)
+        report = self.search(query=query)
+        local = self.points[None, :, :] - self.poses[:, None, :3, 3]
+        beyond = np.abs(local) - 1
+        signed = np.where((beyond < 0).all(axis=2), beyond.max(axis=2),
+                          np.linalg.norm(np.maximum(beyond, 0), axis=2)).min(axis=0)
+        result = clearway.Result(self.folder / "out.h5")
+        np.testing.assert_array_equal(result.source(), np.flatnonzero(signed < RADIUS))
+        near = result.clearance()
+        np.testing.assert_allclose(near.distance, signed[near.source], atol=1e-12)
+        self.assertEqual((report.model_solids, report.inside_points), (1, (signed < 0).sum()))
+        listed = clearway.find_conflicts(result, self.poses).listed
+        self.assertAlmostEqual(max(c.depth for c in listed), -signed.min())
+        store = clearway.Store(self.folder / "site.h5")
+        page = self.folder / "box.html"
+        self.assertFalse(clearway.write_report(result, store, box, self.poses, page).clear)
+        with self.assertRaises(clearway.InputError):  # without an inside it is another model
+            clearway.write_report(result, store, clearway.ModelShape(box.points, box.triangles),
+                                  self.poses, page, overwrite=True)
+
     def test_a_surface_of_a_file(self):
         (self.folder / "one.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         noted = []

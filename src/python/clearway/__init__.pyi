@@ -86,6 +86,8 @@ class Store:
 class ModelShape:
     points: Final[_Doubles]
     triangles: Final[_Poses]
+    solid_of: Final[_Poses]
+    NO_SOLID: ClassVar[int]
     def __init__(self, points: ArrayLike, triangles: ArrayLike = ...) -> None: ...
 class Body:
     name: Final[str]
@@ -166,7 +168,9 @@ class SearchReport:
     model_points: Final[int]
     model_triangles: Final[int]
     poses: Final[int]
+    model_solids: Final[int]
     colliding_points: Final[int]
+    inside_points: Final[int]
     clearance_points: Final[int]
     profile_poses: Final[int]
     ignored: Final[IgnoredPointCounts]
@@ -209,7 +213,9 @@ class MergeReport:
     environment_points: Final[int]
     model_points: Final[int]
     poses: Final[int]
+    model_solids: Final[int]
     colliding_points: Final[int]
+    inside_points: Final[int]
     clearance_points: Final[int]
     profile_poses: Final[int]
     ignored: Final[IgnoredPointCounts]
@@ -264,6 +270,8 @@ class Conflict:
     nearest_pose: Final[int | None]
     nearest_source: Final[int | None]
     encroachment: Final[float | None]
+    depth: Final[float | None]
+    points_inside: Final[int | None]
     nearest_point: Final[_Doubles | None]
     side: Final[str]
     lateral: Final[float | None]
@@ -291,7 +299,7 @@ def read_model(
     vertices_only: bool = False, above: float | None = None, messages: list[Message] | None = None,
 ) -> _Doubles: ...
 def read_model_shape(
-    path: _AnyPath, model_as: Literal["points", "surface"] = "surface", *, spacing: float = 0.0,
+    path: _AnyPath, model_as: Literal["points", "surface", "solid"] = "surface", *, spacing: float = 0.0,
     unit: float = 0.0, environment_unit: float = 1.0, vertices_only: bool = False,
     above: float | None = None, messages: list[Message] | None = None,
 ) -> ModelShape: ...
@@ -341,6 +349,7 @@ def write_report(
     classes: Sequence[float] = (), max_points: int = 1000000, gap: float = 0.3,
     min_points: int = 10, split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x",
     up: _Axis = "+z", memory_bytes: int = 4294967296, threads: int = 0,
-    labels: PoseLabels | None = None, warnings: Iterable[Message] = (), overwrite: bool = False,
+    labels: PoseLabels | None = None, warnings: Iterable[Message] = (),
+    bodies: Sequence[Body] = (), overwrite: bool = False,
     progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> ReportSummary: ...
