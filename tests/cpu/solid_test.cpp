@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "support/engines/engines.hpp"
+#include "support/engines/scene_checks.hpp"
 #include "support/solid_scene.hpp"
 
 using namespace clearway;
@@ -13,7 +13,7 @@ namespace {
 const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
 const Box kPart{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
-struct SolidScene {
+struct SolidScene : SceneChecks<SolidScene> {
   Random random{29};
   Quantisation quantisation{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
   std::vector<Quantum> points = quantise(random_points(random, kRoom, 600), quantisation);
@@ -24,32 +24,6 @@ struct SolidScene {
   SolidScene() { bodies.add(box_surface(kPart)); }
 
   Query query() const { return bodies.query(poses, radius); }
-
-  std::uint64_t check() const { return check_engines(points, quantisation, query()); }
-
-  std::uint64_t check_clearance(double clearance) const {
-    std::uint64_t found = 0;
-    for (const bool first_pose : {false, true}) {
-      Query asked = query();
-      asked.clearance = clearance;
-      asked.first_pose = first_pose;
-      found = check_clearances(points, quantisation, asked);
-    }
-    return found;
-  }
-
-  std::uint64_t check_profile(double distance) const {
-    Query asked = query();
-    asked.profile = distance;
-    return clearway::check_profile(points, quantisation, asked);
-  }
-
-  void move_far_away(const Vec3& offset) {
-    for (int k = 0; k < 3; ++k) quantisation.offset[k] += offset[k];
-    for (Pose& pose : poses) {
-      for (int k = 0; k < 3; ++k) pose.translation[k] += offset[k];
-    }
-  }
 };
 
 Surface moved_by(const Surface& body, const Vec3& by) {
