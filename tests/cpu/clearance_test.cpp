@@ -80,16 +80,8 @@ TEST_CASE("clearances along slow paths") {
   // Runs of many poses are nearly straight, seen from the model: they are searched as one.
   Scene scene;
   scene.points.resize(250);
-  scene.poses.clear();
   const double bend = GENERATE(0.0, 1e-9, 1e-3, 0.5, 4.0);
-  for (int i = 0; i < 500; ++i) {
-    const double s = i / 100.0, angle = bend * s / 5;
-    Pose pose = translation({s - 2.5, bend * s * s / 50, 0.25});
-    pose.rotation[0] = pose.rotation[4] = std::cos(angle);
-    pose.rotation[3] = std::sin(angle);
-    pose.rotation[1] = -pose.rotation[3];
-    scene.poses.push_back(pose);
-  }
+  scene.poses = slow_path(500, bend);
   SECTION("as they are") {}
   SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 300, scene.poses[200]); }
   SECTION("to and fro") {

@@ -145,16 +145,8 @@ TEST_CASE("random solids") {
 TEST_CASE("depths along slow paths") {
   SolidScene scene;
   scene.points.resize(200);
-  scene.poses.clear();
   const double bend = GENERATE(0.0, 1e-3, 0.5);
-  for (int i = 0; i < 300; ++i) {
-    const double s = i / 60.0, angle = bend * s / 5;
-    Pose pose = translation({s - 2.5, bend * s * s / 50, 0.25});
-    pose.rotation[0] = pose.rotation[4] = std::cos(angle);
-    pose.rotation[3] = std::sin(angle);
-    pose.rotation[1] = -pose.rotation[3];
-    scene.poses.push_back(pose);
-  }
+  scene.poses = slow_path(300, bend);
   SECTION("as they are") {}
   SECTION("of two that overlap") { scene.bodies.add(moved_by(unit_sphere(1), {0.3, -0.5, 0.1})); }
   SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 100, scene.poses[200]); }

@@ -78,4 +78,17 @@ std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count)
   return poses;
 }
 
+std::vector<Pose> slow_path(int count, double bend) {
+  std::vector<Pose> poses;
+  for (int i = 0; i < count; ++i) {
+    const double s = i / (count / 5.0), angle = bend * s / 5;
+    Pose pose = translation({s - 2.5, bend * s * s / 50, 0.25});
+    pose.rotation[0] = pose.rotation[4] = std::cos(angle);
+    pose.rotation[3] = std::sin(angle);
+    pose.rotation[1] = -pose.rotation[3];
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
 }  // namespace clearway

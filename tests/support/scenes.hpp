@@ -33,4 +33,7 @@ Pose stretched(Pose pose, const Vec3& by);
 /// A smooth path through the box that turns as it goes.
 std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count);
 
+/// 5 m along x, to the left along a parabola and turning: by 0.5 bend metres and bend radians.
+std::vector<Pose> slow_path(int count, double bend);
+
 }  // namespace clearway

@@ -26,11 +26,7 @@ class PointCurve {
         through.middle == through.first ? start_ : motion.inverse_poses[through.first].apply(e);
     const Vec3 last = motion.inverse_poses[through.last].apply(e);
     const Vec3 way = difference(last, first);
-    const double height = through.height(), t = through.middle_place;
-    Vec3 bend{};
-    for (int k = 0; k < 3 && height > 0; ++k) {
-      bend[k] = (start_[k] - first[k] - t * way[k]) / height;
-    }
+    const Vec3 bend = through.bend(first, way, start_);
     const double squared_way = squared_length(way.x, way.y, way.z);
     const double length = std::sqrt(squared_way);
     const double bent = std::sqrt(squared_length(bend.x, bend.y, bend.z));
@@ -51,14 +47,7 @@ class PointCurve {
   /// How far the true parabola may be from this one.
   CLEARWAY_HD double beside() const { return beside_; }
 
-  CLEARWAY_HD Box box() const {
-    Box box{start_, start_};
-    for (int k = 0; k < 3; ++k) {
-      (way_[k] < 0 ? box.lo : box.hi)[k] += way_[k];
-      (bend_[k] < 0 ? box.lo : box.hi)[k] += 0.25 * bend_[k];
-    }
-    return box;
-  }
+  CLEARWAY_HD Box box() const { return MotionParabola::box(start_, way_, bend_); }
 
   /// At most the squares of the distances to the points of a packet, where they are within reach.
   CLEARWAY_HD void to_points(const PointPacket& packet,

@@ -23,24 +23,14 @@ class TriangleCurve {
     const Vec3 middle = start_;
     if (through.middle != through.first) start_ = motion.inverse_poses[through.first].apply(e);
     way_ = difference(motion.inverse_poses[through.last].apply(e), start_);
-    const double height = through.height(), t = through.middle_place;
-    for (int k = 0; k < 3 && height > 0; ++k) {
-      bend_[k] = (middle[k] - start_[k] - t * way_[k]) / height;
-    }
+    bend_ = through.bend(start_, way_, middle);
     const double squared_way = squared_length(way_.x, way_.y, way_.z);
     if (squared_way > kLeastSquaredWay) per_squared_way_ = 1 / squared_way;
     const double size = squared_way + squared_length(bend_.x, bend_.y, bend_.z);
     rounding_ = 32 * kUnitRoundoff * size;
   }
 
-  CLEARWAY_HD Box box() const {
-    Box box{start_, start_};
-    for (int k = 0; k < 3; ++k) {
-      (way_[k] < 0 ? box.lo : box.hi)[k] += way_[k];
-      (bend_[k] < 0 ? box.lo : box.hi)[k] += 0.25 * bend_[k];
-    }
-    return box;
-  }
+  CLEARWAY_HD Box box() const { return MotionParabola::box(start_, way_, bend_); }
 
   /// At most the squares of the distances to the triangles of a packet.
   CLEARWAY_HD void to_triangles(const TrianglePacket& packet,

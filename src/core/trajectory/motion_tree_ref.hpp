@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "clearway/box.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 
@@ -66,6 +67,26 @@ struct MotionParabola {
 
   /// What t (1 - t) is at the middle; 0 where there is none.
   CLEARWAY_HD double height() const { return middle_place * (1 - middle_place); }
+
+  /// The bend of start + t way + t (1 - t) bend, which is at `at_middle` in the middle.
+  CLEARWAY_HD Vec3 bend(const Vec3& start, const Vec3& way, const Vec3& at_middle) const {
+    const double top = height();
+    Vec3 out{};
+    for (int k = 0; k < 3 && top > 0; ++k) {
+      out[k] = (at_middle[k] - start[k] - middle_place * way[k]) / top;
+    }
+    return out;
+  }
+
+  /// Around such a curve.
+  CLEARWAY_HD static Box box(const Vec3& start, const Vec3& way, const Vec3& bend) {
+    Box box{start, start};
+    for (int k = 0; k < 3; ++k) {
+      (way[k] < 0 ? box.lo : box.hi)[k] += way[k];
+      (bend[k] < 0 ? box.lo : box.hi)[k] += 0.25 * bend[k];
+    }
+    return box;
+  }
 };
 
 /// A MotionTree where it lies, on the host or on a device. Does not own it.

@@ -4,8 +4,7 @@ namespace clearway {
 
 void BrickNearest::find(const Vec3& corner, double voxel, float* squared, std::uint32_t* nearest) {
   lattice_ = {corner, voxel};
-  squared_ = squared;
-  nearest_ = nearest;
+  nodes_ = {squared, nearest};
   constexpr std::uint32_t kLast = ModelFieldRef::kBrick;
   find_in({{0, 0, 0}, {kLast, kLast, kLast}}, {}, 0);
 }
@@ -70,42 +69,27 @@ std::span<const BrickNearest::Candidate> BrickNearest::narrowed(
 }
 
 void BrickNearest::find_among(const Part& part, std::span<const Candidate> candidates) {
-  for (std::uint32_t z = part.first[2]; z <= part.last[2]; ++z) {
-    for (std::uint32_t y = part.first[1]; y <= part.last[1]; ++y) {
-      for (std::uint32_t x = part.first[0]; x <= part.last[0]; ++x) {
-        const Vec3 at = lattice_.node(x, y, z);
-        std::size_t best = 0;
-        double least = squared_distance(candidates[0].point, at);
-        for (std::size_t i = 1; i < candidates.size(); ++i) {
-          const double here = squared_distance(candidates[i].point, at);
-          if (here < least) {
-            least = here;
-            best = i;
-          }
-        }
-        keep(x, y, z, least, candidates[best].index);
+  part.for_each_node([&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    const Vec3 at = lattice_.node(x, y, z);
+    std::size_t best = 0;
+    double least = squared_distance(candidates[0].point, at);
+    for (std::size_t i = 1; i < candidates.size(); ++i) {
+      const double here = squared_distance(candidates[i].point, at);
+      if (here < least) {
+        least = here;
+        best = i;
       }
     }
-  }
+    nodes_.keep(x, y, z, least, candidates[best].index);
+  });
 }
 
 void BrickNearest::find_in_tree(const Part& part) {
-  for (std::uint32_t z = part.first[2]; z <= part.last[2]; ++z) {
-    for (std::uint32_t y = part.first[1]; y <= part.last[1]; ++y) {
-      for (std::uint32_t x = part.first[0]; x <= part.last[0]; ++x) {
-        const ModelTree::Nearest nearest = tree_.nearest(lattice_.node(x, y, z), near_);
-        near_ = nearest.element;
-        keep(x, y, z, nearest.squared_distance, nearest.element);
-      }
-    }
-  }
-}
-
-void BrickNearest::keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared,
-                        std::uint32_t nearest) {
-  const std::size_t at = (z * ModelFieldRef::kRow + y) * ModelFieldRef::kRow + x;
-  squared_[at] = rounded_down(squared);
-  nearest_[at] = nearest;
+  part.for_each_node([&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    const ModelTree::Nearest nearest = tree_.nearest(lattice_.node(x, y, z), near_);
+    near_ = nearest.element;
+    nodes_.keep(x, y, z, nearest.squared_distance, nearest.element);
+  });
 }
 
 }  // namespace clearway

@@ -41,13 +41,10 @@ class BrickNearest {
                                       std::uint32_t level);
   void find_among(const Part& part, std::span<const Candidate> candidates);
   void find_in_tree(const Part& part);
-  void keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared,
-            std::uint32_t nearest);
 
   const ModelTree& tree_;
   BrickLattice lattice_{};
-  float* squared_ = nullptr;
-  std::uint32_t* nearest_ = nullptr;
+  BrickNodes nodes_;
   std::uint32_t near_ = 0;  ///< a point near the last place
   std::array<std::array<Candidate, kMostGathered>, kLevels> kept_;
 };

@@ -6,6 +6,7 @@
 
 #include "core/geometry/box.hpp"
 #include "core/geometry/predicate.hpp"
+#include "core/sweep/field/model_field_ref.hpp"
 
 namespace clearway {
 
@@ -104,5 +105,18 @@ struct BrickRival {
 inline float rounded_down(double squared) {
   return std::nextafterf(static_cast<float>(squared * (1 - 1e-12)), 0.0F);
 }
+
+/// What is found for the nodes of a brick: ModelFieldRef::kBrickNodes of both, [z][y][x].
+struct BrickNodes {
+  float* squared = nullptr;  ///< distances, rounded down
+  std::uint32_t* nearest = nullptr;
+
+  void keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared_distance,
+            std::uint32_t element) const {
+    const std::size_t at = (z * ModelFieldRef::kRow + y) * ModelFieldRef::kRow + x;
+    squared[at] = rounded_down(squared_distance);
+    nearest[at] = element;
+  }
+};
 
 }  // namespace clearway

@@ -73,8 +73,7 @@ void BrickTriangles::Candidates::close() {
 void BrickTriangles::find(const Vec3& corner, double voxel, float* squared,
                           std::uint32_t* nearest) {
   lattice_ = {corner, voxel};
-  squared_ = squared;
-  nearest_ = nearest;
+  nodes_ = {squared, nearest};
   constexpr std::uint32_t kLast = ModelFieldRef::kBrick;
   find_in({{0, 0, 0}, {kLast, kLast, kLast}}, nullptr, 0);
 }
@@ -137,7 +136,7 @@ void BrickTriangles::find_among(const BrickPart& part, const Candidates& among) 
   part.for_each_node([&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     const NearestLane near =
         nearest_lane(among.packets.data(), among.packet_count(), lattice_.node(x, y, z));
-    keep(x, y, z, near.squared, among.packets[near.packet].index[near.lane]);
+    nodes_.keep(x, y, z, near.squared, among.packets[near.packet].index[near.lane]);
   });
 }
 
@@ -145,15 +144,8 @@ void BrickTriangles::find_in_tree(const BrickPart& part) {
   part.for_each_node([&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     const TriangleTree::Nearest nearest = tree_.nearest(lattice_.node(x, y, z), near_);
     near_ = nearest.element;
-    keep(x, y, z, nearest.squared_distance, nearest.element);
+    nodes_.keep(x, y, z, nearest.squared_distance, nearest.element);
   });
-}
-
-void BrickTriangles::keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared,
-                          std::uint32_t nearest) {
-  const std::size_t at = (z * ModelFieldRef::kRow + y) * ModelFieldRef::kRow + x;
-  squared_[at] = rounded_down(squared);
-  nearest_[at] = nearest;
 }
 
 }  // namespace clearway

@@ -48,13 +48,10 @@ class BrickTriangles {
   static void narrow(const BrickPlace& place, const Candidates& among, Candidates& out);
   void find_among(const BrickPart& part, const Candidates& among);
   void find_in_tree(const BrickPart& part);
-  void keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared,
-            std::uint32_t nearest);
 
   const TriangleTree& tree_;
   BrickLattice lattice_{};
-  float* squared_ = nullptr;
-  std::uint32_t* nearest_ = nullptr;
+  BrickNodes nodes_;
   std::uint32_t near_ = 0;  ///< a triangle near the last place
   std::array<Candidates, kLevels> kept_;
 };
