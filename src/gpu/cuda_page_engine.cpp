@@ -112,10 +112,14 @@ void CudaPageEngine::enqueue(const Slot& slot, const CudaPagePlan& plan) const {
   slot.finished.record(stream);
 }
 
-PageResult CudaPageEngine::finish(std::uint32_t index) {
+void CudaPageEngine::wait(std::uint32_t slot) {
   search_->use_device();
+  slots_[slot].finished.synchronise();
+}
+
+PageResult CudaPageEngine::finish(std::uint32_t index) {
+  wait(index);
   const Slot& slot = slots_[index];
-  slot.finished.synchronise();
   const ResultRun run(slot.shape, search_->parts());
   const std::byte* found = slot.host_result;
   PageResult result = run.arrays.in(found, run.blocks);

@@ -23,6 +23,7 @@ class CudaPageEngine : public PageEngine {
   std::uint32_t slots() const final;
   std::span<std::byte> page(std::uint32_t slot) final;
   void start(std::uint32_t slot, const PageShape& shape) final;
+  void wait(std::uint32_t slot) final;
   PageResult finish(std::uint32_t slot) final;
 
   /// Taken on the device, without CUDA's context, and of page-locked memory on the host.

@@ -98,7 +98,7 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
   SearchResult result = run_pages(store, cells, pages, lanes, query, kind.needs().threads, progress,
                                   stages, &journal);
   report_stages(stages, report.seconds);
-  kind.report_search(engines, report, log);
+  kind.report_search({lanes.data(), lanes.size()}, report, log);
   return ended(store, kind, std::move(engines), {std::move(result), budget.write_bytes()},
                report.pinned_bytes);
 }

@@ -50,7 +50,6 @@ class Search {
         journal_(pending_, output, options_, log_),
         header_(result_header(store_, query_, options_)) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
-    if (!query.bodies.empty()) take_cpu_for_bodies();
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
@@ -96,13 +95,6 @@ class Search {
     report_.shard_share = shard_->share();
   }
 
-  void take_cpu_for_bodies() {
-    if (options_.device == Device::kAuto) {
-      log_.note("the CPU is taken: a vehicle of several bodies is searched there alone");
-    }
-    options_.device = Device::kCpu;
-  }
-
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
 
   /// Device kAuto goes on where the run that is resumed was.
@@ -117,14 +109,10 @@ class Search {
 
   Found find() {
     options_.threads = threads_or_all(options_.threads);
-    const bool gpu = query_.bodies.empty() && gpu_pays() && may_take_gpus(options_);
+    const bool gpu = gpu_pays() && may_take_gpus(options_);
     check_threads(options_.threads);
     if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
-    if (query_.bodies.empty()) {
-      choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
-    } else {
-      options_.engine = Engine::kSweep;
-    }
+    choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
     report_.engine = options_.engine;
     Found found =
         options_.engine == Engine::kKdtree
@@ -141,7 +129,7 @@ class Search {
     const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
     if (!fallback_allowed(options_) || other) return true;
     report_.estimate =
-        estimate_devices(workload_of(store_, query_), query_, options_.engine, options_.threads);
+        estimate_devices(workloads_of(store_, query_), query_, options_.engine, options_.threads);
     const auto [cpu, cuda] = *report_.estimate;
     if (cpu > cuda) return true;
     log_.note("the CPU is taken: by estimate it needs " + format_brief(cpu) +
@@ -180,10 +168,12 @@ class Search {
   std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] Device device) {
 #ifdef CLEARWAY_CUDA
     if (device == Device::kCuda) {
-      return cuda_kind(store_, query_, options_, [this] { return open_gpus(); });
+      const OpenGpus open = [this] { return open_gpus(); };
+      if (!query_.bodies.empty()) return cuda_body_kind(store_, query_, options_, open);
+      return cuda_kind(store_, query_, options_, open);
     }
 #endif
-    if (!query_.bodies.empty()) return std::make_unique<CpuBodyKind>(store_, query_, options_);
+    if (!query_.bodies.empty()) return cpu_body_kind(store_, query_, options_);
     if (options_.engine == Engine::kGrid) {
       return std::make_unique<CpuGridKind>(store_, query_, options_);
     }
@@ -192,6 +182,7 @@ class Search {
 
   /// Where the search needs them: they have been starting meanwhile. Throws NoGpu.
   DeviceChoice open_gpus() {
+    if (gpus_) return *gpus_;
     const Stopwatch waiting;
     options_.started->wait();
     DeviceChoice choice = choose_device(options_, log_);
@@ -199,6 +190,7 @@ class Search {
     report_.seconds.context = std::max(options_.started->seconds(), waiting.seconds());
     if (!choice.is_cuda()) throw NoGpu();
     report_.device_name = choice.name;
+    gpus_ = choice;
     return choice;
   }
 
@@ -252,6 +244,7 @@ class Search {
   RunJournal journal_;
   ResultHeader header_;
   std::optional<ShardCells> shard_;
+  std::optional<DeviceChoice> gpus_;  ///< once they are open
   SearchJournal* open_ = nullptr;
 };
 

@@ -67,11 +67,6 @@ struct PageInFlight {
   std::uint32_t slot;
 };
 
-struct SearchedPage {
-  PageInFlight page;
-  PageResult found;
-};
-
 /// The way of pages through one engine.
 class Lane {
  public:
@@ -96,26 +91,27 @@ class Lane {
 
   void run() {
     const ParallelScope scope;
-    const SerialStage taking, finishing;
+    const SerialStage taking, waiting;
     const auto taken =
         piece_of(scope, taking, [this](tbb::flow_control& flow) { return next_page(flow); });
     const auto started = piece_of(scope, [this](PageInFlight page) {
       start(page);
       return page;
     });
-    const auto finished =
-        piece_of(scope, finishing, [this](PageInFlight page) { return finish(page); });
-    const auto collected = piece_of(scope, [this](const SearchedPage& page) { collect(page); });
+    const auto waited = piece_of(scope, waiting, [this](PageInFlight page) {
+      engine_.wait(page.slot);
+      return page;
+    });
+    const auto collected = piece_of(scope, [this](PageInFlight page) { collect(page); });
     using Page = Handed<PageInFlight>;
-    using Searched = Handed<SearchedPage>;
     using Mode = tbb::filter_mode;
-    const Mode waiting = engine_.pages_alike() ? Mode::serial_out_of_order : Mode::parallel;
+    const Mode by_turns = engine_.pages_alike() ? Mode::serial_out_of_order : Mode::parallel;
     scope.begin();
     tbb::parallel_pipeline(engine_.slots(),
                            tbb::make_filter<void, Page>(Mode::serial_in_order, taken) &
                                tbb::make_filter<Page, Page>(Mode::parallel, started) &
-                               tbb::make_filter<Page, Searched>(waiting, finished) &
-                               tbb::make_filter<Searched, void>(Mode::parallel, collected));
+                               tbb::make_filter<Page, Page>(by_turns, waited) &
+                               tbb::make_filter<Page, void>(Mode::parallel, collected));
   }
 
  private:
@@ -140,14 +136,10 @@ class Lane {
     started_[page.slot] = true;
   }
 
-  SearchedPage finish(PageInFlight page) {
-    started_[page.slot] = false;
-    return {page, engine_.finish(page.slot)};
-  }
-
-  void collect(const SearchedPage& searched) {
-    const auto [page, slot] = searched.page;
-    const PageResult& found = searched.found;
+  void collect(PageInFlight in_flight) {
+    const auto [page, slot] = in_flight;
+    started_[slot] = false;
+    const PageResult found = engine_.finish(slot);
     const auto cells = pages_.cells_of(page);
     PageTimes& times = pages_.times[page];
     times.upload = found.upload;

@@ -62,7 +62,6 @@ TEST_CASE("bodies that contradict path or engine are refused by name") {
   };
   refused("searches one model", {.engine = Engine::kKdtree});
   refused("searches one model", {.engine = Engine::kGrid});
-  refused("on the CPU alone", {.device = Device::kCuda});
   vehicle.query.tolerance = 0.01;
   refused("tolerance");
   vehicle.query.model = {{0, 0, 0}};

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
 
 #include "clearway/clearway.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "search/devices.hpp"
+#include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 #include "support/store_fixture.hpp"
 
@@ -83,11 +86,18 @@ struct Vehicle {
     return out;
   }
 
+  /// Where there is a GPU too, and memory is not the question, there to the same bytes.
   Result run(const SearchOptions& options = {}) {
     SearchOptions how = options;
     how.threads = std::max(how.threads, 1);
     how.overwrite = true;
-    report = search(Store(folder / "scan.h5"), query, folder / "out.h5", how);
+    const Store store(folder / "scan.h5");
+    report = search(store, query, folder / "out.h5", how);
+    if (how.memory_bytes == SearchOptions().memory_bytes && may_take_gpus({})) {
+      how.device = Device::kCuda;
+      search(store, query, folder / "gpu.h5", how);
+      CHECK(bytes_of(folder / "gpu.h5") == bytes_of(folder / "out.h5"));
+    }
     return Result(folder / "out.h5");
   }
 

@@ -2,6 +2,7 @@
 #include "search/choice/device_estimate.hpp"
 
 #include <catch2/catch.hpp>
+#include <vector>
 
 using namespace clearway;
 
@@ -17,7 +18,7 @@ Workload work_of(double reached_points) {
 }
 
 bool pays(const Workload& work, const QueryParameters& query, int threads) {
-  const DeviceEstimate estimate = estimate_devices(work, query, Engine::kSweep, threads);
+  const DeviceEstimate estimate = estimate_devices({&work, 1}, query, Engine::kSweep, threads);
   return estimate.cuda < estimate.cpu;
 }
 
@@ -38,6 +39,16 @@ TEST_CASE("a GPU pays earlier with fewer threads and with clearances") {
   CHECK_FALSE(pays(work, query, 2));
   query.clearance = 0.1;
   CHECK(pays(work, query, 2));
+}
+
+TEST_CASE("bodies take as long as one after the other, and the GPU starts once") {
+  const std::vector<Workload> bodies(3, work_of(1e7));
+  const QueryParameters query{.radius = 0.1, .clearance = 0.5};
+  const DeviceEstimate one = estimate_devices({bodies.data(), 1}, query, Engine::kSweep, 4);
+  const DeviceEstimate all = estimate_devices(bodies, query, Engine::kAuto, 4);
+  CHECK(all.cpu == Approx(3 * one.cpu));
+  CHECK(all.cuda > one.cuda);
+  CHECK(all.cuda < 3 * one.cuda);
 }
 
 TEST_CASE("more threads need more points before a GPU is started ahead") {

@@ -42,6 +42,10 @@ class TestEngine final : public PageEngine {
     });
   }
 
+  void wait(std::uint32_t slot) override {
+    if (searches_[slot].valid()) searches_[slot].wait();
+  }
+
   PageResult finish(std::uint32_t slot) override {
     const std::uint32_t page = finished++;
     if (!searches_[slot].valid()) {

@@ -229,13 +229,11 @@ bool run(RunOptions& options) {
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
   prepare_device(options.search);
-  const bool may_use_gpus = options.vehicle.empty();
-  if (may_use_gpus) options.search.started = start_devices(options.search);
+  options.search.started = start_devices(options.search);
   if (options.vehicle.empty()) check_is_model(options.model);
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
-  if (may_use_gpus && !options.search.started)
-    options.search.started = start_devices(options.search, &store);
+  if (!options.search.started) options.search.started = start_devices(options.search, &store);
   if (const auto metres = metres_of_unit(store.length_unit())) {
     options.lengths.convert(*metres);
     options.model_options.environment_unit = *metres;

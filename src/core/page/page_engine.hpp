@@ -63,8 +63,12 @@ class PageEngine {
   /// Where it throws, nothing of the slot is in flight.
   virtual void start(std::uint32_t slot, const PageShape& shape) = 0;
 
-  /// Waits, where a GPU searches, for the answer, which stays valid until the slot is started
-  /// again. Throws what became of the search; the slot is then no longer in flight.
+  /// Waits, where a GPU searches, until finish() has nothing to wait for. Throws what became of the
+  /// search.
+  virtual void wait(std::uint32_t /*slot*/) {}
+
+  /// The answer, waited for, which stays valid until the slot is started again. Throws what became
+  /// of the search; the slot is then no longer in flight.
   virtual PageResult finish(std::uint32_t slot) = 0;
 };
 

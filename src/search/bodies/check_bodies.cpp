@@ -52,9 +52,6 @@ void check_bodies(const Query& query, const SearchOptions& options) {
                          " searches one model, and no vehicle of several bodies",
                      Remedy::kSweepEngine);
   }
-  if (options.device == Device::kCuda || !options.gpus.empty() || options.device_memory_bytes > 0) {
-    throw UsageError("a vehicle of several bodies is searched on the CPU alone");
-  }
   if (query.tolerance > 0) {
     throw UsageError("a tolerance and a vehicle of several bodies cannot be combined");
   }

@@ -20,13 +20,16 @@ constexpr double kPointsPerCore = 13e6;
 
 }  // namespace
 
-DeviceEstimate estimate_devices(const Workload& work, const QueryParameters& query, Engine engine,
-                                int threads) {
+DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
+                                Engine engine, int threads) {
   const bool distances = query.clearance > 0 || query.profile > 0;
-  const EngineEstimate on_cpu = estimate_on_cpu(work, threads);
-  const bool may_be_kdtree = engine == Engine::kAuto && !distances;
-  const double set =
-      may_be_kdtree ? std::min(on_cpu.sweep_seconds, on_cpu.kdtree_seconds) : on_cpu.sweep_seconds;
+  const bool may_be_kdtree = engine == Engine::kAuto && !distances && work.size() == 1;
+  double set = 0;
+  for (const Workload& one : work) {
+    const EngineEstimate on_cpu = estimate_on_cpu(one, threads);
+    set += may_be_kdtree ? std::min(on_cpu.sweep_seconds, on_cpu.kdtree_seconds)
+                         : on_cpu.sweep_seconds;
+  }
   const double cpu = (distances ? kDistances : 1) * set;
   return {cpu, kStart + cpu * threads / kCores};
 }

@@ -105,13 +105,28 @@ double path_length_of(std::span<const Pose> poses) {
   return length;
 }
 
+/// of: a query, or a body.
+template <typename ModelOwner>
+Workload workload_of_model(const PackedCloud& cloud, const QueryParameters& query,
+                           const ModelOwner& of, std::span<const Pose> poses) {
+  return workload_of(cloud, query, of.model.empty() ? Box{} : box_of(of.model),
+                     of.is_surface() ? kPointsOfTriangle * of.triangles.size() : of.model.size(),
+                     poses);
+}
+
 }  // namespace
 
 Workload workload_of(const PackedCloud& cloud, const Query& query) {
-  return workload_of(
-      cloud, query, query.model.empty() ? Box{} : box_of(query.model),
-      query.is_surface() ? kPointsOfTriangle * query.triangles.size() : query.model.size(),
-      query.poses);
+  return workload_of_model(cloud, query, query, query.poses);
+}
+
+std::vector<Workload> workloads_of(const PackedCloud& cloud, const Query& query) {
+  if (query.bodies.empty()) return {workload_of(cloud, query)};
+  std::vector<Workload> out;
+  for (const Body& body : query.bodies) {
+    out.push_back(workload_of_model(cloud, query, body, body.poses));
+  }
+  return out;
 }
 
 Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,

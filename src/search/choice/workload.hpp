@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "clearway/box.hpp"
 #include "clearway/query.hpp"
@@ -23,6 +24,9 @@ struct Workload {
 };
 
 Workload workload_of(const PackedCloud& cloud, const Query& query);
+
+/// Of a query with bodies one for each of them, else that of the model.
+std::vector<Workload> workloads_of(const PackedCloud& cloud, const Query& query);
 
 /// The same of a model of which only the box is known: with one point at least.
 Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, const Box& model,

@@ -2,53 +2,54 @@
 
 #include <algorithm>
 
-#include "core/util/format.hpp"
-#include "cpu/bodies/body_sweep_engine.hpp"
+#include "search/bodies/body_engine.hpp"
 #include "search/bodies/body_queries.hpp"
+#include "search/kinds/sweep_kind.hpp"
 
 namespace clearway {
 namespace {
 
-/// What cpu_sweep_kind()'s index is.
-BodyFilter filter_of(const PoseReach& reach, const Query& body) {
-  if (body.is_solid()) return &dynamic_cast<const SweepFilterOf<SolidTriangle>&>(reach);
-  if (body.is_surface()) return &dynamic_cast<const SweepFilterOf<Triangle>&>(reach);
-  return &dynamic_cast<const SweepFilterOf<Vec3>&>(reach);
+/// make: a body's kind of its query.
+template <typename Make>
+std::unique_ptr<PageEngineKind> body_kind(const StoreReader& store, const Query& query, Make make) {
+  std::vector<Query> queries = body_queries(query);
+  BodyKind::Kinds kinds;
+  for (const Query& body : queries) kinds.push_back(make(body));
+  return std::make_unique<BodyKind>(store, query, std::move(queries), std::move(kinds));
 }
 
 }  // namespace
 
-CpuBodyKind::CpuBodyKind(const StoreReader& store, const Query& query, const SearchOptions& options)
-    : PageEngineKind({.most_slots = static_cast<std::uint32_t>(options.threads) + kSlotsAhead,
-                      .threads = options.threads}),
+BodyKind::BodyKind(const StoreReader& store, const Query& query, std::vector<Query> queries,
+                   Kinds kinds)
+    : PageEngineKind(kinds.front()->needs()),
       store_(store),
       query_(query),
-      options_(options),
-      queries_(body_queries(query)) {
-  for (const Query& body : queries_) {
-    sweeps_.push_back(cpu_sweep_kind(store_, body, options_));
-    if (sweeps_.size() == 1) continue;
-    trees_.push_back(std::make_unique<QueryTrees>(body, options_.threads));
+      queries_(std::move(queries)),
+      kinds_(std::move(kinds)) {
+  const int threads = needs_.threads - needs_.waiting_threads;
+  for (std::size_t body = 1; body < queries_.size(); ++body) {
+    trees_.push_back(std::make_unique<QueryTrees>(queries_[body], threads));
   }
 }
 
 /// Of all bodies together.
-std::vector<PageEngineKind::IndexSize> CpuBodyKind::index_sizes() const {
-  std::vector<IndexSize> sizes = sweeps_.front()->index_sizes();
+std::vector<PageEngineKind::IndexSize> BodyKind::index_sizes() const {
+  std::vector<IndexSize> sizes = kinds_.front()->index_sizes();
   for (IndexSize& size : sizes) {
-    size.bytes *= sweeps_.size();
-    size.while_built *= sweeps_.size();
+    size.bytes *= kinds_.size();
+    size.while_built *= kinds_.size();
   }
   return sizes;
 }
 
-const PoseReach& CpuBodyKind::build_index(const QueryTrees& trees, std::uint64_t most_bytes) {
+const PoseReach& BodyKind::build_index(const QueryTrees& trees, std::uint64_t most_bytes) {
   reaches_.clear();
   first_nodes_.clear();
   std::uint32_t nodes = 0;
-  for (std::size_t body = 0; body < sweeps_.size(); ++body) {
+  for (std::size_t body = 0; body < kinds_.size(); ++body) {
     const QueryTrees& its = body == 0 ? trees : *trees_[body - 1];
-    reaches_.push_back(&sweeps_[body]->build_index(its, most_bytes / sweeps_.size()));
+    reaches_.push_back(&kinds_[body]->build_index(its, most_bytes / kinds_.size()));
     first_nodes_.push_back(nodes);
     nodes += static_cast<std::uint32_t>(its.motion.nodes().size());
   }
@@ -57,7 +58,7 @@ const PoseReach& CpuBodyKind::build_index(const QueryTrees& trees, std::uint64_t
 
 /// The cells of all bodies, each with the nodes of one body after the other, in the order in which
 /// the first of the bodies reaches them.
-std::vector<PlannedCell> CpuBodyKind::plan_cells(const PackedCloud& cloud, const PoseReach&) const {
+std::vector<PlannedCell> BodyKind::plan_cells(const PackedCloud& cloud, const PoseReach&) const {
   struct Reached {
     PlannedCell cell;
     std::uint32_t first_pose = ~std::uint32_t{0};
@@ -83,7 +84,7 @@ std::vector<PlannedCell> CpuBodyKind::plan_cells(const PackedCloud& cloud, const
   return cells;
 }
 
-std::uint64_t CpuBodyKind::most_poses(const MotionTree&, std::span<const PlannedCell> cells) const {
+std::uint64_t BodyKind::most_poses(const MotionTree&, std::span<const PlannedCell> cells) const {
   std::uint64_t most = 0;
   for (const PlannedCell& cell : cells) {
     std::uint64_t poses = 0;
@@ -97,44 +98,81 @@ std::uint64_t CpuBodyKind::most_poses(const MotionTree&, std::span<const Planned
   return most;
 }
 
-std::uint64_t CpuBodyKind::index_bytes() const {
+void BodyKind::resolve_devices() {
+  for (const auto& kind : kinds_) kind->resolve_devices();
+  needs_ = kinds_.front()->needs();
+}
+
+std::uint64_t BodyKind::index_bytes() const {
   std::uint64_t bytes = 0;
-  for (const auto& sweep : sweeps_) bytes += sweep->index_bytes();
+  for (const auto& kind : kinds_) bytes += kind->index_bytes();
   for (const auto& trees : trees_) bytes += trees->allocated_bytes();
   return bytes;
 }
 
-std::uint64_t CpuBodyKind::host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const {
-  const auto threads = static_cast<std::uint32_t>(options_.threads);
-  return layout.slots * PagePool::slot_bytes(store_, query_, layout) +
-         std::min(layout.slots, threads) *
-             BodySweepEngine::worker_bytes(store_, query_, most_poses) +
-         BodySweepEngine::profile_bytes(store_, query_, layout, most_poses);
+std::uint64_t BodyKind::host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const {
+  std::uint64_t bytes =
+      needs_.devices * BodyEngine::answer_bytes(store_, query_, layout, most_poses);
+  for (const auto& kind : kinds_) bytes += kind->host_bytes(layout, most_poses);
+  return bytes;
 }
 
-void CpuBodyKind::report_index(SearchReport& report, const MessageLog& log) const {
-  for (const auto& sweep : sweeps_) {
+std::uint64_t BodyKind::device_bytes(const SlotLayout& layout) const {
+  std::uint64_t bytes = 0;
+  for (const auto& kind : kinds_) bytes += kind->device_bytes(layout);
+  return bytes;
+}
+
+void BodyKind::report_index(SearchReport& report, const MessageLog& log) const {
+  for (const auto& kind : kinds_) {
     SearchReport of_body;
-    sweep->report_index(of_body, log);
+    kind->report_index(of_body, log);
     report.field_voxel = std::max(report.field_voxel, of_body.field_voxel);
   }
 }
 
-PageEngines CpuBodyKind::make(const SlotLayout& layout) {
-  std::vector<SweptBody> bodies;
-  for (std::size_t body = 0; body < reaches_.size(); ++body) {
-    bodies.push_back({filter_of(*reaches_[body], queries_[body]), query_.bodies[body].path_pose,
-                      first_nodes_[body]});
+PageEngines BodyKind::make(const SlotLayout& layout) {
+  std::vector<std::vector<SearchedBody>> of_device(needs_.devices);
+  for (std::size_t body = 0; body < kinds_.size(); ++body) {
+    PageEngines engines = kinds_[body]->make(layout);
+    for (std::size_t device = 0; device < engines.size(); ++device) {
+      of_device[device].push_back(
+          {std::move(engines[device]), query_.bodies[body].path_pose, first_nodes_[body]});
+    }
   }
   PageEngines engines;
-  engines.push_back(std::make_unique<BodySweepEngine>(store_, query_, std::move(bodies), layout));
+  for (auto& bodies : of_device) {
+    engines.push_back(std::make_unique<BodyEngine>(store_, query_, std::move(bodies), layout));
+  }
   return engines;
 }
 
-void CpuBodyKind::report_search(const PageEngines& engines, SearchReport& report,
-                                const MessageLog& log) const {
-  SweepKindOf<Vec3>::report_statistics(
-      dynamic_cast<const BodySweepEngine&>(*engines.front()).statistics(), report, log);
+void BodyKind::report_search(EngineList engines, SearchReport& report,
+                             const MessageLog& log) const {
+  for (std::size_t body = 0; body < kinds_.size(); ++body) {
+    std::vector<const PageEngine*> of_body;
+    for (const PageEngine* engine : engines) {
+      of_body.push_back(&dynamic_cast<const BodyEngine&>(*engine).engine(body));
+    }
+    SearchReport taken;
+    kinds_[body]->report_search(of_body, taken, log);
+    report.peak_device_bytes += taken.peak_device_bytes;
+    report.pinned_bytes += taken.pinned_bytes;
+  }
 }
+
+std::unique_ptr<PageEngineKind> cpu_body_kind(const StoreReader& store, const Query& query,
+                                              const SearchOptions& options) {
+  return body_kind(store, query,
+                   [&](const Query& body) { return cpu_sweep_kind(store, body, options); });
+}
+
+#ifdef CLEARWAY_CUDA
+std::unique_ptr<PageEngineKind> cuda_body_kind(const StoreReader& store, const Query& query,
+                                               const SearchOptions& options, const OpenGpus& open) {
+  return body_kind(store, query,
+                   [&](const Query& body) { return cuda_kind(store, body, options, open); });
+}
+#endif
 
 }  // namespace clearway

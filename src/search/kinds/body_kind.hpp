@@ -3,16 +3,20 @@
 #include <memory>
 #include <vector>
 
-#include "search/kinds/sweep_kind.hpp"
+#include "search/kinds/cuda_kind.hpp"
+#include "search/kinds/page_engine_kind.hpp"
 #include "search/query_trees.hpp"
 
 namespace clearway {
 
-/// The sweep on the CPU of a query with bodies: a model field and trees for each of them.
-class CpuBodyKind final : public PageEngineKind {
+/// The sweep of a query with bodies: an engine with its own index for each of them, on any device.
+class BodyKind final : public PageEngineKind {
  public:
-  /// options.threads is not 0. All references outlive it.
-  CpuBodyKind(const StoreReader& store, const Query& query, const SearchOptions& options);
+  using Kinds = std::vector<std::unique_ptr<PageEngineKind>>;
+
+  /// query: with all bodies; queries, kinds: of each body by itself, all on the same devices.
+  /// References outlive it.
+  BodyKind(const StoreReader& store, const Query& query, std::vector<Query> queries, Kinds kinds);
 
   /// The trees that it is given are those of the first body.
   const Query& whose_trees(const Query&) const override { return queries_.front(); }
@@ -22,22 +26,34 @@ class CpuBodyKind final : public PageEngineKind {
                                       const PoseReach& reach) const override;
   std::uint64_t most_poses(const MotionTree& motion,
                            std::span<const PlannedCell> cells) const override;
+  void resolve_devices() override;
   std::uint64_t index_bytes() const override;
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
+  std::uint64_t device_bytes(const SlotLayout& layout) const override;
   void report_index(SearchReport& report, const MessageLog& log) const override;
   PageEngines make(const SlotLayout& layout) override;
-  void report_search(const PageEngines& engines, SearchReport& report,
+  void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override;
+  EngineEnd end(PageEngines engines) const override {
+    return kinds_.front()->end(std::move(engines));
+  }
 
  private:
   const StoreReader& store_;
   const Query& query_;
-  const SearchOptions& options_;
-  std::vector<Query> queries_;                           ///< by body
-  std::vector<std::unique_ptr<QueryTrees>> trees_;       ///< of all bodies but the first
-  std::vector<std::unique_ptr<PageEngineKind>> sweeps_;  ///< by body
-  std::vector<const PoseReach*> reaches_;                ///< likewise, once there is an index
-  std::vector<std::uint32_t> first_nodes_;               ///< of each body's motion nodes
+  const std::vector<Query> queries_;
+  const Kinds kinds_;
+  std::vector<std::unique_ptr<QueryTrees>> trees_;  ///< of all bodies but the first
+  std::vector<const PoseReach*> reaches_;           ///< by body, once there is an index
+  std::vector<std::uint32_t> first_nodes_;          ///< of each body's motion nodes
 };
+
+/// The sweep's form on the CPU; options.threads is not 0. All references outlive it.
+std::unique_ptr<PageEngineKind> cpu_body_kind(const StoreReader& store, const Query& query,
+                                              const SearchOptions& options);
+
+/// As cuda_kind(); `open` is called for every body, and always chooses the same.
+std::unique_ptr<PageEngineKind> cuda_body_kind(const StoreReader& store, const Query& query,
+                                               const SearchOptions& options, const OpenGpus& open);
 
 }  // namespace clearway

@@ -92,9 +92,9 @@ class Gpus {
 
 /// Adds up what the engines took, and their statistics.
 template <typename Engine, typename Statistics>
-Statistics report_of(const PageEngines& engines, SearchReport& report) {
+Statistics report_of(EngineList engines, SearchReport& report) {
   Statistics total;
-  for (const auto& one : engines) {
+  for (const PageEngine* one : engines) {
     const auto& on_device = dynamic_cast<const Engine&>(*one);
     total.add(on_device.statistics());
     report.peak_device_bytes = std::max(report.peak_device_bytes, on_device.device_bytes());
@@ -128,7 +128,7 @@ class CudaSweepKindOf final : public SweepKindOf<Element> {
     });
   }
   EngineEnd end(PageEngines engines) const override { return gpus_.end(std::move(engines)); }
-  void report_search(const PageEngines& engines, SearchReport& report,
+  void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override {
     this->report_statistics(report_of<CudaSweepEngineOf<Element>, SweepStatistics>(engines, report),
                             report, log);
@@ -163,7 +163,7 @@ class CudaGridKind final : public GridKind {
     });
   }
   EngineEnd end(PageEngines engines) const override { return gpus_.end(std::move(engines)); }
-  void report_search(const PageEngines& engines, SearchReport& report,
+  void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override {
     report_statistics(report_of<CudaGridEngine, GridStatistics>(engines, report), log);
   }

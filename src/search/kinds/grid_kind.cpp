@@ -32,8 +32,7 @@ PageEngines CpuGridKind::make(const SlotLayout& layout) {
   return engines;
 }
 
-void CpuGridKind::report_search(const PageEngines& engines, SearchReport&,
-                                const MessageLog& log) const {
+void CpuGridKind::report_search(EngineList engines, SearchReport&, const MessageLog& log) const {
   report_statistics(dynamic_cast<const GridCpuEngine&>(*engines.front()).statistics(), log);
 }
 

@@ -45,7 +45,7 @@ class CpuGridKind final : public GridKind {
 
   std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
   PageEngines make(const SlotLayout& layout) override;
-  void report_search(const PageEngines& engines, SearchReport& report,
+  void report_search(EngineList engines, SearchReport& report,
                      const MessageLog& log) const override;
 };
 

@@ -19,6 +19,7 @@ namespace clearway {
 
 /// One for each device.
 using PageEngines = std::vector<std::unique_ptr<PageEngine>>;
+using EngineList = std::span<const PageEngine* const>;
 
 /// Engines that are taken down on threads of their own. Its end waits for them.
 using EngineEnd = std::vector<std::future<void>>;
@@ -89,7 +90,7 @@ class PageEngineKind {
   /// Slots of the layout are those of each device. The index outlives the engines' searches.
   virtual PageEngines make(const SlotLayout& layout) = 0;
   /// Called once after the last page: for the log, and for what only the engines can report.
-  virtual void report_search(const PageEngines& engines, SearchReport& report,
+  virtual void report_search(EngineList engines, SearchReport& report,
                              const MessageLog& log) const = 0;
   /// Takes the engines down, beside the caller where that takes long.
   virtual EngineEnd end([[maybe_unused]] PageEngines engines) const {

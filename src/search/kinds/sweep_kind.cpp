@@ -107,7 +107,7 @@ PageEngines CpuSweepKindOf<Element>::make(const SlotLayout& layout) {
 }
 
 template <typename Element>
-void CpuSweepKindOf<Element>::report_search(const PageEngines& engines, SearchReport& report,
+void CpuSweepKindOf<Element>::report_search(EngineList engines, SearchReport& report,
                                             const MessageLog& log) const {
   this->report_statistics(
       dynamic_cast<const SweepEngineOf<Element>&>(*engines.front()).statistics(), report, log);

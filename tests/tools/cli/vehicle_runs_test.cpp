@@ -67,18 +67,18 @@ struct Yard {
 
 }  // namespace
 
-TEST_CASE("a vehicle is searched on the CPU and says so") {
+TEST_CASE("a vehicle is searched on a GPU too, to the same bytes") {
   const Yard yard;
-  const Outcome found = yard.run("--radius 0.2 -o out.h5 --json");
-  REQUIRE(found.exit_code == 0);
-  CHECK_THAT(found.err, Contains("the CPU is taken: a vehicle of several bodies"));
-  CHECK(json::parse(found.out)["device"] == "cpu");
-  CHECK_THAT(yard.run("--radius 0.2 -o out.h5 --device cpu").err, !Contains("the CPU is taken"));
-  for (const char* option : {"--device cuda", "--gpus 0", "--device-memory 1G"}) {
-    const Outcome refused = yard.run(std::string("--radius 0.2 -o out.h5 ") + option);
-    CHECK(refused.exit_code == 2);
-    CHECK_THAT(refused.err, Contains("--vehicle: a vehicle of several bodies"));
+  const std::string query = "--radius 0.2 --first-pose --clearance 0.5 --profile 0.5 ";
+  REQUIRE(yard.run(query + "-o cpu.h5 --device cpu").exit_code == 0);
+  const Outcome cuda = yard.run(query + "-o cuda.h5 --device cuda --json");
+  if (cuda.exit_code == 0) {
+    CHECK(json::parse(cuda.out)["device"] == "cuda");
+    CHECK(bytes_of(yard.folder / "cuda.h5") == bytes_of(yard.folder / "cpu.h5"));
+  } else {
+    CHECK_THAT(cuda.err, Contains("CUDA"));
   }
+  CHECK_THAT(yard.run("--radius 0.2 -o out.h5 --engine grid").err, Contains("--vehicle: engine"));
 }
 
 TEST_CASE("shards of a vehicle merge to the bytes of its whole run") {

@@ -124,8 +124,10 @@ std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions&
   header.model_points = points.count;
   header.model_triangles = points.triangles;
   header.model_hash = points.hash;
+  const std::uint64_t estimated =
+      points.triangles > 0 ? kPointsOfTriangle * points.triangles : points.count;
   return named(run.environment.key, [&] {
-    return estimate_.shards(options, {{points.box, points.count, path.poses}});
+    return estimate_.shards(options, {{points.box, estimated, path.poses}});
   });
 }
 

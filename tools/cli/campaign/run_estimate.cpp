@@ -13,13 +13,13 @@ std::uint32_t RunEstimate::shards(const RunOptions& run,
                                   const std::vector<EstimatedModel>& models) {
   if (!is_asked_for()) return 1;
   if (!store_ || store_->path() != run.environment) store_.emplace(run.environment);
-  double needed = 0;
+  std::vector<Workload> work;
   for (const auto& [box, points, poses] : models) {
-    const Workload work = workload_of(store_->reader(), run.query, box, points, poses);
-    const DeviceEstimate seconds =
-        estimate_devices(work, run.query, run.search.engine, std::max(run.search.threads, 1));
-    needed += run.search.device == Device::kCuda ? seconds.cuda : seconds.cpu;
+    work.push_back(workload_of(store_->reader(), run.query, box, points, poses));
   }
+  const DeviceEstimate seconds =
+      estimate_devices(work, run.query, run.search.engine, std::max(run.search.threads, 1));
+  const double needed = run.search.device == Device::kCuda ? seconds.cuda : seconds.cpu;
   return static_cast<std::uint32_t>(
       std::clamp(std::ceil(needed / shard_seconds_), 1.0, double{Shard::kMost}));
 }

@@ -135,10 +135,6 @@ std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& f
 }
 
 void check_vehicle_search(const SearchOptions& options) {
-  if (options.device == Device::kCuda || !options.gpus.empty() || options.device_memory_bytes > 0) {
-    throw UsageError(
-        "--vehicle: a vehicle of several bodies is searched on the CPU alone; give --device cpu");
-  }
   if (options.engine == Engine::kGrid || options.engine == Engine::kKdtree) {
     throw UsageError(std::string("--vehicle: engine ") + clearway::name_of(options.engine) +
                          " searches one model, and no vehicle of several bodies",
