@@ -34,8 +34,9 @@ class ProfileTask {
     const auto part = static_cast<std::uint32_t>(task / kNodeParts % cell_parts);
     const auto listed = static_cast<std::uint32_t>(task / kNodeParts / cell_parts);
     const std::uint32_t cell = cell_of_node(listed);
-    const std::uint32_t planned =
-        page_.nodes(page_.cell(cell))[listed - page_.cell(cell).first_node];
+    const PageCell& searched = page_.cell(cell);
+    if (listed - searched.first_node >= searched.node_count) return;  // of another body
+    const std::uint32_t planned = page_.nodes(searched)[listed - searched.first_node];
     std::uint32_t node = 0;
     if (part_of_node(planned, node_part, node) && search_.enter(cell, part)) search_.search(node);
   }
@@ -44,7 +45,7 @@ class ProfileTask {
   static constexpr std::uint32_t kNodeLevels = 3;
   static constexpr std::uint32_t kNodeParts = 1U << kNodeLevels;
 
-  /// The cell whose planned nodes hold that of the page's list. All cells have some.
+  /// The cell whose planned nodes hold that of the page's list, if any does.
   CLEARWAY_HD std::uint32_t cell_of_node(std::uint32_t listed) const {
     std::uint32_t begin = 0, end = page_.shape.cells;
     while (end - begin > 1) {
