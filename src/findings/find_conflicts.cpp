@@ -239,8 +239,7 @@ Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
   CallbackProgress progress(options.progress, options.stop);
   const int threads =
       options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
-  const ThreadLimit limit(threads);
-  return tbb::task_arena(threads).execute(
+  return ThreadLimit(threads).run(
       [&] { return ConflictSearch(result, poses, options, progress).run(conflict_of); });
 }
 

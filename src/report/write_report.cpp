@@ -1,4 +1,3 @@
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
+#include "io/system/thread_limit.hpp"
 #include "io/system/xxh64.hpp"
 #include "io/trajectory/content_hash.hpp"
 #include "report/check_inputs.hpp"
@@ -262,9 +262,8 @@ ReportSummary write_report(const Result& result, const Store& store, const std::
   check_report_inputs(result, store, model, poses, options);
   PendingFile file(output, options.overwrite);
   const int threads = options.conflicts.threads;
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   ReportSummary summary;
-  arena.execute([&] {
+  ThreadLimit(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()).run([&] {
     Report report(result, store, model, poses, options);
     summary = report.write(file.partial());
   });

@@ -21,8 +21,7 @@ template <typename Body>
 auto in_threads(int threads, const Body& body) {
   threads = threads_or_all(threads);
   check_threads(threads);
-  const ThreadLimit limit(threads);
-  return tbb::task_arena(threads).execute(body);
+  return ThreadLimit(threads).run(body);
 }
 
 }  // namespace clearway

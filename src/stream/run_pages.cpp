@@ -187,7 +187,7 @@ SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> ce
   progress.begin("search", points_of(cloud, cells), "points");
   const Clock::time_point begin = Clock::now();
   Pages shared{cloud, IgnoredPoints(cloud, query), cells, pages, progress, answer, journal};
-  tbb::task_arena(threads).execute([&] { run_lanes(shared, engines); });
+  limit.run([&] { run_lanes(shared, engines); });
   times = stage_times(shared.times);
   times.total = std::chrono::duration<double>(Clock::now() - begin).count();
   progress.end();

@@ -202,8 +202,7 @@ WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
                            std::uint64_t memory_bytes, Progress& progress,
                            std::span<const double> chainage, int threads) {
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
-  const ThreadLimit limit(threads);
-  return tbb::task_arena(threads).execute(
+  return ThreadLimit(threads).run(
       [&] { return write_tables(store, answer, header, path, memory_bytes, progress, chainage); });
 }
 

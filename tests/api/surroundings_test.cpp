@@ -98,11 +98,13 @@ class Captured {
 void use_all(const ApiScene& scene) {
   const auto input = scene.folder / "wall.las", site = scene.folder / "site.h5",
              output = scene.folder / "out.h5", damaged = scene.folder / "damaged.h5";
-  convert({input}, site, {.cell_points = 64, .threads = 1});
+  const int more = 8;  // than the caller lets oneTBB have
+  convert({input}, site, {.cell_points = 64, .threads = more});
   CHECK_THROWS_AS(convert({input}, site), UsageError);
   const Store store(site);
+  search(store, scene.query, output, {.threads = more, .shard = Shard{1, 2}, .overwrite = true});
   for (const Engine engine : {Engine::kSweep, Engine::kGrid, Engine::kKdtree}) {
-    search(store, scene.query, output, {.engine = engine, .threads = 1, .overwrite = true});
+    search(store, scene.query, output, {.engine = engine, .threads = more, .overwrite = true});
   }
   CHECK_THROWS_AS(search(store, scene.query, output), UsageError);
   CHECK(Result(output).xyz().size() == Result(output).size());

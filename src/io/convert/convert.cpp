@@ -292,9 +292,7 @@ class Conversion {
 ConversionReport convert_scans(const ConversionOptions& options, Progress& progress) {
   check_options(options);
   const int threads = affordable_threads(options);
-  const ThreadLimit limit(threads);
-  return tbb::task_arena(threads).execute(
-      [&] { return Conversion(options, threads, progress).run(); });
+  return ThreadLimit(threads).run([&] { return Conversion(options, threads, progress).run(); });
 }
 
 }  // namespace clearway

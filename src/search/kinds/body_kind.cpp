@@ -9,6 +9,17 @@
 namespace clearway {
 namespace {
 
+/// A slot of a GPU has the page once for each body, and takes as much longer to make. A page is
+/// searched for as much longer too, so that fewer are under way.
+constexpr std::uint32_t kFewestSlotsOfGpu = 8;
+
+PageEngineNeeds needs_of_bodies(PageEngineNeeds needs, std::size_t bodies) {
+  if (!needs.on_gpu) return needs;
+  const auto fewer = static_cast<std::uint32_t>(needs.most_slots / bodies);
+  needs.most_slots = std::min(needs.most_slots, std::max(fewer, kFewestSlotsOfGpu));
+  return needs;
+}
+
 /// make: a body's kind of its query.
 template <typename Make>
 std::unique_ptr<PageEngineKind> body_kind(const StoreReader& store, const Query& query, Make make) {
@@ -22,7 +33,7 @@ std::unique_ptr<PageEngineKind> body_kind(const StoreReader& store, const Query&
 
 BodyKind::BodyKind(const StoreReader& store, const Query& query, std::vector<Query> queries,
                    Kinds kinds)
-    : PageEngineKind(kinds.front()->needs()),
+    : PageEngineKind(needs_of_bodies(kinds.front()->needs(), kinds.size())),
       store_(store),
       query_(query),
       queries_(std::move(queries)),
@@ -100,7 +111,7 @@ std::uint64_t BodyKind::most_poses(const MotionTree&, std::span<const PlannedCel
 
 void BodyKind::resolve_devices() {
   for (const auto& kind : kinds_) kind->resolve_devices();
-  needs_ = kinds_.front()->needs();
+  needs_ = needs_of_bodies(kinds_.front()->needs(), kinds_.size());
 }
 
 std::uint64_t BodyKind::index_bytes() const {

@@ -1,7 +1,6 @@
 #include "search/shard/cell_work.hpp"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "core/sweep/tolerance.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "cpu/cell_search.hpp"
+#include "io/system/thread_limit.hpp"
 #include "stream/plan.hpp"
 
 namespace clearway {
@@ -88,7 +88,7 @@ std::vector<std::uint64_t> cell_work_of(const PackedCloud& cloud, const Query& q
         static_cast<std::uint64_t>(work_of(cloud, filter.get(), cells[i], most_blocks));
   });
   scope.begin();
-  tbb::task_arena(threads).execute([&] { tbb::parallel_for(std::size_t{0}, cells.size(), look); });
+  ThreadLimit(threads).run([&] { tbb::parallel_for(std::size_t{0}, cells.size(), look); });
   return work;
 }
 
