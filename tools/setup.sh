@@ -30,6 +30,9 @@ install_missing_packages() {
 }
 
 # One folder for the demo and the tests, with the same options: what one has built, the other keeps.
+# Kernels are compiled for the GPU that is here, or where there is none for one kind of them.
 configure_release() {
-  cmake --preset release -DCLEARWAY_WERROR=ON >/dev/null
+  local architecture=90-real
+  if nvidia-smi >/dev/null 2>&1; then architecture=native; fi
+  cmake --preset release -DCLEARWAY_WERROR=ON "-DCMAKE_CUDA_ARCHITECTURES=$architecture" >/dev/null
 }

@@ -1,22 +1,53 @@
 #!/usr/bin/env bash
 # Runs the CUDA engines on a small scene under compute-sanitizer: memcheck, racecheck and initcheck.
-# Usage: tools/bench/gpu_sanitize.sh PROGRAM FOLDER
+# Usage: tools/bench/gpu_sanitize.sh PROGRAM FOLDER [WORDS: only questions that contain them]
 set -uo pipefail
-program=$1 folder=$2 failed=0
+program=$1 folder=$2 only=${3:-} failed=0
 "$program" scene hall -o "$folder" --points 20000 --model-points 2000 --poses 200 --force >/dev/null 2>&1 || exit 1
 "$program" convert "$folder/environment.las" -o "$folder/site.h5" --cell-points 1000 --force >/dev/null 2>&1 || exit 1
-ask=(run --env "$folder/site.h5" --model "$folder/model.ply" --trajectory "$folder/trajectory.txt" --radius 0.1
+cat >"$folder/box.off" <<'BOX'
+OFF
+8 6 0
+-2 -0.8 0
+2 -0.8 0
+2 0.8 0
+-2 0.8 0
+-2 -0.8 1.4
+2 -0.8 1.4
+2 0.8 1.4
+-2 0.8 1.4
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+BOX
+echo '{"bodies": [{"name": "front", "model": "box.off", "at": 3}, {"name": "middle", "model": "model.ply", "pivots": [2, -2]}]}' \
+  >"$folder/vehicle.json"
+ask=(run --env "$folder/site.h5" --trajectory "$folder/trajectory.txt" --radius 0.1
   -o "$folder/out.h5" --force --device cuda --device-memory 256M)
+points="--model $folder/model.ply"
+surface="--model $folder/box.off --model-as surface"
+solid="--model $folder/box.off --model-as solid"
+vehicle="--vehicle $folder/vehicle.json"
+questions=("$points --engine sweep" "$points --engine sweep --first-pose" "$points --engine sweep --between-poses"
+  "$points --engine sweep --clearance 0.3" "$points --engine sweep --clearance 0.3 --first-pose"
+  "$points --engine sweep --between-poses --first-pose" "$points --engine sweep --profile 0.5"
+  "$points --engine grid" "$points --engine grid --first-pose" "$points --engine grid --precision float")
+for model in "$surface" "$solid" "$vehicle"; do
+  questions+=("$model --first-pose" "$model --clearance 0.3" "$model --profile 0.5")
+done
 for tool in memcheck racecheck initcheck; do
-  for mode in "--engine sweep" "--engine sweep --first-pose" "--engine sweep --between-poses" "--engine sweep --clearance 0.3" \
-    "--engine sweep --clearance 0.3 --first-pose" "--engine sweep --between-poses --first-pose" \
-    "--engine grid" "--engine grid --first-pose" "--engine grid --precision float"; do
+  for question in "${questions[@]}"; do
+    [[ "$question" == *"$only"* ]] || continue
+    told=${question//"$folder/"/}
     # shellcheck disable=SC2086
-    if log=$(compute-sanitizer --tool "$tool" --error-exitcode 9 "$program" "${ask[@]}" $mode 2>&1); then
-      echo "$tool, $mode: clean"
+    if log=$(compute-sanitizer --tool "$tool" --error-exitcode 9 "$program" "${ask[@]}" $question 2>&1); then
+      echo "$tool, $told: clean"
     else
       failed=1
-      echo "$tool, $mode: $(echo "$log" | grep -E '=====|error' | head -20)"
+      echo "$tool, $told: $(echo "$log" | grep -E '=====|error' | head -20)"
     fi
   done
 done

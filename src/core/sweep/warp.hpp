@@ -26,6 +26,13 @@ struct CudaWarp {
 #endif
   }
 
+  /// Before lanes write what others may still read outside of a step.
+  CLEARWAY_HD static void sync() {
+#ifdef __CUDA_ARCH__
+    __syncwarp();
+#endif
+  }
+
   /// The lanes for which `test` is true, as bits.
   template <typename Test>
   CLEARWAY_HD static std::uint32_t ballot([[maybe_unused]] Test test) {
@@ -107,6 +114,8 @@ struct HostWarp {
   static void each(Step step) {
     for (std::uint32_t lane = 0; lane < kWarpLanes; ++lane) step(lane);
   }
+
+  static void sync() {}
 
   template <typename Test>
   static std::uint32_t ballot(Test test) {

@@ -52,6 +52,7 @@ class ProfileBlocks {
     if (part * kPartBlocks >= blocks) return false;
     const std::uint32_t left = blocks - part * kPartBlocks;
     count_ = left < kPartBlocks ? left : kPartBlocks;
+    Warp::sync();
     Warp::each([&](std::uint32_t lane) {
       const std::uint32_t first = lane * kWarpLanes;
       const std::uint32_t of_word = first < count_ ? count_ - first : 0;
@@ -144,6 +145,7 @@ class ProfileBlocks {
     nearest_squared_ = kInfinity;
     PerLane<double> upper;
     PerLane<double> squared_lower;
+    Warp::sync();  // still_open() may have ended without a ballot
     Warp::each([&](std::uint32_t lane) {
       shared_.open[level + 1][lane] = 0;
       upper[lane] = kInfinity;
