@@ -19,3 +19,4 @@
 #include "clearway/shard.hpp"       // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export
+#include "clearway/vehicle.hpp"     // IWYU pragma: export

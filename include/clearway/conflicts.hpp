@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "clearway/body.hpp"
 #include "clearway/box.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
@@ -35,6 +37,9 @@ struct ConflictOptions {
   int threads = 0;  ///< 0: all cores
   ProgressCallback progress = nullptr;
   StopFlag stop = nullptr;
+  /// Of a vehicle's result: its bodies, those of the search, which outlive the call. Each conflict
+  /// is seen from its body then. Without them sides are unknown, and places are seen from the path.
+  std::span<const Body> bodies = {};
 };
 
 /// Colliding points that hang together.
@@ -58,10 +63,11 @@ struct Conflict {
   Side side = Side::kUnknown;  ///< of the nearest point, or else of the centroid at the first pose
   /// Of the same place, metres from the pose's position: to the left along the model's own axis,
   /// and up. The model's box is not needed. None where the pose's rotation cannot be inverted.
+  /// With ConflictOptions::bodies, of the pose that the conflict's body has there.
   std::optional<double> lateral = {}, height = {};
   std::uint64_t group = 0;  ///< smallest source of the whole group, before it was cut
   /// Of a vehicle's result, as an index of Result::bodies(): the one that has the least distance,
-  /// or else the one that touches its smallest source of the first pose. Its side is not known.
+  /// or else the one that touches its smallest source of the first pose.
   std::optional<std::uint32_t> body = {};
 };
 
@@ -78,8 +84,8 @@ struct Conflicts {
 
 /// Groups the colliding points of a result. poses: those of the search. conflict_of: where given,
 /// becomes the id of each row of the result, 0 for points of small groups. Throws InputError for
-/// poses of another search, UsageError for a result without first poses; Interrupted when asked to
-/// stop.
+/// poses or bodies of another search, UsageError for a result without first poses; Interrupted when
+/// asked to stop.
 Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
                          const ConflictOptions& options = {},
                          std::vector<std::uint32_t>* conflict_of = nullptr);

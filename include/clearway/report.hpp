@@ -37,6 +37,7 @@ struct ReportOptions {
   std::vector<double> classes = {};
   std::uint64_t max_points = 1'000'000;  ///< environment points on the page at most
   /// How conflicts are found; memory, threads, progress and stop flag hold for all of the report.
+  /// Its bodies do not count, those below do.
   ConflictOptions conflicts = {};
   PoseLabels labels = {};              ///< of the poses, where the trajectory has them
   std::vector<Message> warnings = {};  ///< of the inputs and the query: the page shows them

@@ -5,7 +5,7 @@
 #include "core/util/format.hpp"
 #include "core/util/message_log.hpp"
 #include "io/merge/merge_parts.hpp"
-#include "io/result/verify_result.hpp"
+#include "io/result/check/verify_result.hpp"
 #include "io/system/pending_file.hpp"
 #include "search/threads.hpp"
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "campaign/file_text.hpp"
 #include "io/conflicts/json_text.hpp"
+#include "io/system/file_text.hpp"
 
 namespace clearway::campaign {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/key_reader.hpp"
+#include "io/json/key_reader.hpp"
 
 namespace clearway::campaign {
 

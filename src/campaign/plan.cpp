@@ -69,16 +69,16 @@ class RunCommands {
   }
 
  private:
-  /// Pictures show the model, if it is one; the other formats need the trajectory alone.
+  /// Pictures show the model, and sides are seen from bodies; else the trajectory is enough.
   std::pair<Command, Arguments> conflicts() const {
     Command command{"conflicts", kResultName, "--force", "--show=0"};
-    bool pictures = false;
+    bool needs_model = vehicle_.has_bodies();
     for (const std::string& format : campaign_.conflict_formats) {
       command.push_back("--output=conflicts." + format);
-      pictures = pictures || (format == "bcf" && !vehicle_.has_bodies());
+      needs_model = needs_model || format == "bcf";
     }
     return {std::move(command),
-            path_ + (pictures ? model_ : Arguments{}) + vehicle_.axes + campaign_.conflicts};
+            path_ + (needs_model ? model_ : Arguments{}) + vehicle_.axes + campaign_.conflicts};
   }
 
   const Campaign& campaign_;

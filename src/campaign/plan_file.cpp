@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-#include "campaign/file_text.hpp"
 #include "clearway/error.hpp"
+#include "io/system/file_text.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway::campaign {

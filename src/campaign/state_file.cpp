@@ -3,8 +3,8 @@
 #include <array>
 #include <system_error>
 
-#include "campaign/file_text.hpp"
 #include "clearway/error.hpp"
+#include "io/system/file_text.hpp"
 
 namespace clearway::campaign {
 namespace {

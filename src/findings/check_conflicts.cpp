@@ -49,12 +49,28 @@ void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
                      Remedy::kAskForFirstPose);
   }
   const std::uint64_t hash = hash_of_trajectory(poses);
-  if (poses.size() == header.poses && hash == header.trajectory_hash) return;
+  if (poses.size() == header.poses && hash == header.trajectory_hash) {
+    if (!options.bodies.empty()) check_bodies_of(result, options.bodies);
+    return;
+  }
   refuse(result.name(),
          "was searched along another trajectory: of " + counted(header.poses, "pose") +
              " with the hash " + hash_text(header.trajectory_hash) + ". The one given has " +
              format_count(poses.size()) + " with the hash " + hash_text(hash),
          Remedy::kSameTrajectory);
+}
+
+void check_bodies_of(const ResultReader& result, std::span<const Body> bodies) {
+  const ResultHeader& header = result.header();
+  if (header.bodies.empty()) {
+    refuse(result.name(), "is the result of one model, and a vehicle of several bodies is given");
+  }
+  const std::uint64_t hash = hash_of_bodies(bodies);
+  if (hash == header.model_hash) return;
+  refuse(result.name(),
+         "is the result of another vehicle (hash " + hash_text(header.model_hash) + ", given " +
+             hash_text(hash) + ")",
+         Remedy::kSameModel);
 }
 
 }  // namespace clearway

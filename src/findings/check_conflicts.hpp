@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "clearway/conflicts.hpp"
@@ -8,8 +9,11 @@
 namespace clearway {
 
 /// Throws UsageError for options that make no sense and for a result without first poses,
-/// InputError for poses of another search.
+/// InputError for poses or bodies of another search.
 void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
                      const ConflictOptions& options);
+
+/// Throws InputError where a result is not of the vehicle of these bodies.
+void check_bodies_of(const ResultReader& result, std::span<const Body> bodies);
 
 }  // namespace clearway

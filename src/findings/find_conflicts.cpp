@@ -7,6 +7,8 @@
 #include <string>
 
 #include "clearway/conflicts.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/query/body_pose.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "findings/check_conflicts.hpp"
@@ -33,7 +35,7 @@ class ConflictSearch {
       : reader_(result.reader()),
         poses_(poses),
         options_(options),
-        model_box_(box_of_one_model(result, options)),
+        boxes_(boxes_of(result, options)),
         progress_(progress),
         memory_(options.memory_bytes, reader_.collisions(), poses.size()),
         chainage_(chainage_of(poses)) {}
@@ -163,10 +165,15 @@ class ConflictSearch {
     for (std::uint32_t& part : part_of_row) part = id_of_part[part];
   }
 
-  /// Of a vehicle's bodies each has its own frame, so that no one box says on which side it is.
-  static std::optional<Box> box_of_one_model(const Result& result, const ConflictOptions& options) {
-    if (!result.bodies().empty()) return std::nullopt;
-    return options.model_box ? options.model_box : result.model_box();
+  /// Of the model's points, or those of each body; none where they are not known. Of a vehicle's
+  /// bodies each has its own frame, so that no one box says on which side a conflict is.
+  static std::vector<Box> boxes_of(const Result& result, const ConflictOptions& options) {
+    std::vector<Box> boxes;
+    for (const Body& body : options.bodies) boxes.push_back(box_of(body.model));
+    if (!result.bodies().empty()) return boxes;
+    const std::optional<Box> box = options.model_box ? options.model_box : result.model_box();
+    if (box) boxes.push_back(*box);
+    return boxes;
   }
 
   void add_first_bodies(const std::vector<std::uint32_t>& conflict_of_row) {
@@ -207,21 +214,30 @@ class ConflictSearch {
   void complete(Conflict& conflict) const {
     conflict.chainage_from += options_.chainage_start;
     conflict.chainage_to += options_.chainage_start;
-    const Pose& pose = poses_[conflict.nearest_pose.value_or(conflict.first_pose)];
+    const Pose* pose = pose_of(conflict);
+    if (pose == nullptr) return;
     const Vec3 place = conflict.nearest_point.value_or(conflict.centroid);
-    const Vec3 there = ahead_left_up(place, pose, options_.forward, options_.up);
+    const Vec3 there = ahead_left_up(place, *pose, options_.forward, options_.up);
     if (std::isfinite(there.y) && std::isfinite(there.z)) {
       conflict.lateral = there.y;
       conflict.height = there.z;
     }
-    if (!model_box_) return;
-    conflict.side = side_of(place, pose, *model_box_, options_.forward, options_.up);
+    if (boxes_.empty()) return;
+    const Box& box = boxes_[conflict.body.value_or(0)];
+    conflict.side = side_of(place, *pose, box, options_.forward, options_.up);
+  }
+
+  /// That it is seen from: where its body is, if bodies are given; null where that has none.
+  const Pose* pose_of(const Conflict& conflict) const {
+    const std::uint32_t at = conflict.nearest_pose.value_or(conflict.first_pose);
+    if (options_.bodies.empty()) return &poses_[at];
+    return conflict.body ? pose_at(options_.bodies[*conflict.body], at) : nullptr;
   }
 
   const ResultReader& reader_;
   const std::vector<Pose>& poses_;
   const ConflictOptions& options_;
-  const std::optional<Box> model_box_;
+  const std::vector<Box> boxes_;
   Progress& progress_;
   const ConflictMemory memory_;
   const std::vector<double> chainage_;

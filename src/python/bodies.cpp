@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <array>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -7,7 +8,9 @@
 
 #include "clearway/body.hpp"
 #include "clearway/follow.hpp"
+#include "clearway/vehicle.hpp"
 #include "python/arrays.hpp"
+#include "python/inputs.hpp"
 #include "python/model.hpp"
 #include "python/values.hpp"
 
@@ -93,11 +96,68 @@ pivots: two places of the body that lie on the path, front and rear, metres ahea
 messages: a list to which warnings are appended, as of poses where the body is off the path.)");
 }
 
+/// Points of a file stay points, so that one vehicle may have both.
+constexpr Named<ModelAs> kBodiesAs[] = {
+    {"surface", ModelAs::kSurfaceOfMesh}, {"points", ModelAs::kPoints}, {"solid", ModelAs::kSolid}};
+
+constexpr const char* kReadVehicle =
+    R"(read_vehicle(file, poses, model_as='surface', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
+--
+
+Read the JSON file of a vehicle of several bodies, and the files that it names.
+
+Returns a list of Body, in the file's order, for Query(poses=poses, bodies=...).
+
+file: the same as for clearway run --vehicle.
+poses: the path that the vehicle follows, n x 4 x 4.
+model_as: 'surface': meshes as their triangles are, and other models as points.
+    'points': the surface of a mesh is sampled, which needs a spacing.
+    'solid': triangles, and what closed parts enclose; each body has to be a mesh.
+spacing, vertices_only, above: of all models, as read_model_shape() takes them.
+unit: of models without a model_unit, metres; 0: as the file says, else as they are.
+environment_unit: metres of the environment's unit, into which lengths with a unit are converted.
+format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,
+lever_arm: of trajectories that bodies have of their own, as read_trajectory() takes them.
+messages: a list to which notes and warnings are appended.)";
+
+void add_read_vehicle(py::module_& module) {
+  module.def(
+      "read_vehicle",
+      [](const py::object& file, const py::object& poses, const std::string& model_as,
+         double spacing, double unit, double environment_unit, bool vertices_only,
+         std::optional<double> above, const std::string& format, bool allow_non_rigid,
+         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
+         const std::string& default_crs, const std::string& datum, double metres_per_unit,
+         const std::array<double, 3>& lever_arm, const py::object& messages) {
+        VehicleOptions options;
+        options.model = {value_of("model_as", kBodiesAs, model_as),
+                         spacing,
+                         unit,
+                         environment_unit,
+                         vertices_only,
+                         above};
+        options.trajectory =
+            trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
+                               datum, metres_per_unit, environment_unit, lever_arm);
+        return read_noting(
+            messages,
+            [&, from = path_of(file), path = poses_of(poses_array(poses, "poses"), "poses")](
+                auto* noted) { return read_vehicle(from, path, options, noted); });
+      },
+      "file"_a, "poses"_a, "model_as"_a = "surface", py::kw_only(), "spacing"_a = 0.0,
+      "unit"_a = 0.0, "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
+      "format"_a = "auto", "allow_non_rigid"_a = false, "angle_unit"_a = "declared",
+      "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "", "datum"_a = "",
+      "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},
+      "messages"_a = py::none(), kReadVehicle);
+}
+
 }  // namespace
 
 void add_bodies(py::module_& module) {
   add_body(module);
   add_follow(module);
+  add_read_vehicle(module);
 }
 
 }  // namespace clearway::python

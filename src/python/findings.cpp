@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
 #include "python/arrays.hpp"
 #include "python/values.hpp"
@@ -60,8 +61,9 @@ void add_conflict(py::module_& module) {
       .def_property_readonly(
           "side", [](const Conflict& c) { return name_of(c.side); },
           "'left', 'right', 'above', 'below', 'front', 'behind' or 'unknown'.")
-      .def_readonly("lateral", &Conflict::lateral, "To the left of the pose, metres, or None.")
-      .def_readonly("height", &Conflict::height, "Above the pose, metres, or None.")
+      .def_readonly("lateral", &Conflict::lateral,
+                    "To the left of the pose, metres, or None. With bodies=, of the body's pose.")
+      .def_readonly("height", &Conflict::height, "Above the pose, metres, or None. Likewise.")
       .def_readonly("group", &Conflict::group,
                     "The smallest index of the whole group, before it was cut.")
       .def("__repr__", [](const Conflict& c) {
@@ -97,10 +99,11 @@ void add_find_conflicts(py::module_& module) {
       "find_conflicts",
       [](const Result& result, const py::object& poses, double gap, std::uint64_t min_points,
          double split, double chainage_start, const std::string& forward, const std::string& up,
-         std::optional<Box> model_box, std::uint64_t memory_bytes, int threads, py::object progress,
-         py::object stop) {
+         std::optional<Box> model_box, const std::vector<Body>& bodies, std::uint64_t memory_bytes,
+         int threads, py::object progress, py::object stop) {
         ConflictOptions options = conflict_options(gap, min_points, split, chainage_start, forward,
                                                    up, model_box, memory_bytes, threads);
+        options.bodies = bodies;
         Watch watch(std::move(progress), py::none(), std::move(stop));
         watch.attach(options);
         return watch.run([&, path = poses_of(poses_array(poses, "poses"), "poses")] {
@@ -113,9 +116,9 @@ void add_find_conflicts(py::module_& module) {
       "result"_a, "poses"_a, py::kw_only(), "gap"_a = ConflictOptions{}.gap,
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
-      "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "progress"_a = py::none(),
-      "stop"_a = py::none(),
-      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, memory_bytes=4294967296, threads=0, progress=None, stop=None)
+      "bodies"_a = py::tuple(), "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0,
+      "progress"_a = py::none(), "stop"_a = py::none(),
+      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, bodies=(), memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
 Group the colliding points of a result, place by place. Returns Conflicts.
@@ -128,6 +131,7 @@ split: metres along the path; longer groups are cut at multiples of it; 0: never
 chainage_start: metres, of the first pose.
 forward, up: axes of the model, such as '+x' or '-z'.
 model_box: of the model, where the result does not hold it.
+bodies: of a vehicle, those of the search; each conflict is seen from its body then.
 memory_bytes, threads, progress, stop: as search() takes them.)");
 }
 

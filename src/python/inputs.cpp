@@ -1,10 +1,11 @@
+#include "python/inputs.hpp"
+
 #include <pybind11/stl.h>
 
 #include <array>
 #include <optional>
 
 #include "clearway/convert.hpp"
-#include "clearway/trajectory.hpp"
 #include "python/arrays.hpp"
 #include "python/values.hpp"
 #include "python/watch.hpp"
@@ -54,17 +55,9 @@ void add_read_trajectory(py::module_& module) {
          const std::string& default_crs, const std::string& datum, double metres_per_unit,
          double environment_unit, const std::array<double, 3>& lever_arm,
          const py::object& messages, PoseLabels* labels) {
-        TrajectoryOptions options;
-        options.format = value_of("format", kFormats, format);
-        options.allow_non_rigid = allow_non_rigid;
-        options.angle_unit = value_of("angle_unit", kAngleUnits, angle_unit);
-        options.angle_frame = value_of("angle_frame", kAngleFrames, angle_frame);
-        options.crs = crs;
-        options.default_crs = default_crs;
-        options.datum = datum;
-        options.metres_per_unit = metres_per_unit;
-        options.environment_unit = environment_unit;
-        options.lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]};
+        const TrajectoryOptions options =
+            trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
+                               datum, metres_per_unit, environment_unit, lever_arm);
         PoseLabels found;
         const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
           return read_trajectory(file, options, noted, &found);
@@ -188,6 +181,26 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 }
 
 }  // namespace
+
+TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_rigid,
+                                     const std::string& angle_unit, const std::string& angle_frame,
+                                     const std::string& crs, const std::string& default_crs,
+                                     const std::string& datum, double metres_per_unit,
+                                     double environment_unit,
+                                     const std::array<double, 3>& lever_arm) {
+  TrajectoryOptions options;
+  options.format = value_of("format", kFormats, format);
+  options.allow_non_rigid = allow_non_rigid;
+  options.angle_unit = value_of("angle_unit", kAngleUnits, angle_unit);
+  options.angle_frame = value_of("angle_frame", kAngleFrames, angle_frame);
+  options.crs = crs;
+  options.default_crs = default_crs;
+  options.datum = datum;
+  options.metres_per_unit = metres_per_unit;
+  options.environment_unit = environment_unit;
+  options.lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]};
+  return options;
+}
 
 void add_inputs(py::module_& module) {
   add_labels(module);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "clearway/body.hpp"
 #include "python/values.hpp"
 
 namespace clearway::python {

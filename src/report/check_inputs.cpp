@@ -1,6 +1,7 @@
 #include "report/check_inputs.hpp"
 
 #include "clearway/error.hpp"
+#include "findings/check_conflicts.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/xxh64.hpp"
@@ -20,16 +21,12 @@ void check_hash(const Result& result, const char* what, std::uint64_t is, std::u
 void check_model(const Result& result, const std::vector<Vec3>& model,
                  const ReportOptions& options) {
   const ResultHeader& header = result.reader().header();
-  if (header.bodies.empty() != options.bodies.empty()) {
-    throw InputError(
-        result.reader().name() +
-        (header.bodies.empty()
-             ? ": is the result of one model, and a vehicle of several bodies is given"
-             : ": is the result of a vehicle of several bodies, and one model is given"));
+  if (options.bodies.empty() && !header.bodies.empty()) {
+    throw InputError(result.reader().name() +
+                     ": is the result of a vehicle of several bodies, and one model is given");
   }
   if (!options.bodies.empty()) {
-    check_hash(result, "vehicle", hash_of_bodies(options.bodies), header.model_hash,
-               Remedy::kSameModel);
+    check_bodies_of(result.reader(), options.bodies);
     return;
   }
   check_hash(result, "model", hash_of_model(model, options.model_triangles, options.model_solid_of),

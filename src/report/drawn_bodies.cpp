@@ -11,6 +11,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle.hpp"
+#include "core/query/body_pose.hpp"
 #include "io/model/sample_mesh.hpp"
 #include "report/shown_poses.hpp"
 
@@ -69,10 +70,7 @@ double squared_depth(const DrawnBody& body, const Vec3& place, const Pose& pose)
 }  // namespace
 
 const Pose* DrawnBody::pose_at(std::uint32_t pose) const {
-  if (path_pose.empty()) return pose < poses.size() ? &poses[pose] : nullptr;
-  const auto at = std::ranges::lower_bound(path_pose, pose);
-  if (at == path_pose.end() || *at != pose) return nullptr;
-  return &poses[static_cast<std::size_t>(at - path_pose.begin())];
+  return clearway::pose_at(poses, path_pose, pose);
 }
 
 double DrawnBody::distance_to(const Vec3& place, std::uint32_t pose) const {

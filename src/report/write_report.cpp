@@ -111,8 +111,9 @@ class Report {
   void find_conflicts_and_points(Conflicts& conflicts) {
     std::vector<std::uint32_t> conflict_of;
     if (result_.parameters().first_pose) {
-      conflicts = find_conflicts(result_, poses_, options_.conflicts, &conflict_of);
-      for (Conflict& conflict : conflicts.listed) place_conflict(conflict);
+      ConflictOptions find = options_.conflicts;
+      find.bodies = options_.bodies;
+      conflicts = find_conflicts(result_, poses_, find, &conflict_of);
     }
     PointSelection selection{
         .classes = classes_, .conflicts = &conflicts, .conflict_of = &conflict_of, .wanted = {}};
@@ -157,32 +158,18 @@ class Report {
     }
   }
 
-  /// Where the nearest point is, seen from the model.
+  /// Where the nearest point is, seen from the model, or from its body.
   void place_least() {
-    if (least_->xyz) place(*least_->xyz, least_->pose, *least_);
-  }
-
-  /// Seen from the body, where there are several: the path is elsewhere.
-  void place_conflict(Conflict& conflict) const {
-    if (!conflict.body) return;
-    conflict.side = Side::kUnknown;
-    conflict.lateral = conflict.height = std::nullopt;
-    place(conflict.nearest_point.value_or(conflict.centroid),
-          conflict.nearest_pose.value_or(conflict.first_pose), conflict);
-  }
-
-  /// Sets side, lateral and height of a conflict or a least distance.
-  template <typename Placed>
-  void place(const Vec3& xyz, std::uint32_t at, Placed& out) const {
+    if (!least_->xyz) return;
     const ConflictOptions& how = options_.conflicts;
-    const DrawnBody& body = bodies_[out.body.value_or(0)];
-    const Pose* pose = body.pose_at(at);
+    const DrawnBody& body = bodies_[least_->body.value_or(0)];
+    const Pose* pose = body.pose_at(least_->pose);
     if (pose == nullptr) return;
-    const Vec3 there = ahead_left_up(xyz, *pose, how.forward, how.up);
+    const Vec3 there = ahead_left_up(*least_->xyz, *pose, how.forward, how.up);
     if (!std::isfinite(there.y) || !std::isfinite(there.z)) return;
-    out.side = side_of(xyz, *pose, body.box, how.forward, how.up);
-    out.lateral = there.y;
-    out.height = there.z;
+    least_->side = side_of(*least_->xyz, *pose, body.box, how.forward, how.up);
+    least_->lateral = there.y;
+    least_->height = there.z;
   }
 
   std::vector<PageColumn> make_columns(const Conflicts& conflicts) {

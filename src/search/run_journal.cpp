@@ -3,7 +3,7 @@
 #include "clearway/error.hpp"
 #include "core/query/ignored_text.hpp"
 #include "core/util/format.hpp"
-#include "io/result/verify_result.hpp"
+#include "io/result/check/verify_result.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway {

@@ -27,6 +27,8 @@ struct Found {
   double clearance = 0;
   ClearanceRows clearances = {};
   std::uint64_t solids = 0;
+  std::vector<Body> bodies = {};         ///< of a vehicle
+  std::vector<std::uint32_t> body = {};  ///< of each row; there where bodies are
 
   ResultHeader header() const {
     ResultHeader out;
@@ -41,11 +43,15 @@ struct Found {
     out.model_solids = solids;
     out.quantisation = quantisation;
     out.model_box = {{-1, -1, -1}, {1, 1, 1}};
+    for (const Body& one : bodies) out.bodies.push_back(one.name);
+    if (!bodies.empty()) out.model_hash = hash_of_bodies(bodies);
+    out.version = out.written_version();
     return out;
   }
 
   ResultRows rows() const {
     ResultRows out;
+    out.body = body;
     for (std::size_t i = 0; i < quanta.size(); ++i) {
       out.source.push_back(source.empty() ? i : source[i]);
       out.xyz.push_back(position(quantisation, quanta[i][0], quanta[i][1], quanta[i][2]));

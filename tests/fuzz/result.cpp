@@ -1,7 +1,7 @@
 // Any bytes as a result.
-#include "io/result/compare_results.hpp"
+#include "io/result/check/compare_results.hpp"
+#include "io/result/check/verify_result.hpp"
 #include "io/result/result_rows.hpp"
-#include "io/result/verify_result.hpp"
 #include "memory_file.hpp"
 
 using namespace clearway;

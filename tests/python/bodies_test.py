@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Vehicles of several bodies in Python. bodies_test.py, with the module on the path."""
 
+import json
 import unittest
 
 import clearway
@@ -38,6 +39,61 @@ class BodyTest(SceneTest):
         page = self.folder / "bodies.html"
         clearway.write_report(result, store, (), self.poses, page, bodies=[own])
         self.assertIn(b"own", page.read_bytes())
+
+    def write_vehicle(self, bodies):
+        np.savetxt(self.folder / "model.xyz", self.model, "%.17g")
+        np.savetxt(self.folder / "path.txt", self.poses[:, :3].reshape(-1, 12), "%.17g")
+        file = self.folder / "wagon.json"
+        file.write_text(json.dumps({"bodies": bodies}))
+        return file
+
+    def test_a_file_of_bodies_is_read(self):
+        mesh = "OFF\n3 1 0\n0 0 0\n100 0 0\n0 100 0\n3 0 1 2\n"
+        (self.folder / "fin.off").write_text(mesh)
+        file = self.write_vehicle([
+            {"name": "front", "model": "model.xyz", "at": "100cm"},
+            {"name": "own", "model": "model.xyz", "trajectory": "path.txt"},
+            {"name": "fin", "model": "fin.off", "model_unit": "cm", "pivots": [0.5, -0.5]}])
+        messages = []
+        front, own, fin = clearway.read_vehicle(file, self.poses, messages=messages)
+        self.assertEqual([b.name for b in (front, own, fin)], ["front", "own", "fin"])
+        self.assertIn("body-off-path", [m.code for m in messages])
+        followed = clearway.follow("front", self.model, self.poses, at=1)
+        np.testing.assert_array_equal(front.poses, followed.poses)
+        np.testing.assert_array_equal(front.path_pose, followed.path_pose)
+        np.testing.assert_array_equal(front.model, self.model)
+        np.testing.assert_array_equal(own.poses, self.poses)
+        np.testing.assert_allclose(fin.model.points.max(axis=0), [1, 1, 0])
+        self.assertEqual(len(fin.path_pose), 24)
+        sampled = clearway.read_vehicle(str(file), self.poses, "points", spacing=0.1)[2]
+        self.assertGreater(len(sampled.model), 20)
+        feet = clearway.read_vehicle(file, self.poses, environment_unit=clearway.METRES_PER_FOOT)
+        self.assertEqual(len(feet[0].poses), 13)  # a metre is 3.28 of these units
+
+    def test_what_is_wrong_in_the_file_is_named(self):
+        model = {"name": "a", "model": "model.xyz"}
+        for body, words in [({**model, "at": "far"}, r"wagon.json: bodies\[0\].at: is \"far\""),
+                            ({"name": "a"}, r"bodies\[0\].model: is missing"),
+                            ({**model, "at": 100}, r"bodies\[0\]: the path is 5.8 m long")]:
+            with self.assertRaisesRegex(clearway.InputError, words):
+                clearway.read_vehicle(self.write_vehicle([body]), self.poses)
+        with self.assertRaisesRegex(clearway.ResourceError, "none.json"):
+            clearway.read_vehicle(self.folder / "none.json", self.poses)
+        with self.assertRaisesRegex(clearway.UsageError, "model_as 'mesh'"):
+            clearway.read_vehicle(self.write_vehicle([model]), self.poses, "mesh")
+
+    def test_conflicts_are_seen_from_bodies(self):
+        file = self.write_vehicle([{"name": "front", "model": "model.xyz", "at": 1}])
+        bodies = clearway.read_vehicle(file, self.poses)
+        query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=bodies, first_pose=True)
+        self.search(query=query)
+        result = clearway.Result(self.folder / "out.h5")
+        ahead = clearway.find_conflicts(result, self.poses, min_points=1, bodies=bodies).listed
+        self.assertTrue(ahead and all(c.side != "unknown" for c in ahead))
+        alone = clearway.find_conflicts(result, self.poses, min_points=1).listed
+        self.assertTrue(all(c.side == "unknown" for c in alone))
+        with self.assertRaisesRegex(clearway.InputError, "another vehicle"):
+            clearway.find_conflicts(result, self.poses, bodies=bodies * 2)
 
     def test_bodies_are_refused(self):
         with self.assertRaises(clearway.UsageError):

@@ -124,14 +124,19 @@ inline void write_result(const std::filesystem::path& path, const ResultHeader& 
     writer.append(std::span(rows.source).subspan(from, count),
                   std::span(rows.xyz).subspan(from, count),
                   header.first_pose ? std::span(rows.first_pose).subspan(from, count)
-                                    : std::span<const std::uint32_t>());
+                                    : std::span<const std::uint32_t>(),
+                  rows.body.empty() ? std::span<const std::uint32_t>()
+                                    : std::span(rows.body).subspan(from, count));
   }
   for (std::size_t from = 0; from < clearances.size(); from += step) {
     const std::size_t count = std::min(step, clearances.size() - from);
     writer.append_clearances(std::span(clearances.source).subspan(from, count),
                              std::span(clearances.xyz).subspan(from, count),
                              std::span(clearances.distance).subspan(from, count),
-                             std::span(clearances.pose).subspan(from, count));
+                             std::span(clearances.pose).subspan(from, count),
+                             clearances.body.empty()
+                                 ? std::span<const std::uint32_t>()
+                                 : std::span(clearances.body).subspan(from, count));
   }
   for (std::size_t from = 0; from < profile.size(); from += step) {
     const std::size_t count = std::min(step, profile.size() - from);

@@ -8,7 +8,7 @@
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
-#include "io/result/compare_results.hpp"
+#include "io/result/check/compare_results.hpp"
 
 namespace clearway::tool {
 namespace {

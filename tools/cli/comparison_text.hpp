@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/result/compare_results.hpp"
+#include "io/result/check/compare_results.hpp"
 
 namespace clearway::tool {
 

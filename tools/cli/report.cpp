@@ -20,13 +20,12 @@
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
-#include "cli/vehicle/read_vehicle.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/format.hpp"
 #include "core/util/message_log.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
 #include "search/checks/query_warnings.hpp"
-#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -69,9 +68,9 @@ void note_left_out(ReportCommand& options, const std::vector<Message>& messages)
 
 void read_model_again(ReportCommand& options, const Result& result, Query& query) {
   std::vector<Message>& warnings = options.report.warnings;
-  ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
-  how.as = model_kind_of(result);
   if (options.vehicle.empty()) {
+    ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
+    how.as = model_kind_of(result);
     ModelShape model = read_model_shape(options.model, how, &warnings);
     query.model = std::move(model.points);
     query.triangles = std::move(model.triangles);
@@ -80,9 +79,8 @@ void read_model_again(ReportCommand& options, const Result& result, Query& query
     options.report.model_solid_of = query.solid_of;
     return;
   }
-  if (how.as == ModelAs::kSurface) how.as = ModelAs::kSurfaceOfMesh;  // others may be points
-  query.bodies = read_vehicle(options.vehicle, query.poses, how, options.trajectory_options,
-                              threads_or_all(options.find.threads), warnings);
+  query.bodies = read_bodies_of(options.vehicle, options.model_options, options, query.poses,
+                                result, warnings);
   options.report.bodies = query.bodies;
 }
 
@@ -124,12 +122,7 @@ void run_report(ReportCommand& options) {
   check_model_or_vehicle(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
-  if (result.bodies().empty() != options.vehicle.empty()) {
-    throw InputError(options.result.string() +
-                     (options.vehicle.empty()
-                          ? ": is of a vehicle of several bodies; give it with --vehicle"
-                          : ": is of one model; give it with --model"));
-  }
+  check_kind_of_model(result, options.model, options.vehicle);
   const Store store(options.environment);
   const double unit = metres_of_unit(store.length_unit()).value_or(1);
   options.lengths.convert(unit);
@@ -159,11 +152,9 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
       ->required();
   CLI::Option* model =
       command.add_option("--model", options.model, "The model that was moved")->type_name("FILE");
-  command
-      .add_option("--vehicle", options.vehicle,
-                  "In the place of --model: the vehicle of several bodies that was moved")
-      ->type_name("FILE")
-      ->excludes(model);
+  add_vehicle_option(command, options.vehicle,
+                     "In the place of --model: the vehicle of several bodies that was moved",
+                     model);
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();

@@ -13,7 +13,7 @@
 #include "cli/support/standard_output.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/journal/journal.hpp"
-#include "io/result/verify_result.hpp"
+#include "io/result/check/verify_result.hpp"
 #include "io/store/verify_store.hpp"
 #include "stream/journalled_work.hpp"
 #include "stream/search_journal.hpp"

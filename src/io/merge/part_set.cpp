@@ -5,7 +5,7 @@
 
 #include "clearway/error.hpp"
 #include "core/util/number_ranges.hpp"
-#include "io/result/compare_results.hpp"
+#include "io/result/check/compare_results.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/open_files.hpp"
 #include "io/system/xxh64.hpp"

@@ -56,6 +56,7 @@ from ._clearway import (
     read_model,
     read_model_shape,
     read_trajectory,
+    read_vehicle,
     search,
     write_report,
 )

@@ -311,6 +311,15 @@ def read_trajectory(
     environment_unit: float = 1.0, lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
     messages: list[Message] | None = None, labels: PoseLabels | None = None,
 ) -> _Doubles: ...
+def read_vehicle(
+    file: _AnyPath, poses: ArrayLike, model_as: Literal["points", "surface", "solid"] = "surface", *,
+    spacing: float = 0.0, unit: float = 0.0, environment_unit: float = 1.0,
+    vertices_only: bool = False, above: float | None = None, format: str = "auto",
+    allow_non_rigid: bool = False, angle_unit: Literal["declared", "deg", "rad"] = "declared",
+    angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "",
+    default_crs: str = "", datum: str = "", metres_per_unit: float = 0.0,
+    lever_arm: Sequence[float] = (0.0, 0.0, 0.0), messages: list[Message] | None = None,
+) -> list[Body]: ...
 def convert(
     inputs: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, scale: float | None = None,
     cell_points: int = 65536, regular_size: float | None = None, memory_bytes: int = 4294967296,
@@ -338,8 +347,8 @@ def merge(
 def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,
     split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x", up: _Axis = "+z",
-    model_box: Box | None = None, memory_bytes: int = 4294967296, threads: int = 0,
-    progress: _Progress | None = None, stop: _Stop | None = None,
+    model_box: Box | None = None, bodies: Sequence[Body] = (), memory_bytes: int = 4294967296,
+    threads: int = 0, progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> Conflicts: ...
 def write_report(
     result: Result, store: Store, model: ArrayLike | ModelShape, poses: ArrayLike, output: _AnyPath, *,

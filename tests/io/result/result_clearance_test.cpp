@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "io/result/compare_results.hpp"
-#include "io/result/verify_result.hpp"
+#include "io/result/check/compare_results.hpp"
+#include "io/result/check/verify_result.hpp"
 #include "support/result_fixture.hpp"
 
 using namespace clearway;

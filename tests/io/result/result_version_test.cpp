@@ -5,8 +5,8 @@
 
 #include "clearway/error.hpp"
 #include "io/hdf5/hdf5.hpp"
-#include "io/result/compare_results.hpp"
-#include "io/result/verify_result.hpp"
+#include "io/result/check/compare_results.hpp"
+#include "io/result/check/verify_result.hpp"
 #include "support/result_fixture.hpp"
 #include "support/result_version_2.hpp"
 

@@ -70,13 +70,13 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
 
     def test_facts_are_those_of_conflicts(self):
         out = f"{self.folder}/conflicts.json"
-        clearway("conflicts", self.result, "--trajectory", self.hall.trajectory, "-o", out,
-                 "--force")
+        clearway("conflicts", self.result, *self.inputs[2:], "-o", out, "--force")
         with open(out) as file:
             found = json.load(file)
         for a, b in zip(found["conflicts"], self.facts["conflicts"]["list"], strict=True):
             self.assertEqual(found["bodies"][a["body"]], b["body"])
-            for key in ("id", "points", "source", "first_pose", "least_distance", "nearest_pose"):
+            for key in ("id", "points", "source", "first_pose", "least_distance", "nearest_pose",
+                        "side", "lateral", "height"):
                 self.assertEqual(a[key], b[key], key)
 
     def test_refuses_what_is_not_of_the_run(self):

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "bench/measure/misclassified.hpp"
-#include "io/result/compare_results.hpp"
+#include "io/result/check/compare_results.hpp"
 #include "io/system/mapped_file.hpp"
 
 namespace clearway::bench {

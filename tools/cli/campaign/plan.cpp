@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "campaign/file_text.hpp"
 #include "campaign/plan_file.hpp"
 #include "campaign/slurm_script.hpp"
 #include "clearway/search.hpp"
@@ -17,6 +16,7 @@
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "core/util/format.hpp"
+#include "io/system/file_text.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -63,7 +63,7 @@ void make_folder(const fs::path& folder) {
 }
 
 void write_script(const fs::path& path, const std::string& text) {
-  campaign::replace_file(path, text);
+  replace_file(path, text);
   fs::permissions(path, fs::perms::owner_exec, fs::perm_options::add);
 }
 
@@ -92,7 +92,7 @@ void run_plan(const CampaignPlanOptions& options) {
   const std::string text = campaign::plan_text(plan);
   const fs::path planned = options.folder / campaign::kPlanName;
   std::error_code unknown;
-  if (fs::exists(planned, unknown) && campaign::text_of_file(planned) == text) {
+  if (fs::exists(planned, unknown) && text_of_file(planned) == text) {
     spdlog::info("{}: is this plan already; nothing to do", planned.string());
   } else if (fs::exists(planned, unknown) && !options.force) {
     throw UsageError(planned.string() + ": is another plan; --force replaces it. Finished runs " +
@@ -102,7 +102,7 @@ void run_plan(const CampaignPlanOptions& options) {
     const campaign::SlurmJob job = slurm_job(asked, options.folder, plan);
     write_script(options.folder / "campaign.sbatch", campaign::sbatch_text(job));
     write_script(options.folder / "submit.sh", campaign::submit_text(job));
-    campaign::replace_file(planned, text);
+    replace_file(planned, text);
   }
   print(fmt::format("{}: {} ({}, {}, {})\n", asked.name,
                     counted(plan.tasks.size(), "task", "tasks"),

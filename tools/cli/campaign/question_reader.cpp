@@ -10,7 +10,7 @@
 #include "cli/input_roles.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
-#include "cli/vehicle/read_vehicle.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
@@ -20,7 +20,6 @@
 #include "io/trajectory/content_hash.hpp"
 #include "search/check_query.hpp"
 #include "search/choice/workload.hpp"
-#include "search/threads.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -138,9 +137,9 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
   Query query({}, path.poses, options.query);
   named(run.vehicle.key, [&] {
     check_vehicle_search(options.search);
-    query.bodies =
-        read_vehicle(options.vehicle, path.poses, model_options_of(options),
-                     options.trajectory_options, threads_or_all(options.search.threads), messages);
+    query.bodies = read_vehicle(
+        options.vehicle, path.poses,
+        {model_options_of(options), options.trajectory_options, options.search.threads}, &messages);
     check_bodies(query, options.search);
   });
   tell(run.vehicle.key, messages);

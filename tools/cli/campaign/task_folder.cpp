@@ -11,11 +11,11 @@
 #include <chrono>
 #include <cstring>
 
-#include "campaign/file_text.hpp"
 #include "campaign/question.hpp"
 #include "clearway/error.hpp"
 #include "cli/support/exit_code.hpp"
 #include "io/system/file_lock.hpp"
+#include "io/system/file_text.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -52,8 +52,8 @@ void cut_log(const fs::path& log) {
   std::error_code unknown;
   const std::uintmax_t bytes = fs::file_size(log, unknown);
   if (unknown || bytes <= kMostLogBytes) return;
-  const std::string text = campaign::text_of_file(log);
-  campaign::replace_file(log, std::string_view(text).substr(text.size() - kKeptLogBytes));
+  const std::string text = text_of_file(log);
+  replace_file(log, std::string_view(text).substr(text.size() - kKeptLogBytes));
 }
 
 std::string host_name() {
@@ -151,7 +151,7 @@ void TaskFolder::judge_result() {
 std::string TaskFolder::last_error() const {
   std::error_code unknown;
   if (!fs::exists(log(), unknown)) return "";
-  const std::string text = campaign::text_of_file(log());
+  const std::string text = text_of_file(log());
   const std::string_view own = std::string_view(text).substr(std::min(log_begin_, text.size()));
   constexpr std::string_view kError = "error: ";
   std::size_t at = own.rfind(kError);

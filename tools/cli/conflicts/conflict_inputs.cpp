@@ -4,6 +4,8 @@
 #include <map>
 #include <string>
 
+#include "clearway/error.hpp"
+#include "clearway/vehicle.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
@@ -52,6 +54,11 @@ void add_axis_options(CLI::App& command, ConflictOptions& options) {
            "Axis of the model that points up, for example -z (default: +z)");
 }
 
+void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
+                        const std::string& description, CLI::Option* model) {
+  command.add_option("--vehicle", vehicle, description)->type_name("FILE")->excludes(model);
+}
+
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result) {
   options.default_crs = result.reader().header().crs_wkt;
@@ -66,6 +73,28 @@ ModelAs model_kind_of(const Result& result) {
   return header.model_solids > 0      ? ModelAs::kSolid
          : header.model_triangles > 0 ? ModelAs::kSurface
                                       : ModelAs::kPoints;
+}
+
+void check_kind_of_model(const Result& result, const std::filesystem::path& model,
+                         const std::filesystem::path& vehicle) {
+  const std::string& name = result.reader().name();
+  if (result.bodies().empty() && !vehicle.empty()) {
+    throw InputError(name + ": is of one model; give it with --model");
+  }
+  if (!result.bodies().empty() && !model.empty()) {
+    throw InputError(name + ": is of a vehicle of several bodies; give it with --vehicle");
+  }
+}
+
+std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const ModelOptions& model,
+                                 const ConflictCommand& options, const std::vector<Pose>& path,
+                                 const Result& result, std::vector<Message>& warnings) {
+  ModelOptions how = with_spacing(model, result.parameters().radius);
+  how.as = model_kind_of(result);
+  if (how.as == ModelAs::kSurface) how.as = ModelAs::kSurfaceOfMesh;  // others may be points
+  VehicleOptions all{how, options.trajectory_options, options.find.threads};
+  all.trajectory.default_crs = result.reader().header().crs_wkt;
+  return read_vehicle(vehicle, path, all, &warnings);
 }
 
 std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,

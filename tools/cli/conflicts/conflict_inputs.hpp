@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
 #include "clearway/model.hpp"
 #include "clearway/result.hpp"
@@ -12,7 +13,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace clearway::tool {
 
@@ -29,12 +31,26 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options);
 /// --forward and --up.
 void add_axis_options(CLI::App& command, ConflictOptions& options);
 
+/// The option --vehicle of commands that take --model.
+void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
+                        const std::string& description, CLI::Option* model);
+
 /// The poses of a result. Warnings are told.
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result);
 
 /// What the model of a result was searched as.
 ModelAs model_kind_of(const Result& result);
+
+/// Throws InputError where a result is of one model, and a vehicle is given, or the other way
+/// round.
+void check_kind_of_model(const Result& result, const std::filesystem::path& model,
+                         const std::filesystem::path& vehicle);
+
+/// The bodies of the vehicle that a result is of, at the poses of its path. Throws as read_vehicle.
+std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const ModelOptions& model,
+                                 const ConflictCommand& options, const std::vector<Pose>& path,
+                                 const Result& result, std::vector<Message>& warnings);
 
 /// The points of the model that a result is of. Throws InputError for another model.
 std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -20,6 +21,7 @@
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/geometry/point_box.hpp"
 #include "findings/conflict_warnings.hpp"
 #include "io/conflicts/conflict_summary.hpp"
@@ -31,7 +33,7 @@ namespace clearway::tool {
 namespace {
 
 struct ConflictsCommand : ConflictCommand {
-  std::filesystem::path result, trajectory, model;
+  std::filesystem::path result, trajectory, model, vehicle;
   std::vector<std::filesystem::path> outputs;
   ModelOptions model_options;
   std::string date = ConflictFile::kNoDate;
@@ -54,17 +56,53 @@ using Outputs = std::vector<std::unique_ptr<ConflictOutput>>;
 Outputs open_outputs(const ConflictsCommand& options) {
   Outputs out;
   for (const std::filesystem::path& path : options.outputs) conflict_format_of(path);
+  std::vector<std::filesystem::path> inputs{options.result, options.trajectory, options.model};
+  if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
   for (const std::filesystem::path& path : options.outputs) {
-    refuse_overwriting(path, {options.result, options.trajectory, options.model});
+    refuse_overwriting(path, inputs);
     out.push_back(std::make_unique<ConflictOutput>(path, options.force));
   }
   return out;
+}
+
+/// What conflicts are seen from: the points of the model, or the bodies of the vehicle.
+struct SeenFrom {
+  std::vector<Vec3> model;
+  std::vector<Body> bodies;
+};
+
+SeenFrom read_seen_from(ConflictsCommand& options, const std::vector<Pose>& poses,
+                        const Result& result) {
+  SeenFrom out;
+  if (!options.model.empty()) {
+    out.model = read_model_of(options.model, options.model_options, result);
+    options.find.model_box = box_of(out.model);
+  }
+  if (!options.vehicle.empty()) {
+    std::vector<Message> told;
+    out.bodies =
+        read_bodies_of(options.vehicle, options.model_options, options, poses, result, told);
+    for (const Message& message : told) {
+      if (message.severity == Message::Severity::kWarning) log_message(message);
+    }
+  }
+  return out;
+}
+
+void tell_of_unknown_sides(const ConflictsCommand& options, const Result& result,
+                           const Conflicts& conflicts) {
+  if (result.bodies().empty() || !options.vehicle.empty() || conflicts.listed.empty()) return;
+  spdlog::info(
+      "{}: sides are unknown, and offsets are from the path. --vehicle takes the file of the run, "
+      "and shows both from each conflict's body",
+      options.result.string());
 }
 
 void run_conflicts(ConflictsCommand& options) {
   const Outputs outputs = open_outputs(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
+  check_kind_of_model(result, options.model, options.vehicle);
   const double unit =
       options.lengths.convert_for(options.result.string(), result.reader().header().crs_wkt);
   options.trajectory_options.environment_unit = unit;
@@ -74,17 +112,14 @@ void run_conflicts(ConflictsCommand& options) {
   options.find.stop = &stop_flag();
   const std::vector<Pose> poses =
       read_poses(options.trajectory, options.trajectory_options, result);
-  std::vector<Vec3> model;
-  if (!options.model.empty()) {
-    model = read_model_of(options.model, options.model_options, result);
-    options.find.model_box = box_of(model);
-  }
+  SeenFrom from = read_seen_from(options, poses, result);
+  options.find.bodies = from.bodies;
   const bool drawn = std::ranges::any_of(
       outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
   std::vector<std::uint32_t> conflict_of;
   const Conflicts conflicts =
       find_conflicts(result, poses, options.find, drawn ? &conflict_of : nullptr);
-  ConflictPictures pictures{{}, std::move(model)};
+  ConflictPictures pictures{{}, std::move(from.model)};
   if (drawn) pictures.points = conflict_points(result.reader(), conflicts, conflict_of);
   ConflictFile file{conflicts, options.find, result.reader().header(), poses, {}, options.date};
   file.warnings = conflict_warnings(conflicts, symbol_of(file.unit()));
@@ -93,6 +128,7 @@ void run_conflicts(ConflictsCommand& options) {
   }
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : file.warnings) log_message(warning);
+  tell_of_unknown_sides(options, result, conflicts);
   print(options.json ? "{\n" + summary_json(file) + "\n}\n" : conflict_text(file, options.show));
 }
 
@@ -122,9 +158,13 @@ std::string full_date(const std::string& text) {
 
 void add_sides(CLI::App& command, ConflictsCommand& options) {
   add_axis_options(command, options.find);
-  command
-      .add_option("--model", options.model, "The model of the run: for the sides of older results")
-      ->type_name("FILE");
+  CLI::Option* model =
+      command
+          .add_option("--model", options.model,
+                      "The model of the run: for the sides of older results, and BCF pictures")
+          ->type_name("FILE");
+  add_vehicle_option(command, options.vehicle,
+                     "The vehicle of several bodies of the run: for sides and BCF pictures", model);
   add_model_options(command, options.model_options, options.lengths);
 }
 

@@ -85,7 +85,7 @@ std::string advice_on(const Error& error) {
     case Remedy::kSameTrajectory:
       return ". --trajectory takes the file of the run, with the same options";
     case Remedy::kSameModel:
-      return ". --model takes the file of the run, with the same --model-... options";
+      return ". --model or --vehicle takes the file of the run, with the same --model-... options";
     case Remedy::kSameEnvironment:
       return ". --env takes the store of the run, or another one of the same scans";
     case Remedy::kAskForProfile:

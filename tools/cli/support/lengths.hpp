@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clearway/vec3.hpp"
+#include "io/formats/text/length_text.hpp"
 
 namespace CLI {
 class App;
@@ -14,16 +15,6 @@ class Option;
 }  // namespace CLI
 
 namespace clearway::tool {
-
-/// What a text says of a length: "0.1", "10cm", "4 in".
-struct ParsedLength {
-  double value = 0;       ///< metres where a unit was given
-  bool has_unit = false;  ///< otherwise the unit is that of the file it is compared with
-  double feet = 0;        ///< the same, where a unit was given
-
-  /// In a unit of so many metres.
-  double in_units_of(double metres) const;
-};
 
 /// Which lengths an option takes.
 enum class LengthRange { kAboveZero, kFromZero, kAny };

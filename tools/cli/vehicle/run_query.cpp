@@ -3,9 +3,8 @@
 #include <utility>
 
 #include "clearway/model.hpp"
+#include "clearway/vehicle.hpp"
 #include "cli/support/console.hpp"
-#include "cli/vehicle/read_vehicle.hpp"
-#include "search/threads.hpp"
 
 namespace clearway::tool {
 
@@ -22,8 +21,9 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
   if (!options.vehicle.empty()) {
-    query.bodies = read_vehicle(options.vehicle, query.poses, how, options.trajectory_options,
-                                threads_or_all(options.search.threads), warnings);
+    query.bodies =
+        read_vehicle(options.vehicle, query.poses,
+                     {how, options.trajectory_options, options.search.threads}, &warnings);
   }
   for (const Message& warning : warnings) log_message(warning);
   return query;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/geometry/predicate.hpp"
+#include "core/query/body_pose.hpp"
 #include "io/conflicts/bcf/bcf_text.hpp"
 #include "io/conflicts/bcf/picture.hpp"
 #include "io/conflicts/bcf/zip_writer.hpp"
@@ -43,13 +45,22 @@ Vec3 turned(const Pose& pose, Axis axis) {
   return {sign * r[column], sign * r[3 + column], sign * r[6 + column]};
 }
 
-std::uint32_t pose_of(const Conflict& conflict) {
+std::uint32_t place_on_path(const Conflict& conflict) {
   return conflict.nearest_pose.value_or(conflict.first_pose);
+}
+
+/// That a conflict is seen from: the one of its body, where bodies are known.
+const Pose& pose_of(const ConflictFile& file, const Conflict& conflict) {
+  const std::uint32_t at = place_on_path(conflict);
+  const std::span<const Body> bodies = file.options.bodies;
+  const Pose* own =
+      conflict.body && !bodies.empty() ? pose_at(bodies[*conflict.body], at) : nullptr;
+  return own != nullptr ? *own : file.poses[at];
 }
 
 /// From behind and above, as one who follows the model sees it.
 Camera camera_of(const ConflictFile& file, const Conflict& conflict) {
-  const Pose& pose = file.poses[pose_of(conflict)];
+  const Pose& pose = pose_of(file, conflict);
   const Vec3 ahead = unit(turned(pose, file.options.forward), {1, 0, 0});
   const Vec3 above = unit(turned(pose, file.options.up), {0, 0, 1});
   Camera out;
@@ -63,7 +74,7 @@ Camera camera_of(const ConflictFile& file, const Conflict& conflict) {
 }
 
 void draw_path(Picture& picture, const ConflictFile& file, const Conflict& conflict) {
-  const std::size_t at = pose_of(conflict);
+  const std::size_t at = place_on_path(conflict);
   const std::size_t first = at > kPathPoses ? at - kPathPoses : 0;
   const std::size_t last = std::min(file.poses.size(), at + kPathPoses + 1);
   for (std::size_t i = first + 1; i < last; ++i) {
@@ -89,11 +100,23 @@ void draw_box(Picture& picture, const Box& box) {
   }
 }
 
+/// The model, or every body that is there while the vehicle is at this pose of the path.
+void draw_model(Picture& picture, const ConflictFile& file, const Conflict& conflict,
+                const std::vector<Vec3>& model) {
+  const auto draw = [&picture](const std::vector<Vec3>& points, const Pose& pose) {
+    for (const Vec3& m : points) picture.draw_point(transform(pose, m), kModel, 1);
+  };
+  const std::uint32_t at = place_on_path(conflict);
+  draw(model, file.poses[at]);
+  for (const Body& body : file.options.bodies) {
+    if (const Pose* pose = pose_at(body, at)) draw(body.model, *pose);
+  }
+}
+
 std::string snapshot_of(const ConflictFile& file, const Conflict& conflict, const Camera& camera,
                         const std::vector<Vec3>& points, const std::vector<Vec3>& model) {
   Picture picture(kWidth, kHeight, camera);
-  const Pose& pose = file.poses[pose_of(conflict)];
-  for (const Vec3& m : model) picture.draw_point(transform(pose, m), kModel, 1);
+  draw_model(picture, file, conflict, model);
   draw_path(picture, file, conflict);
   draw_box(picture, conflict.box);
   for (const Vec3& p : points) picture.draw_mark(p, kColliding, 3);

@@ -16,7 +16,7 @@ struct ConflictPictures {
   static constexpr std::size_t kMostPoints = 5000;  ///< of a conflict
 
   ConflictPoints points;    ///< colliding ones
-  std::vector<Vec3> model;  ///< in its own frame; may be empty
+  std::vector<Vec3> model;  ///< in its own frame; empty: none, or bodies
 };
 
 /// At most kMostPoints points of each conflict, every n-th of a conflict. conflict_of: of each row,

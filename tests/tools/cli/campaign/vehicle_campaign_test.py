@@ -35,6 +35,10 @@ def runs_are_those_of_the_program(work):
     rows = (folder / "conflicts.csv").read_text().splitlines()
     expect("body_name" in rows[0].split(",") and len(rows) > 1, rows[0])
     expect(rows[1].endswith(('"middle, ""low"""', "front")), rows[1])
+    program("conflicts", work / "out.h5", "--vehicle", work / "vehicles/wagon.json",
+            "--trajectory", work / "routes/r00.txt", "-o", work / "conflicts.csv")
+    expect((folder / "conflicts.csv").read_bytes() == (work / "conflicts.csv").read_bytes() and
+           "unknown" not in (folder / "conflicts.csv").read_text(), "sides are not of the bodies")
     expect('"name":"middle, \\"low' in (folder / "report.html").read_text(), "the page has no bodies")
     facts = json.loads(program("campaign", "report", work / "whole", "--json"))
     expect(facts["not_done"] == 0 and facts["conflict"] >= 1, f"{facts}")

@@ -114,14 +114,17 @@ def pixels_of(png, where):
 
 
 def check_snapshot(png, where):
+    """Gives whether the model is in the picture."""
     colours = set()
     for row in pixels_of(png, where):
         colours.update(row[i:i + 3] for i in range(0, len(row), 3))
     check(bytes([200, 30, 30]) in colours, f"{where}: no colliding point in the picture")
+    return bytes([90, 110, 140]) in colours
 
 
 def check_archive(path):
     guids = []
+    with_model = 0
     with zipfile.ZipFile(path) as archive:
         check(archive.testzip() is None, f"{path}: a member is damaged")
         names = archive.namelist()
@@ -136,11 +139,11 @@ def check_archive(path):
             check(view.get("Guid") == viewpoint.get("Guid"), f"{folder}: Guid of the view")
             check_camera(view, folder)
             snapshot = f"{folder}/{viewpoint.find('Snapshot').text}"
-            check_snapshot(archive.read(snapshot), snapshot)
+            with_model += check_snapshot(archive.read(snapshot), snapshot)
             guids += [folder, view.get("Guid")]
         check(len(names) == 1 + 3 * len(folders), f"{path}: members")
     check(len(set(guids)) == len(guids), f"{path}: a Guid twice")
-    print(f"{path}: {len(folders)} topics")
+    print(f"{path}: {len(folders)} topics, {with_model} with the model")
 
 
 for file in sys.argv[1:]:

@@ -1,4 +1,4 @@
-#include "campaign/file_text.hpp"
+#include "io/system/file_text.hpp"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include "clearway/error.hpp"
 #include "io/system/file.hpp"
 
-namespace clearway::campaign {
+namespace clearway {
 
 namespace fs = std::filesystem;
 
@@ -36,4 +36,4 @@ void replace_file(const fs::path& path, std::string_view text) {
   if (failed) throw ResourceError(path.string() + ": cannot write: " + failed.message());
 }
 
-}  // namespace clearway::campaign
+}  // namespace clearway

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace clearway::campaign {
+namespace clearway {
 
 /// All of a small file. Throws ResourceError.
 std::string text_of_file(const std::filesystem::path& path);
@@ -13,4 +13,4 @@ std::string text_of_file(const std::filesystem::path& path);
 /// Not synced: after a crash of the system it may be empty. Throws ResourceError.
 void replace_file(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace clearway::campaign
+}  // namespace clearway

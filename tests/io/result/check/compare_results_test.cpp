@@ -1,4 +1,4 @@
-#include "io/result/compare_results.hpp"
+#include "io/result/check/compare_results.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-namespace clearway::campaign {
+namespace clearway {
 
-/// A value of campaign.json and its key, as "vehicles.truck.model". Every complaint throws
-/// InputError "FILE: KEY: what".
+/// A value of a JSON file that people write, and its key, as "vehicles.truck.model". Every
+/// complaint throws InputError "FILE: KEY: what".
 class KeyReader {
  public:
   /// The whole file. A key that stands twice in one object is refused, as a reader would take the
@@ -47,4 +47,4 @@ class KeyReader {
   nlohmann::ordered_json value_;
 };
 
-}  // namespace clearway::campaign
+}  // namespace clearway

@@ -1,11 +1,11 @@
-#include "campaign/key_reader.hpp"
+#include "io/json/key_reader.hpp"
 
 #include <algorithm>
 #include <set>
 
 #include "io/system/input_error.hpp"
 
-namespace clearway::campaign {
+namespace clearway {
 namespace {
 
 using nlohmann::ordered_json;
@@ -117,4 +117,4 @@ KeyReader KeyReader::below(const std::string& name, const ordered_json& value) c
   return {file_, key_.empty() ? name : key_ + "." + name, name, value};
 }
 
-}  // namespace clearway::campaign
+}  // namespace clearway

@@ -1,29 +1,22 @@
-#include "cli/vehicle/vehicle_file.hpp"
+#include "io/vehicle/vehicle_file.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <set>
 
-#include "campaign/file_text.hpp"
 #include "clearway/body.hpp"
-#include "cli/support/lengths.hpp"
+#include "io/formats/text/length_text.hpp"
+#include "io/system/file_text.hpp"
 
-namespace clearway::tool {
+namespace clearway {
 namespace {
 
-using campaign::KeyReader;
-
 /// A number, or a text with a unit: "10m".
-double length_of(const KeyReader& key, double environment_unit) {
+double length_at(const KeyReader& key, double environment_unit) {
   const auto& value = key.value();
   if (value.is_number()) return value.get<double>();
   if (!value.is_string()) key.refuse(R"(expected a length, for example 10.5 or "10.5m")");
-  try {
-    return parse_length("", key.text(), LengthRange::kAny).in_units_of(environment_unit);
-  } catch (const CLI::ValidationError&) {
-    key.refuse("is \"" + key.text() + R"(", expected a length, for example 10.5 or "10.5m")");
-  }
+  if (const auto length = length_of(key.text())) return length->in_units_of(environment_unit);
+  key.refuse("is \"" + key.text() + R"(", expected a length, for example 10.5 or "10.5m")");
 }
 
 BodyMount pivots_of(const KeyReader& key, double environment_unit) {
@@ -31,19 +24,16 @@ BodyMount pivots_of(const KeyReader& key, double environment_unit) {
   if (both.size() != 2) {
     key.refuse("expected two lengths, the front pivot and the rear one, for example [10, -10]");
   }
-  const BodyPivots pivots{length_of(both[0], environment_unit),
-                          length_of(both[1], environment_unit)};
+  const BodyPivots pivots{length_at(both[0], environment_unit),
+                          length_at(both[1], environment_unit)};
   if (pivots.front == pivots.rear) key.refuse("expected two different places");
   return pivots;
 }
 
 double unit_of(const KeyReader& key) {
-  static constexpr std::array kUnits{"mm", "cm", "m", "in", "ft"};
   const std::string name = key.text();
-  if (std::ranges::find(kUnits, name) == kUnits.end()) {
-    key.refuse("is \"" + name + "\", expected mm, cm, m, in or ft");
-  }
-  return parse_length("", "1" + name).value;
+  if (const auto metres = metres_of_file_unit(name)) return *metres;
+  key.refuse("is \"" + name + "\", expected mm, cm, m, in or ft");
 }
 
 std::string name_of(const KeyReader& key, std::set<std::string>& names) {
@@ -63,7 +53,7 @@ void set_motion(const KeyReader& body, const std::filesystem::path& folder, doub
   if (has_at + has_pivots + body.has("trajectory") > 1) {
     body.refuse("a body moves in one way: expected one of at, pivots and trajectory, or none");
   }
-  if (has_at) entry.mount = BodyStation{length_of(body.at("at"), environment_unit)};
+  if (has_at) entry.mount = BodyStation{length_at(body.at("at"), environment_unit)};
   if (has_pivots) entry.mount = pivots_of(body.at("pivots"), environment_unit);
   if (body.has("trajectory")) entry.trajectory = folder / body.at("trajectory").text();
 }
@@ -72,7 +62,7 @@ void set_motion(const KeyReader& body, const std::filesystem::path& folder, doub
 
 std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
                                          double environment_unit) {
-  const KeyReader file = KeyReader::parse(path, campaign::text_of_file(path));
+  const KeyReader file = KeyReader::parse(path, text_of_file(path));
   file.allow({"bodies"});
   const KeyReader list = file.at("bodies");
   const std::vector<KeyReader> bodies = list.elements();
@@ -96,4 +86,4 @@ std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
   return entries;
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway

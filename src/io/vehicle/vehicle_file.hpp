@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "campaign/key_reader.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
+#include "io/json/key_reader.hpp"
 
-namespace clearway::tool {
+namespace clearway {
 
 /// A body as a vehicle's file names it, before its model is read. Files are relative to that file.
 struct BodyEntry {
-  campaign::KeyReader at;  ///< for complaints
+  KeyReader at;  ///< for complaints
   std::string name;
   std::filesystem::path model;
   double model_unit = 0;             ///< metres; 0: as the command says
@@ -20,10 +20,10 @@ struct BodyEntry {
   std::filesystem::path trajectory;  ///< empty: it follows the path
 };
 
-/// Reads the JSON file of --vehicle (docs/guide/vehicles.md). environment_unit: metres of the unit
+/// Reads a vehicle's JSON file (docs/guide/vehicles.md). environment_unit: metres of the unit
 /// that stations become. Throws InputError naming the key, as "bodies[1].pivots", ResourceError
 /// where the file cannot be read.
 std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
                                          double environment_unit);
 
-}  // namespace clearway::tool
+}  // namespace clearway

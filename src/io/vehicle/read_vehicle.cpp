@@ -1,20 +1,21 @@
-#include "cli/vehicle/read_vehicle.hpp"
+#include <tbb/task_arena.h>
 
 #include <numeric>
 #include <optional>
 #include <variant>
 
 #include "clearway/error.hpp"
-#include "cli/vehicle/vehicle_file.hpp"
+#include "clearway/vehicle.hpp"
 #include "core/util/format.hpp"
+#include "io/vehicle/vehicle_file.hpp"
 
-namespace clearway::tool {
+namespace clearway {
 namespace {
 
 /// Reads the files of bodies; what goes wrong with them names the key.
 class VehicleReader {
   template <typename Call>
-  decltype(auto) named(const campaign::KeyReader& key, const Call& call) {
+  decltype(auto) named(const KeyReader& key, const Call& call) {
     const auto where = [&](const Error& error) {
       return file_.string() + ": " + key.key() + ": " + error.what();
     };
@@ -31,21 +32,19 @@ class VehicleReader {
 
  public:
   VehicleReader(const std::filesystem::path& file, const std::vector<Pose>& path,
-                const ModelOptions& model, const TrajectoryOptions& trajectory, int threads,
-                std::vector<Message>& warnings)
+                const VehicleOptions& options, std::vector<Message>* warnings)
       : file_(file),
         path_(path),
-        model_(model),
-        trajectory_(trajectory),
-        threads_(threads),
+        options_(options),
+        threads_(options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency()),
         warnings_(warnings) {}
 
   Body read(const BodyEntry& entry) {
     Body body{.name = entry.name, .model = {}, .poses = {}, .path_pose = {}};
-    ModelOptions how = model_;
+    ModelOptions how = options_.model;
     if (entry.model_unit > 0) how.unit = entry.model_unit;
     ModelShape model =
-        named(entry.at.at("model"), [&] { return read_model_shape(entry.model, how, &warnings_); });
+        named(entry.at.at("model"), [&] { return read_model_shape(entry.model, how, warnings_); });
     body.model = std::move(model.points);
     body.triangles = std::move(model.triangles);
     body.solid_of = std::move(model.solid_of);
@@ -63,9 +62,9 @@ class VehicleReader {
 
  private:
   void read_own(const BodyEntry& entry, Body& body) {
-    const campaign::KeyReader key = entry.at.at("trajectory");
-    body.poses =
-        named(key, [&] { return read_trajectory(entry.trajectory, trajectory_, &warnings_); });
+    const KeyReader key = entry.at.at("trajectory");
+    body.poses = named(
+        key, [&] { return read_trajectory(entry.trajectory, options_.trajectory, warnings_); });
     if (body.poses.size() != path_.size()) {
       key.refuse(entry.trajectory.string() + " has " + counted(body.poses.size(), "pose") +
                  ", expected as many as the path: " + format_count(path_.size()));
@@ -84,8 +83,10 @@ class VehicleReader {
     FollowedPath followed =
         named(entry.at, [&] { return follow_path(path, entry.mount, threads_); });
     const std::string name = file_.string() + ": " + entry.at.key() + " (" + entry.name + ")";
-    for (Message& doubt : doubts_about(followed, path, entry.mount, name)) {
-      warnings_.push_back(std::move(doubt));
+    if (warnings_ != nullptr) {
+      for (Message& doubt : doubts_about(followed, path, entry.mount, name)) {
+        warnings_->push_back(std::move(doubt));
+      }
     }
     if (followed.poses.empty() && !path_.empty()) {
       entry.at.refuse("the path is " + format_brief(path.length()) +
@@ -104,42 +105,22 @@ class VehicleReader {
 
   const std::filesystem::path& file_;
   const std::vector<Pose>& path_;
-  const ModelOptions& model_;
-  const TrajectoryOptions& trajectory_;
+  const VehicleOptions& options_;
   int threads_;
-  std::vector<Message>& warnings_;
+  std::vector<Message>* warnings_;
   std::optional<PathStations> stations_;
 };
 
 }  // namespace
 
 std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vector<Pose>& path,
-                               const ModelOptions& model, const TrajectoryOptions& trajectory,
-                               int threads, std::vector<Message>& warnings) {
-  VehicleReader reader(file, path, model, trajectory, threads, warnings);
+                               const VehicleOptions& options, std::vector<Message>* warnings) {
+  VehicleReader reader(file, path, options, warnings);
   std::vector<Body> bodies;
-  for (const BodyEntry& entry : read_vehicle_file(file, model.environment_unit)) {
+  for (const BodyEntry& entry : read_vehicle_file(file, options.model.environment_unit)) {
     bodies.push_back(reader.read(entry));
   }
   return bodies;
 }
 
-std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& file,
-                                                  std::vector<std::filesystem::path> others) {
-  others.push_back(file);
-  for (const BodyEntry& body : read_vehicle_file(file, 1)) {
-    others.push_back(body.model);
-    if (!body.trajectory.empty()) others.push_back(body.trajectory);
-  }
-  return others;
-}
-
-void check_vehicle_search(const SearchOptions& options) {
-  if (options.engine == Engine::kGrid || options.engine == Engine::kKdtree) {
-    throw UsageError(std::string("--vehicle: engine ") + clearway::name_of(options.engine) +
-                         " searches one model, and no vehicle of several bodies",
-                     Remedy::kSweepEngine);
-  }
-}
-
-}  // namespace clearway::tool
+}  // namespace clearway

@@ -1,4 +1,4 @@
-#include "io/result/verify_result.hpp"
+#include "io/result/check/verify_result.hpp"
 
 #include <span>
 

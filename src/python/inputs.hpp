@@ -1,0 +1,18 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "clearway/trajectory.hpp"
+
+namespace clearway::python {
+
+/// Of the names that Python has for them. Throws UsageError for an unknown one.
+TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_rigid,
+                                     const std::string& angle_unit, const std::string& angle_frame,
+                                     const std::string& crs, const std::string& default_crs,
+                                     const std::string& datum, double metres_per_unit,
+                                     double environment_unit,
+                                     const std::array<double, 3>& lever_arm);
+
+}  // namespace clearway::python
