@@ -97,16 +97,16 @@ std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const Mod
   return read_vehicle(vehicle, path, all, &warnings);
 }
 
-std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,
-                                const Result& result) {
+ModelShape read_model_of(const std::filesystem::path& path, const ModelOptions& options,
+                         const Result& result) {
   ModelOptions how = with_spacing(options, result.parameters().radius);
   how.as = model_kind_of(result);
-  const auto [points, triangles, solid_of] = read_model_shape(path, how);
+  ModelShape shape = read_model_shape(path, how);
   const ResultHeader& header = result.reader().header();
-  const std::uint64_t hash = hash_of_model(points, triangles, solid_of);
-  if (points.size() == header.model_points && hash == header.model_hash) return points;
+  const std::uint64_t hash = hash_of_model(shape.points, shape.triangles, shape.solid_of);
+  if (shape.points.size() == header.model_points && hash == header.model_hash) return shape;
   refuse(path.string(), "is not the model of " + result.reader().name() + ": it has " +
-                            format_count(points.size()) + " points with the hash " +
+                            format_count(shape.points.size()) + " points with the hash " +
                             hash_text(hash) + ", expected " + format_count(header.model_points) +
                             " with the hash " + hash_text(header.model_hash) +
                             "; give the file of the run, with the same options");

@@ -53,7 +53,7 @@ std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const Mod
                                  const Result& result, std::vector<Message>& warnings);
 
 /// The points of the model that a result is of. Throws InputError for another model.
-std::vector<Vec3> read_model_of(const std::filesystem::path& path, const ModelOptions& options,
-                                const Result& result);
+ModelShape read_model_of(const std::filesystem::path& path, const ModelOptions& options,
+                         const Result& result);
 
 }  // namespace clearway::tool

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -26,6 +27,7 @@
 #include "findings/conflict_warnings.hpp"
 #include "io/conflicts/conflict_summary.hpp"
 #include "io/conflicts/write_conflicts.hpp"
+#include "io/model/sample_mesh.hpp"
 #include "io/result/result.hpp"
 #include "io/system/pending_file.hpp"
 
@@ -65,10 +67,28 @@ Outputs open_outputs(const ConflictsCommand& options) {
   return out;
 }
 
-/// What conflicts are seen from: the points of the model, or the bodies of the vehicle.
+/// Places of a surface that a picture shows.
+constexpr double kDrawnPlaces = 20'000;
+
+/// What is drawn of a model: its points, or places of its triangles.
+std::vector<Vec3> drawn(const std::vector<Vec3>& points,
+                        const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  if (triangles.empty()) return points;
+  const TriangleMesh mesh{points, triangles};
+  return sample_mesh(mesh, spacing_for(mesh, kDrawnPlaces), "a picture of the model");
+}
+
+/// What conflicts are seen from: the model, or the bodies of the vehicle.
 struct SeenFrom {
-  std::vector<Vec3> model;
+  ModelShape model;
   std::vector<Body> bodies;
+
+  std::vector<std::vector<Vec3>> drawn_models() const {
+    std::vector<std::vector<Vec3>> out;
+    if (!model.points.empty()) out.push_back(drawn(model.points, model.triangles));
+    for (const Body& body : bodies) out.push_back(drawn(body.model, body.triangles));
+    return out;
+  }
 };
 
 SeenFrom read_seen_from(ConflictsCommand& options, const std::vector<Pose>& poses,
@@ -76,7 +96,7 @@ SeenFrom read_seen_from(ConflictsCommand& options, const std::vector<Pose>& pose
   SeenFrom out;
   if (!options.model.empty()) {
     out.model = read_model_of(options.model, options.model_options, result);
-    options.find.model_box = box_of(out.model);
+    options.find.model_box = box_of(out.model.points);
   }
   if (!options.vehicle.empty()) {
     std::vector<Message> told;
@@ -112,15 +132,17 @@ void run_conflicts(ConflictsCommand& options) {
   options.find.stop = &stop_flag();
   const std::vector<Pose> poses =
       read_poses(options.trajectory, options.trajectory_options, result);
-  SeenFrom from = read_seen_from(options, poses, result);
+  const SeenFrom from = read_seen_from(options, poses, result);
   options.find.bodies = from.bodies;
-  const bool drawn = std::ranges::any_of(
+  const bool has_pictures = std::ranges::any_of(
       outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
   std::vector<std::uint32_t> conflict_of;
   const Conflicts conflicts =
-      find_conflicts(result, poses, options.find, drawn ? &conflict_of : nullptr);
-  ConflictPictures pictures{{}, std::move(from.model)};
-  if (drawn) pictures.points = conflict_points(result.reader(), conflicts, conflict_of);
+      find_conflicts(result, poses, options.find, has_pictures ? &conflict_of : nullptr);
+  ConflictPictures pictures;
+  if (has_pictures) {
+    pictures = {conflict_points(result.reader(), conflicts, conflict_of), from.drawn_models()};
+  }
   ConflictFile file{conflicts, options.find, result.reader().header(), poses, {}, options.date};
   file.warnings = conflict_warnings(conflicts, symbol_of(file.unit()));
   for (const auto& output : outputs) {

@@ -101,22 +101,24 @@ void draw_box(Picture& picture, const Box& box) {
 }
 
 /// The model, or every body that is there while the vehicle is at this pose of the path.
-void draw_model(Picture& picture, const ConflictFile& file, const Conflict& conflict,
-                const std::vector<Vec3>& model) {
+void draw_models(Picture& picture, const ConflictFile& file, const Conflict& conflict,
+                 const std::vector<std::vector<Vec3>>& models) {
   const auto draw = [&picture](const std::vector<Vec3>& points, const Pose& pose) {
     for (const Vec3& m : points) picture.draw_point(transform(pose, m), kModel, 1);
   };
   const std::uint32_t at = place_on_path(conflict);
-  draw(model, file.poses[at]);
-  for (const Body& body : file.options.bodies) {
-    if (const Pose* pose = pose_at(body, at)) draw(body.model, *pose);
+  const std::span<const Body> bodies = file.options.bodies;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Pose* pose = bodies.empty() ? &file.poses[at] : pose_at(bodies[i], at);
+    if (pose != nullptr) draw(models[i], *pose);
   }
 }
 
 std::string snapshot_of(const ConflictFile& file, const Conflict& conflict, const Camera& camera,
-                        const std::vector<Vec3>& points, const std::vector<Vec3>& model) {
+                        const std::vector<Vec3>& points,
+                        const std::vector<std::vector<Vec3>>& models) {
   Picture picture(kWidth, kHeight, camera);
-  draw_model(picture, file, conflict, model);
+  draw_models(picture, file, conflict, models);
   draw_path(picture, file, conflict);
   draw_box(picture, conflict.box);
   for (const Vec3& p : points) picture.draw_mark(p, kColliding, 3);
@@ -154,7 +156,7 @@ void write_bcf(const ConflictFile& file, const ConflictPictures& pictures, const
     zip.add(folder + "markup.bcf", bcf_markup(file, conflict));
     zip.add(folder + "viewpoint.bcfv", bcf_viewpoint(file, conflict, camera));
     zip.add(folder + "snapshot.png",
-            snapshot_of(file, conflict, camera, pictures.points[i], pictures.model));
+            snapshot_of(file, conflict, camera, pictures.points[i], pictures.models));
   }
   zip.finish();
 }

@@ -15,8 +15,9 @@ using ConflictPoints = std::vector<std::vector<Vec3>>;
 struct ConflictPictures {
   static constexpr std::size_t kMostPoints = 5000;  ///< of a conflict
 
-  ConflictPoints points;    ///< colliding ones
-  std::vector<Vec3> model;  ///< in its own frame; empty: none, or bodies
+  ConflictPoints points;  ///< colliding ones
+  /// Of the model, or of each body, in its own frame; empty: none is drawn.
+  std::vector<std::vector<Vec3>> models;
 };
 
 /// At most kMostPoints points of each conflict, every n-th of a conflict. conflict_of: of each row,

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks BCF files against the rules of the public schemas of BCF 2.1: check_bcf.py FILE..."""
 
+import collections
 import re
 import struct
 import sys
@@ -114,17 +115,17 @@ def pixels_of(png, where):
 
 
 def check_snapshot(png, where):
-    """Gives whether the model is in the picture."""
-    colours = set()
+    """Gives how many pixels show the model."""
+    colours = collections.Counter()
     for row in pixels_of(png, where):
         colours.update(row[i:i + 3] for i in range(0, len(row), 3))
     check(bytes([200, 30, 30]) in colours, f"{where}: no colliding point in the picture")
-    return bytes([90, 110, 140]) in colours
+    return colours[bytes([90, 110, 140])]
 
 
 def check_archive(path):
     guids = []
-    with_model = 0
+    model_pixels = []
     with zipfile.ZipFile(path) as archive:
         check(archive.testzip() is None, f"{path}: a member is damaged")
         names = archive.namelist()
@@ -139,11 +140,13 @@ def check_archive(path):
             check(view.get("Guid") == viewpoint.get("Guid"), f"{folder}: Guid of the view")
             check_camera(view, folder)
             snapshot = f"{folder}/{viewpoint.find('Snapshot').text}"
-            with_model += check_snapshot(archive.read(snapshot), snapshot)
+            model_pixels.append(check_snapshot(archive.read(snapshot), snapshot))
             guids += [folder, view.get("Guid")]
         check(len(names) == 1 + 3 * len(folders), f"{path}: members")
     check(len(set(guids)) == len(guids), f"{path}: a Guid twice")
-    print(f"{path}: {len(folders)} topics, {with_model} with the model")
+    with_model = sum(1 for pixels in model_pixels if pixels)
+    dense = sum(1 for pixels in model_pixels if pixels > 5000)
+    print(f"{path}: {len(folders)} topics, {with_model} with the model, {dense} full of it")
 
 
 for file in sys.argv[1:]:

@@ -41,6 +41,10 @@ struct Yard {
     REQUIRE(run("convert " + name("scan.xyz") + " -o " + name("site.h5")).exit_code == 0);
     search("out.h5", "--vehicle " + name("wagon.json"));
     search("plain.h5", "--model " + name("box.xyz"));
+    put_bytes(folder / "box.off",
+              "OFF\n8 6 0\n-.5 -.2 0\n.5 -.2 0\n.5 .2 0\n-.5 .2 0\n-.5 -.2 1\n.5 -.2 1\n.5 .2 1\n"
+              "-.5 .2 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+    search("mesh.h5", "--model " + name("box.off"));
   }
 
   void put_vehicle(const std::string& file, const std::string& second) const {
@@ -110,8 +114,8 @@ TEST_CASE("without the vehicle sides are unknown, and a note says what helps") {
 }
 
 TEST_CASE("pictures of BCF show the bodies of a vehicle") {
-  const auto checked = [](const std::string& more) {
-    REQUIRE(yard().conflicts("--force -o " + yard().name("c.bcf") + more).exit_code == 0);
+  const auto checked = [](const std::string& more, const std::string& result = "out.h5") {
+    REQUIRE(yard().conflicts("--force -o " + yard().name("c.bcf") + more, result).exit_code == 0);
     const Outcome outcome = run_program_at(CHECK_BCF, yard().folder, yard().name("c.bcf"));
     INFO(outcome.err);
     CHECK(outcome.exit_code == 0);
@@ -119,7 +123,9 @@ TEST_CASE("pictures of BCF show the bodies of a vehicle") {
   };
   CHECK_THAT(checked(""), Contains("2 topics, 0 with the model"));
   CHECK_THAT(checked(" --vehicle " + yard().name("wagon.json")),
-             Contains("2 topics, 2 with the model"));
+             Contains("2 topics, 2 with the model, 0 full of it"));
+  CHECK_THAT(checked(" --model " + yard().name("box.off"), "mesh.h5"),
+             Contains("1 topics, 1 with the model, 1 full of it"));
 }
 
 TEST_CASE("a vehicle that is not of the result is refused, and no output is left") {
