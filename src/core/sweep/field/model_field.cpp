@@ -194,7 +194,8 @@ void ModelField::make_all(int threads) {
 }
 
 void ModelField::make_brick(std::size_t cell) const {
-  const std::uint32_t brick = brick_of_[cell] & kBrickNumber;
+  const std::atomic_ref state(brick_of_[cell]);
+  const std::uint32_t brick = state.load(std::memory_order_relaxed) & kBrickNumber;
   const std::size_t first = std::size_t{brick} * kBrickNodes;
   const Vec3 corner = coarse_node(static_cast<std::uint32_t>(cell % size_[0]),
                                   static_cast<std::uint32_t>(cell / size_[0] % size_[1]),
@@ -207,7 +208,7 @@ void ModelField::make_brick(std::size_t cell) const {
     BrickTriangles(*std::get<const TriangleTree*>(tree_)).find(corner, voxel_, squared, nearest);
   }
   if (inside_) inside_->make_brick(brick, corner, voxel_, squared);
-  std::atomic_ref(brick_of_[cell]).store(brick, std::memory_order_release);
+  state.store(brick, std::memory_order_release);
 }
 
 /// The first that asks makes it. Others wait: what they find must not depend on who was first.
