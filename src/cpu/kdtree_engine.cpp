@@ -132,8 +132,9 @@ std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Query& query, 
   const std::uint64_t block_bytes =
       sizeof(std::uint64_t) + sizeof(BlockBox) +
       (query.first_pose ? (kBlockPoints + 2) * sizeof(std::uint32_t) : 1);
-  return blocks * block_bytes + cloud.tree().size() * sizeof(std::uint32_t) +
-         query.model.size() * kModelPointBytes + static_cast<unsigned>(threads) * kThreadBytes;
+  return blocks * block_bytes + IgnoredEntries::most_bytes(cloud, query) +
+         cloud.tree().size() * sizeof(std::uint32_t) + query.model.size() * kModelPointBytes +
+         static_cast<unsigned>(threads) * kThreadBytes;
 }
 
 HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOptions& options,
@@ -152,7 +153,7 @@ HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOpti
     ResolvedPoints resolved(environment, hits);
     Tasks tasks(query, model, threads);
     if (options.only) resolved.leave_out([&](std::uint32_t cell) { return !options.only(cell); });
-    const IgnoredEntries ignored(cloud, query, options.only, threads);
+    IgnoredEntries ignored(cloud, query, options.only, threads);
     counted.ignored_points = ignored.mark(hits);
     if (options.journal != nullptr) options.journal->restore(hits);
     Shared shared{query, model, environment, resolved, tasks, progress, counted, options.journal};

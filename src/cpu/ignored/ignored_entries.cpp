@@ -2,17 +2,16 @@
 
 #include <atomic>
 #include <bit>
-#include <vector>
+#include <span>
 
 #include "cpu/first_failure.hpp"
 
 namespace clearway {
 
-/// visit(word, bits): of each block with ignored points, from several threads.
-template <typename Visit>
-std::uint64_t IgnoredEntries::for_each_word(const Visit& visit) const {
+std::uint64_t IgnoredEntries::mark(HitSet& hits) {
   if (!ignored_.any()) return 0;
-  const std::uint32_t blocks = cloud_.blocks_per_cell();
+  const std::size_t blocks = cloud_.blocks_per_cell();
+  words_.assign(cloud_.cells().size() * blocks, 0);
   std::atomic<std::uint64_t> points = 0;
   FirstFailure failure;
 #pragma omp parallel for schedule(dynamic, 16) num_threads(threads_)
@@ -20,15 +19,7 @@ std::uint64_t IgnoredEntries::for_each_word(const Visit& visit) const {
     const auto index = static_cast<std::uint32_t>(cell);
     if (failure.happened() || (only_ && !only_(index))) continue;
     try {
-      std::vector<std::uint64_t> searched(blocks);
-      points += ignored_.mask(index, searched, [&] { return cloud_.peek(index); });
-      for (std::uint32_t block = 0; block * kBlockPoints < cloud_.cells()[cell].count; ++block) {
-        const std::uint32_t left = cloud_.cells()[cell].count - block * kBlockPoints;
-        const std::uint64_t all =
-            ~std::uint64_t{0} >> (left < kBlockPoints ? kBlockPoints - left : 0);
-        const std::uint64_t bits = all & ~searched[block];
-        if (bits != 0) visit(cell * blocks + block, bits);
-      }
+      points += mark(index, hits);
     } catch (...) {
       failure.keep_current();
     }
@@ -37,17 +28,33 @@ std::uint64_t IgnoredEntries::for_each_word(const Visit& visit) const {
   return points;
 }
 
-std::uint64_t IgnoredEntries::mark(HitSet& hits) const {
-  return for_each_word([&](std::uint64_t word, std::uint64_t bits) {
-    if (!hits.has_first_pose()) return hits.mark_word(word, bits);
-    for (std::uint64_t left = bits; left != 0; left &= left - 1) {
-      hits.mark(word * kBlockPoints + static_cast<unsigned>(std::countr_zero(left)), 0);
+std::uint64_t IgnoredEntries::mark(std::uint32_t cell, HitSet& hits) {
+  const std::uint32_t blocks = cloud_.blocks_per_cell();
+  const std::uint32_t count = cloud_.cells()[cell].count;
+  const std::size_t first_word = std::size_t{cell} * blocks;
+  const std::span words = std::span(words_).subspan(first_word, blocks);
+  const std::uint64_t points = ignored_.mask(cell, words, [&] { return cloud_.peek(cell); });
+  for (std::uint32_t block = 0; block < blocks; ++block) {
+    const std::uint32_t first = block * kBlockPoints;
+    const std::uint32_t left = first < count ? count - first : 0;
+    const std::uint64_t all =
+        left >= kBlockPoints ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
+    words[block] = all & ~words[block];
+    if (words[block] == 0) continue;
+    if (!hits.has_first_pose()) hits.mark_word(first_word + block, words[block]);
+    for (std::uint64_t open = hits.has_first_pose() ? words[block] : 0; open != 0;
+         open &= open - 1) {
+      hits.mark((first_word + block) * kBlockPoints + static_cast<unsigned>(std::countr_zero(open)),
+                0);
     }
-  });
+  }
+  return points;
 }
 
 void IgnoredEntries::take_back(HitSet& hits) const {
-  for_each_word([&](std::uint64_t word, std::uint64_t bits) { hits.forget(word, bits); });
+  for (std::size_t word = 0; word < words_.size(); ++word) {
+    if (words_[word] != 0) hits.forget(word, words_[word]);
+  }
 }
 
 }  // namespace clearway

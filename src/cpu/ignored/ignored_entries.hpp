@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
+#include "core/cloud/kd_order.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/query/hit_set.hpp"
 #include "core/query/ignored_points.hpp"
@@ -19,17 +21,21 @@ class IgnoredEntries {
       : cloud_(cloud), ignored_(cloud, query), only_(only), threads_(threads) {}
 
   /// Returns how many there are. Throws InputError for a damaged cell.
-  std::uint64_t mark(HitSet& hits) const;
+  std::uint64_t mark(HitSet& hits);
   void take_back(HitSet& hits) const;
 
+  static std::uint64_t most_bytes(const PackedCloud& cloud, const QueryParameters& query) {
+    return query.ignores_points() ? cloud.entry_count() / kBlockPoints * sizeof(std::uint64_t) : 0;
+  }
+
  private:
-  template <typename Visit>
-  std::uint64_t for_each_word(const Visit& visit) const;
+  std::uint64_t mark(std::uint32_t cell, HitSet& hits);
 
   const PackedCloud& cloud_;
   IgnoredPoints ignored_;
   const std::function<bool(std::uint32_t)>& only_;
   int threads_;
+  std::vector<std::uint64_t> words_;  ///< of 64 entries each, those ignored, once marked
 };
 
 }  // namespace clearway
