@@ -73,21 +73,23 @@ class Campaign:
         lost = [task for task in self.tasks if task["vehicle"] == f"v{BROKEN_SLOW:02}"]
         self.lost = [task["task"] for task in lost if "shard" in task]
         self.lost_merge = lost[-1]["task"]
-        shards = [task["task"] for task in self.tasks
-                  if "shard" in task and task["task"] not in self.lost]
+        self.shards = [task["task"] for task in self.tasks
+                       if "shard" in task and task["task"] not in self.lost]
         self.merges = [task["task"] for task in self.tasks if "shards" in task]
         expect(len(self.merges) == len(SLOW), f"{len(self.merges)} runs are divided")
-        self.killed, self.stopped = shards[0], shards[-1]
+        self.killed = self.stopped = None
         self.broken = next(task["task"] for task in self.tasks
                            if task["vehicle"] == f"v{BROKEN_VEHICLE:02}")
-        self.disturbed = set()
 
     def disturb(self, look):
-        """Kills one task while it runs, and has Slurm send TERM to another one."""
-        for task, how in [(self.killed, self.kill), (self.stopped, self.stop)]:
-            running = look["list"][task]["status"] == "running"
-            if task not in self.disturbed and running and how(task):
-                self.disturbed.add(task)
+        """Kills one shard that is met while it runs, and has Slurm send TERM to another one."""
+        for task in self.shards:
+            if look["list"][task]["status"] != "running" or task in (self.killed, self.stopped):
+                continue
+            if self.killed is None:
+                self.killed = task if self.kill(task) else None
+            elif self.stopped is None:
+                self.stopped = task if self.stop(task) else None
 
     def kill(self, task):
         process = held(self.path, task)
@@ -136,6 +138,7 @@ class Campaign:
             done_before = done
             self.disturb(look)
             if not queue:
+                expect(None not in (self.killed, self.stopped), "no two shards were met running")
                 return status(self.path)
             expect(time.monotonic() < last, "it takes too long: " + "; ".join(queue))
             time.sleep(0.1)
