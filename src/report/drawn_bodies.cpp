@@ -38,9 +38,9 @@ void append_points(std::span<const Vec3> model, std::size_t most, std::uint8_t t
 
 /// For the page to show.
 std::vector<Vec3> surface_points(const DrawnBody& body, std::size_t most) {
-  const TriangleMesh mesh{{body.model.begin(), body.model.end()},
-                          {body.triangles.begin(), body.triangles.end()}};
-  return sample_mesh(mesh, spacing_for(mesh, static_cast<double>(most)), "the model");
+  return drawn_points(
+      {{body.model.begin(), body.model.end()}, {body.triangles.begin(), body.triangles.end()}},
+      static_cast<double>(most));
 }
 
 /// The square of the greatest depth of a place in the solids of a body at a pose; 0 outside.

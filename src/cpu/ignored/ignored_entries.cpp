@@ -40,10 +40,11 @@ std::uint64_t IgnoredEntries::mark(std::uint32_t cell, HitSet& hits) {
     const std::uint64_t all =
         left >= kBlockPoints ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
     words[block] = all & ~words[block];
-    if (words[block] == 0) continue;
-    if (!hits.has_first_pose()) hits.mark_word(first_word + block, words[block]);
-    for (std::uint64_t open = hits.has_first_pose() ? words[block] : 0; open != 0;
-         open &= open - 1) {
+    if (!hits.has_first_pose()) {
+      if (words[block] != 0) hits.mark_word(first_word + block, words[block]);
+      continue;
+    }
+    for (std::uint64_t open = words[block]; open != 0; open &= open - 1) {
       hits.mark((first_word + block) * kBlockPoints + static_cast<unsigned>(std::countr_zero(open)),
                 0);
     }

@@ -22,4 +22,9 @@ std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const st
 /// A spacing that gives about so many samples, beside the vertices, and is never refused.
 double spacing_for(const TriangleMesh& mesh, double samples);
 
+/// About so many points of a mesh's surface, beside its vertices, to be drawn.
+inline std::vector<Vec3> drawn_points(const TriangleMesh& mesh, double samples) {
+  return sample_mesh(mesh, spacing_for(mesh, samples), "the model");
+}
+
 }  // namespace clearway

@@ -24,8 +24,7 @@ void extend(Interval& whole, const Interval& part) {
 
 BodyEngine::BodyEngine(const PackedCloud& cloud, const Query& query,
                        std::vector<SearchedBody> bodies, const SlotLayout& layout)
-    : cloud_(cloud),
-      numbers_(query),
+    : numbers_(query),
       bodies_(std::move(bodies)),
       answers_(cloud, query, without_pages(layout)),
       cells_(layout.slots),

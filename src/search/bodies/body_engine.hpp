@@ -22,8 +22,8 @@ struct SearchedBody {
 /// the smallest of the BodyNumbers is kept. On any device.
 class BodyEngine final : public PageEngine {
  public:
-  /// query: with all bodies; layout: as of each body's engine. Cloud and query outlive it.
-  /// Allocates answer_bytes().
+  /// query: with all bodies; layout: as of each body's engine. What the bodies refer to outlives
+  /// it. Allocates answer_bytes().
   BodyEngine(const PackedCloud& cloud, const Query& query, std::vector<SearchedBody> bodies,
              const SlotLayout& layout);
 
@@ -50,7 +50,6 @@ class BodyEngine final : public PageEngine {
   template <typename Call>
   void for_all(Call call) const;
 
-  const PackedCloud& cloud_;
   const BodyNumbers numbers_;
   std::vector<SearchedBody> bodies_;
   PagePool answers_;

@@ -110,8 +110,7 @@ template <typename ModelOwner>
 Workload workload_of_model(const PackedCloud& cloud, const QueryParameters& query,
                            const ModelOwner& of, std::span<const Pose> poses) {
   return workload_of(cloud, query, of.model.empty() ? Box{} : box_of(of.model),
-                     of.is_surface() ? kPointsOfTriangle * of.triangles.size() : of.model.size(),
-                     poses);
+                     points_to_search(of.model.size(), of.triangles.size()), poses);
 }
 
 }  // namespace

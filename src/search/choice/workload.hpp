@@ -13,6 +13,11 @@ namespace clearway {
 /// A surface takes as long as so many points a triangle (docs/design/surfaces.md).
 inline constexpr std::uint64_t kPointsOfTriangle = 10;
 
+/// Of a model of so many points, or of a surface that they are the corners of.
+constexpr std::uint64_t points_to_search(std::uint64_t points, std::uint64_t triangles) {
+  return triangles > 0 ? kPointsOfTriangle * triangles : points;
+}
+
 /// What a query's cost follows from, estimated from a few poses and the boxes of the store's blocks
 /// in about a millisecond. The same for the same store and query.
 struct Workload {

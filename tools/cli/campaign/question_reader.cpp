@@ -123,8 +123,7 @@ std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions&
   header.model_points = points.count;
   header.model_triangles = points.triangles;
   header.model_hash = points.hash;
-  const std::uint64_t estimated =
-      points.triangles > 0 ? kPointsOfTriangle * points.triangles : points.count;
+  const std::uint64_t estimated = points_to_search(points.count, points.triangles);
   return named(run.environment.key, [&] {
     return estimate_.shards(options, {{points.box, estimated, path.poses}});
   });
@@ -147,9 +146,8 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
   for (const Body& body : query.bodies) {
     header.model_points += body.model.size();
     header.model_triangles += body.triangles.size();
-    const std::uint64_t points =
-        body.is_surface() ? kPointsOfTriangle * body.triangles.size() : body.model.size();
-    models.push_back({box_of(body.model), points, body.poses});
+    models.push_back({box_of(body.model),
+                      points_to_search(body.model.size(), body.triangles.size()), body.poses});
   }
   header.model_hash = hash_of_bodies(query.bodies);
   return named(run.environment.key, [&] { return estimate_.shards(options, models); });

@@ -52,7 +52,7 @@ std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const Mod
                                  const ConflictCommand& options, const std::vector<Pose>& path,
                                  const Result& result, std::vector<Message>& warnings);
 
-/// The points of the model that a result is of. Throws InputError for another model.
+/// The model that a result is of. Throws InputError for another model.
 ModelShape read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                          const Result& result);
 

@@ -73,9 +73,7 @@ constexpr double kDrawnPlaces = 20'000;
 /// What is drawn of a model: its points, or places of its triangles.
 std::vector<Vec3> drawn(const std::vector<Vec3>& points,
                         const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  if (triangles.empty()) return points;
-  const TriangleMesh mesh{points, triangles};
-  return sample_mesh(mesh, spacing_for(mesh, kDrawnPlaces), "a picture of the model");
+  return triangles.empty() ? points : drawn_points({points, triangles}, kDrawnPlaces);
 }
 
 /// What conflicts are seen from: the model, or the bodies of the vehicle.
