@@ -1,17 +1,15 @@
 #!/usr/bin/python3
-"""Checks the prose for users: README.md, docs/guide and the help texts of the programs.
+"""Checks what a machine can judge in the documents and in the help of the programs.
 
 It fails, with file and line, on
-- a sentence of more than 30 words,
 - a relative link or anchor in any Markdown file that leads nowhere,
-- an option in README.md or docs/guide that the program does not have,
+- a command or option in README.md or docs/guide that the program does not have,
 - an option of a program that docs/guide does not describe,
 - a code of a warning or note that the sources have and docs/guide/warnings.md does not list, or
-  the other way round.
-It prints the mean number of words per sentence.
+  the other way round,
+- a term that docs/design/glossary.md defines twice, and a word that its section "Words that are
+  not used" replaces, where README.md, docs/guide or a help text has it.
 
-Words: a code span is one word. Tables, code blocks and headings are left out; a list item is a
-sentence of its own.
 Options: one on a line with a command belongs to it, and is checked where that is one of the
 programs; one alone in a code span or a message may be of any of them. A heading that is a command
 (`## clearway run`) promises all options of that command below it.
@@ -26,10 +24,9 @@ import sys
 from pathlib import Path
 from urllib.parse import unquote
 
-from prose import codes, markdown
+from prose import codes, markdown, terms
 from prose.program import OPTION, Program
 
-MOST_WORDS = 30
 OUTPUT_LANGUAGES = {"text", "json", "csv", "console"}
 PREFIXES = {"$", "time", "nice", "sudo"}
 
@@ -37,7 +34,7 @@ PREFIXES = {"$", "time", "nice", "sudo"}
 class Checker:
     def __init__(self, root, programs):
         self.root, self.programs = root.resolve(), {p.name: p for p in programs}
-        self.problems, self.counts = [], {}
+        self.problems = []
         self.files = self._files()
         self.blocks = {path: markdown.parse(path.read_text(encoding="utf-8"))
                        for path in sorted(self.files) if path.suffix == ".md"}
@@ -55,29 +52,21 @@ class Checker:
         return {path for path in paths if path.is_file()}
 
     def run(self):
+        glossary = terms.Glossary(self.root)
+        self.problems.extend(glossary.problems())
         for path, blocks in self.blocks.items():
             name = str(path.relative_to(self.root))
             self._check_links(path, name, blocks)
             if name == "README.md" or name.startswith("docs/guide/"):
-                group = "README.md" if name == "README.md" else "docs/guide"
                 for block in blocks:
-                    if block.kind == "prose":
-                        self._check_sentences(group, name + ":{}", block.line, block.text)
+                    if block.kind != "code":
+                        self.problems.extend(glossary.not_used(name, block.line, block.text))
                 self._check_options(name, blocks)
         for program in self.programs.values():
-            for text, where in {text: where for where, text in reversed(program.prose)}.items():
-                self._check_sentences(f"{program.name} --help", where, 0, text)
+            for where, text in program.prose:
+                self.problems.extend(glossary.not_used(where, 0, text))
             self._check_described(program)
         self.problems.extend(codes.problems(self.root, self.files))
-
-    def _check_sentences(self, group, where, line, text):
-        for at, sentence in markdown.sentences(markdown.plain(text), line):
-            words = markdown.count_words(sentence)
-            if words:
-                self.counts.setdefault(group, []).append(words)
-            if words > MOST_WORDS:
-                self.problems.append(
-                    f"{where.format(at)}: {words} words, expected at most {MOST_WORDS}: {sentence}")
 
     def _check_links(self, path, name, blocks):
         for block in blocks:
@@ -120,15 +109,36 @@ class Checker:
             if where.startswith("docs/guide/"):
                 self.described[""].update(options)
                 self.described.setdefault(heading, set()).update(options)
+            if not is_text:
+                self._check_command(where, part.split())
             known = self._known_options([] if is_text else part.split())
             for option in options:
                 if known is not None and option not in known:
                     self.problems.append(f"{where}: {option}: no such option: {part.strip()}")
 
-    def _known_options(self, words):
-        """What may stand on a line of these words; None: another program's options."""
+    def _check_command(self, where, words):
+        """Each word that names a command of the program, down to its last subcommand."""
+        words = self._without_prefixes(words)
+        program = self.programs.get(Path(words[0]).name) if words else None
+        command = program.name if program else ""
+        for word in words[1:] if program else []:
+            below = program.subcommands[command]
+            if not below or not re.fullmatch(r"[a-z][a-z-]*", word):
+                return
+            if word not in below:
+                self.problems.append(f"{where}: {command} {word}: no such command")
+                return
+            command = f"{command} {word}"
+
+    @staticmethod
+    def _without_prefixes(words):
         while words and (words[0] in PREFIXES or re.match(r"[A-Z_]+=", words[0])):
             words = words[1:]
+        return words
+
+    def _known_options(self, words):
+        """What may stand on a line of these words; None: another program's options."""
+        words = self._without_prefixes(words)
         if not words or not re.fullmatch(r"[\w./+][\w./+-]*", words[0]):
             return set().union(*(program.all_options() for program in self.programs.values()))
         program = self.programs.get(Path(words[0]).name)
@@ -155,11 +165,6 @@ class Checker:
     def report(self):
         for problem in sorted(set(self.problems)):
             print(problem)
-        every = [count for counts in self.counts.values() for count in counts]
-        for group, counts in [*sorted(self.counts.items()), ("all", every)]:
-            mean = sum(counts) / max(1, len(counts))
-            print(f"{group}: {len(counts)} sentences, {mean:.1f} words each, "
-                  f"{max(counts, default=0)} at most")
         return 1 if self.problems else 0
 
 

@@ -88,8 +88,13 @@ def body(program, command, level):
     lines = [".SH SYNOPSIS" if level == 0 else ".PP", synopsis]
     if any(more):
         lines += [*([".SH DESCRIPTION"] if level == 0 else [".PP"]), *paragraphs(more)]
-    options = [option(name, text) for kind, name, text in entries if kind != "Subcommands"]
-    lines += [f"{section} OPTIONS", *options] if options else []
+    groups = {}  # in the help's order
+    for kind, name, text in entries:
+        if kind != "Subcommands":
+            groups.setdefault(kind, []).append(option(name, text))
+    lines += [f"{section} OPTIONS"] if groups else []
+    for title, options in groups.items():
+        lines += options if title in ("Positionals", "Options") else [f".SS {title}", *options]
     if below and command in PAGED:
         lines.append(".SH COMMANDS")
         for kind, name, text in entries:

@@ -32,6 +32,7 @@ struct Body {
   std::vector<std::uint32_t> path_pose;  ///< of each, the index of the path's pose; ascending
   std::vector<std::array<std::uint32_t, 3>> triangles = {};  ///< as Query::triangles
   std::vector<std::uint32_t> solid_of = {};                  ///< as Query::solid_of
+  double model_spacing = 0;                                  ///< as Query::model_spacing
 
   bool is_surface() const { return !triangles.empty(); }
   bool is_solid() const { return !solid_of.empty(); }

@@ -3,10 +3,12 @@
 /// Clearway: which points of a scanned environment lie within the search radius of a moving model?
 /// docs/guide/library.md walks through it.
 
+#include "clearway/answer.hpp"      // IWYU pragma: export
 #include "clearway/body.hpp"        // IWYU pragma: export
 #include "clearway/conflicts.hpp"   // IWYU pragma: export
 #include "clearway/convert.hpp"     // IWYU pragma: export
 #include "clearway/error.hpp"       // IWYU pragma: export
+#include "clearway/file_unit.hpp"   // IWYU pragma: export
 #include "clearway/follow.hpp"      // IWYU pragma: export
 #include "clearway/ignored.hpp"     // IWYU pragma: export
 #include "clearway/merge.hpp"       // IWYU pragma: export
@@ -19,4 +21,5 @@
 #include "clearway/shard.hpp"       // IWYU pragma: export
 #include "clearway/store.hpp"       // IWYU pragma: export
 #include "clearway/trajectory.hpp"  // IWYU pragma: export
+#include "clearway/unsearched.hpp"  // IWYU pragma: export
 #include "clearway/vehicle.hpp"     // IWYU pragma: export

@@ -8,6 +8,7 @@
 
 #include "clearway/body.hpp"
 #include "clearway/box.hpp"
+#include "clearway/model.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/result.hpp"
@@ -33,6 +34,9 @@ struct ConflictOptions {
   Axis forward = Axis::kPlusX, up = Axis::kPlusZ;  ///< of the model; not along one line
   /// Of the model's points, for results that do not hold it. Without any, sides are unknown.
   std::optional<Box> model_box = {};
+  /// The one model of the search, which outlives the call: for least shifts. Of a vehicle, `bodies`
+  /// are. Without either, shifts are not known.
+  const ModelShape* model = nullptr;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;  ///< 0: all cores
   ProgressCallback progress = nullptr;
@@ -44,14 +48,27 @@ struct ConflictOptions {
 
 /// Colliding points that hang together.
 struct Conflict {
-  std::uint32_t id = 0;                         ///< 1, 2, ... by chainage_from, then source
-  std::uint64_t points = 0;                     ///< colliding ones
-  std::uint64_t source = 0;                     ///< the smallest of its points
-  Box box{};                                    ///< of its points, metres
-  Vec3 centroid{};                              ///< from exact sums of the stored integers
-  std::uint32_t first_pose = 0, last_pose = 0;  ///< smallest and greatest first pose of its points
-  double chainage_from = 0, chainage_to = 0;    ///< of these, metres along the path
-  std::optional<double> least_distance = {};    ///< metres; where the result has clearances
+  std::uint32_t id = 0;      ///< 1, 2, ... by chainage_from, then source
+  std::uint64_t points = 0;  ///< colliding ones
+  std::uint64_t source = 0;  ///< the smallest of its points
+  Box box{};                 ///< of its points, metres
+  Vec3 centroid{};           ///< from exact sums of the stored integers
+  /// The least index of a pose that touches one of its points, and the greatest. Between poses, of
+  /// a pose that stands for the way to the next. See Conflicts::has_last_poses.
+  std::uint32_t first_pose = 0, last_pose = 0;
+  /// How far along the path first_pose and last_pose are, metres. With motion between poses,
+  /// chainage_to is that of the pose after last_pose.
+  double chainage_from = 0, chainage_to = 0;
+  /// Station of the obstacle itself, metres: the chainage of the pose that it is seen from, plus
+  /// how far ahead of that pose the nearest point lies. It is seen from where it is nearest, or,
+  /// without clearances, from its first pose and by the first point that is touched there. None
+  /// where the pose's rotation cannot be inverted.
+  std::optional<double> obstacle_chainage = {};
+  /// How far the vehicle has to be shifted to the left, or to the right, along the Y axis of the
+  /// path's poses, so that the points of this conflict are free at all its poses; metres. Other
+  /// points may need more. None where 2 m do not free them, or the model was not given.
+  std::optional<double> shift_left = {}, shift_right = {};
+  std::optional<double> least_distance = {};         ///< metres; where the result has clearances
   std::optional<std::uint32_t> nearest_pose = {};    ///< that has it
   std::optional<std::uint64_t> nearest_source = {};  ///< and the point
   std::optional<double> encroachment = {};           ///< radius - least_distance
@@ -60,10 +77,13 @@ struct Conflict {
   std::optional<double> depth = {};
   std::optional<std::uint64_t> points_inside = {};
   std::optional<Vec3> nearest_point = {};  ///< where it is; not for results before version 3
-  Side side = Side::kUnknown;  ///< of the nearest point, or else of the centroid at the first pose
-  /// Of the same place, metres from the pose's position: to the left along the model's own axis,
-  /// and up. The model's box is not needed. None where the pose's rotation cannot be inverted.
-  /// With ConflictOptions::bodies, of the pose that the conflict's body has there.
+  /// On which side of the model or body the points lie that it touches at the first pose
+  /// (docs/design/findings.md, "Sides").
+  Side side = Side::kUnknown;
+  /// Where the point that obstacle_chainage belongs to lies, metres from the pose's position: to
+  /// the left along the model's own axis, and up. The model's box is not needed. None where the
+  /// pose's rotation cannot be inverted. With ConflictOptions::bodies, of the pose that the
+  /// conflict's body has there.
   std::optional<double> lateral = {}, height = {};
   std::uint64_t group = 0;  ///< smallest source of the whole group, before it was cut
   /// Of a vehicle's result, as an index of Result::bodies(): the one that has the least distance,
@@ -71,12 +91,26 @@ struct Conflict {
   std::optional<std::uint32_t> body = {};
 };
 
+/// A group of too few points to be listed.
+struct SmallGroup {
+  std::uint64_t points = 0;
+  std::uint64_t source = 0;  ///< the smallest of its points
+  Box box{};                 ///< of its points, metres
+  std::uint32_t first_pose = 0, last_pose = 0;
+  double chainage_from = 0, chainage_to = 0;  ///< as Conflict has them
+};
+
 struct Conflicts {
   std::vector<Conflict> listed;  ///< by id
   std::uint64_t colliding_points = 0;
   std::uint64_t groups = 0;                          ///< before cutting, small ones too
   std::uint64_t small_groups = 0, small_points = 0;  ///< not listed
-  double path_length = 0;                            ///< metres
+  std::vector<SmallGroup> small;                     ///< those, by chainage_from, then source
+  /// Whether the result keeps the last poses of its points. Those of older releases do not: then a
+  /// conflict's last pose is the greatest first pose of its points, or the nearest pose if that is
+  /// greater, and it may touch them later still.
+  bool has_last_poses = false;
+  double path_length = 0;  ///< metres
   /// The longest stretch of the path that one group has, before it was cut, metres.
   double longest_group = 0;
   std::uint64_t longest_group_points = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/file_unit.hpp"
 #include "clearway/progress.hpp"
 
 namespace clearway {
@@ -20,7 +21,10 @@ struct ConvertOptions {
   std::optional<double> regular_size =
       std::nullopt;  ///< metres: cells are cubes of it; none: adaptive
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
-  int threads = 0;          ///< 0: all cores
+  int threads = 0;  ///< 0: all cores
+  /// The unit of the coordinates of inputs that name none: the metre, or a foot. Inputs that name a
+  /// unit must name this one. None: the unit stays unknown and is taken for the metre.
+  FileUnit unit = {};
   bool ignore_crs = false;  ///< coordinates in degrees, or in different units, as they are
   /// Of x, y and z in texts: numbers counted from 1, or names of the header. Empty: as they say.
   std::vector<std::string> columns = {};

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clearway/found_place.hpp"
-#include "clearway/ignored.hpp"
+#include "clearway/answer.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 
@@ -30,19 +29,12 @@ struct MergeOptions {
   StopFlag stop = nullptr;
 };
 
-/// What the result says, as of SearchReport.
-struct MergeReport {
-  bool was_finished = false;  ///< the result was there already: it has the places
-  QueryParameters parameters;
-  std::string length_unit;  ///< of the environment, as Store::length_unit
+/// What the merged result says. The answer of a result that was there already is read from its
+/// file.
+struct MergeReport : Answer {
+  bool was_finished = false;  ///< the result was there already
+  std::string length_unit;    ///< of the environment, as Store::length_unit
   std::uint32_t parts = 0;
-  std::uint64_t environment_points = 0, model_points = 0, poses = 0;
-  std::uint64_t colliding_points = 0, clearance_points = 0, profile_poses = 0;
-  std::uint64_t model_solids = 0;   ///< parts of the model that have an inside
-  std::uint64_t inside_points = 0;  ///< points inside them at any pose
-  IgnoredPointCounts ignored = {};  ///< of the parameters' lists
-  std::optional<FoundPlace> first_place = {}, least_clearance = {}, least_profile = {};
-  std::vector<std::string> bodies = {};    ///< names, where the query has several
   std::vector<PartWarning> warnings = {};  ///< each once, in the order of the parts
 };
 

@@ -57,6 +57,10 @@ struct Query : QueryParameters {
   /// triangles of a solid are closed: each edge is used as often in one direction as in the other,
   /// by vertices of the same values. None: nothing has an inside.
   std::vector<std::uint32_t> solid_of = {};
+  /// Metres. The model's points are samples of a mesh, and no place of its surface is farther than
+  /// this from one of them; so the surface may come closer than the radius, by as much, to a point
+  /// that does not collide. The answer says so. 0: the model is no sampled mesh.
+  double model_spacing = 0;
   /// Several models in the place of one, each with poses of its own; then there is no model. A
   /// first pose, a clearance's pose and a pose of the profile are of the path.
   std::vector<Body> bodies = {};
@@ -76,6 +80,13 @@ inline std::uint64_t solid_count(const Query& query) {
   std::uint64_t count = solid_count(query.solid_of);
   for (const Body& body : query.bodies) count += solid_count(body.solid_of);
   return count;
+}
+
+/// Query::model_spacing, or the greatest of all bodies.
+inline double model_spacing(const Query& query) {
+  double spacing = query.model_spacing;
+  for (const Body& body : query.bodies) spacing = std::max(spacing, body.model_spacing);
+  return spacing;
 }
 
 }  // namespace clearway

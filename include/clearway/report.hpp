@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
 #include "clearway/pose.hpp"
@@ -39,8 +40,10 @@ struct ReportOptions {
   /// How conflicts are found; memory, threads, progress and stop flag hold for all of the report.
   /// Its bodies do not count, those below do.
   ConflictOptions conflicts = {};
-  PoseLabels labels = {};              ///< of the poses, where the trajectory has them
-  std::vector<Message> warnings = {};  ///< of the inputs and the query: the page shows them
+  PoseLabels labels = {};  ///< of the poses, where the trajectory has them
+  /// Warnings for the page to show, such as those of reading model and trajectory. What the search
+  /// warned of need not be among them: it is found again from store, model and poses.
+  std::vector<Message> warnings = {};
   bool overwrite = false;
   std::vector<std::uint32_t> model_solid_of = {};  ///< with solids: as Query has them
   /// Of a vehicle's result: its bodies; then the model is empty.
@@ -48,7 +51,8 @@ struct ReportOptions {
 };
 
 struct ReportSummary {
-  bool clear = true;
+  bool clear = true;  ///< the verdict is Verdict::kClear
+  Verdict verdict = Verdict::kClear;
   std::uint64_t bytes = 0;  ///< of the page
   Conflicts conflicts;      ///< empty where the result has no first poses
   /// One JSON object: what the page says, without its points.

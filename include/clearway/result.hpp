@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "clearway/box.hpp"
 #include "clearway/ignored.hpp"
 #include "clearway/query.hpp"
@@ -49,12 +50,17 @@ class Result {
   std::uint64_t environment_points() const;
   const IgnoredPointCounts& ignored() const;  ///< of the parameters' lists
   std::uint64_t poses() const;
+  /// The verdict and the places that matter most. Reads all tables.
+  Answer answer() const;
 
   std::vector<std::uint64_t> source() const;  ///< indices in the order of the scans, ascending
   std::vector<Vec3> xyz() const;
   /// As QueryParameters::first_pose defines it; empty unless the query asked for it. Files of 0.1.0
   /// with motion between poses may be one higher: their ways did not include their ends.
   std::vector<std::uint32_t> first_pose() const;
+  /// The greatest index of a pose that touches each point; between poses, the start of the last way
+  /// that does. Empty where there are no first poses, and in files of older releases.
+  std::vector<std::uint32_t> last_pose() const;
   /// Names of the bodies, where the query has several; otherwise none.
   const std::vector<std::string>& bodies() const;
   /// Of the first pose, as an index of bodies(); empty unless the query has bodies and asked for
@@ -62,6 +68,8 @@ class Result {
   std::vector<std::uint32_t> first_body() const;
   Clearances clearance() const;  ///< empty unless the query asked for it
   Profile profile() const;       ///< likewise
+  /// As Query::model_spacing, the greatest of all bodies; 0 in files of earlier releases, too.
+  double model_spacing() const;
   /// Of the model's points; none in files before version 3.
   std::optional<Box> model_box() const;
 

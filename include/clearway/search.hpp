@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "clearway/found_place.hpp"
-#include "clearway/ignored.hpp"
+#include "clearway/answer.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
@@ -45,6 +44,9 @@ struct SearchOptions {
   /// Of reading model and trajectory, told already: the report holds them too, as a part does, and
   /// strict counts them. To be given again where a search is resumed.
   std::vector<Message> input_warnings = {};
+  /// The model lacks its lowest part, as with ModelOptions::above. Then it does not stand on the
+  /// ground, and ignored points that collide are not warned of for their number alone.
+  bool model_is_cut = false;
   std::shared_ptr<const DeviceStart> started = nullptr;  ///< start_devices(), or done here
   /// The process uses CUDA for nothing else: the GPUs' contexts end while the result is written.
   bool end_gpus = false;
@@ -66,6 +68,7 @@ struct SearchSeconds {
   double total = 0;
   double context = 0;       ///< of starting the GPUs, beside all that comes before the engine
   double context_wait = 0;  ///< of it, what the search waited for
+  double ignored = 0;       ///< of counting the ignored points that would collide
   double thin = 0;          ///< of choosing what a tolerance keeps
   double field = 0;  ///< of making what the engine looks up: the model field, the grid's groups
   double plan = 0;
@@ -85,25 +88,14 @@ struct EngineEstimate {
   double sweep_seconds = 0, kdtree_seconds = 0;
 };
 
-/// What was found, and how.
-struct SearchReport {
-  bool was_finished = false;  ///< the result was there already: nothing was searched
-  std::uint64_t environment_points = 0, model_points = 0, poses = 0;
+/// What was found, which is the answer, and how. The answer of a result that was there already is
+/// read from its file.
+struct SearchReport : Answer {
+  bool was_finished = false;          ///< the result was there already: nothing was searched
   std::uint64_t model_triangles = 0;  ///< of a surface, whose corners the points are; else 0
-  std::uint64_t model_solids = 0;     ///< parts of it that have an inside
-  std::uint64_t colliding_points = 0;
-  std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
-  std::uint64_t inside_points = 0;     ///< of them those inside a solid of the model at any pose
-  std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
-  /// Of the whole environment, in the order of the result's parameters: ascending, each once.
-  IgnoredPointCounts ignored;
   /// Ignored points of the cells that this search looked at: not of a journal's cells, nor of those
   /// that no pose comes near.
   std::uint64_t ignored_looked_at = 0;
-  /// Where the query asks for it, and not of a result that was there already: the point with the
-  /// smallest first pose, the least clearance and the least distance of the profile, with its
-  /// first pose. Of several points the smallest source.
-  std::optional<FoundPlace> first_place, least_clearance, least_profile;
   std::vector<Message> warnings;
 
   Engine engine = Engine::kAuto;                  ///< that searched
@@ -111,7 +103,6 @@ struct SearchReport {
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< by which device kAuto was resolved
   std::string device_name = "the CPU";     ///< for people
-  std::optional<Shard> shard;              ///< where it is the answer of one part alone
   std::optional<double> shard_share;       ///< of a shard: its estimated work over the mean
   std::uint64_t searches = 0;              ///< pairs of a pose and a model point or triangle
   std::optional<ToleranceReport> tolerance;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/progress.hpp"
 
 namespace clearway {
 
@@ -30,6 +31,10 @@ class Store {
   const std::string& crs_wkt() const;  ///< as the scans had it, or empty
   /// "metre", "foot", "us-survey-foot", "degree" or "unknown".
   std::string length_unit() const;
+  /// Metres of that unit, as ModelOptions::environment_unit takes them; 1 where it is unknown.
+  double metres_per_unit() const;
+  /// What the conversion warned of, with codes as "store-same-place"; at most 64.
+  std::vector<Message> warnings() const;
   const std::filesystem::path& path() const { return path_; }
 
   /// For the library itself.

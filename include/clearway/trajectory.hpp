@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/file_unit.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
@@ -47,10 +48,15 @@ struct TrajectoryOptions {
   std::string default_crs = {};
   /// The geographic CRS of latitudes and longitudes; empty: WGS 84.
   std::string datum = {};
-  /// Length of the unit of positions; 0: metres, unless the file declares another.
-  double metres_per_unit = 0;
-  /// Metres of the environment's unit, into which a known unit is converted.
+  /// The unit of positions, for example kMetresPerMillimetre or FileUnit::named("us-ft"); none:
+  /// metres, unless the file declares another.
+  FileUnit metres_per_unit = {};
+  /// Metres of the environment's unit, as Store::metres_per_unit() has them, into which a known
+  /// unit is converted.
   double environment_unit = 1;
+  /// The environment names no unit, and environment_unit is assumed: a file in another unit is then
+  /// warned of ("unit-assumed").
+  bool environment_unit_is_assumed = false;
   /// Where the point whose positions the file holds lies in the model's frame, in the
   /// environment's unit.
   Vec3 lever_arm{0, 0, 0};

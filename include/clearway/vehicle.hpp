@@ -13,9 +13,8 @@ namespace clearway {
 
 struct VehicleOptions {
   /// Of the models of all bodies; where a body has a model_unit, that one counts. Lengths of the
-  /// file that have a unit become those of environment_unit. By default a mesh is searched as its
-  /// surface, and points as points.
-  ModelOptions model{.as = ModelAs::kSurfaceOfMesh};
+  /// file that have a unit become those of environment_unit.
+  ModelOptions model = {};
   TrajectoryOptions trajectory = {};  ///< of bodies that have one of their own
   int threads = 0;                    ///< 0: all cores; the bodies do not depend on it
 };

@@ -5,8 +5,10 @@
 #include "core/util/format.hpp"
 #include "core/util/message_log.hpp"
 #include "io/merge/merge_parts.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/check/verify_result.hpp"
 #include "io/system/pending_file.hpp"
+#include "search/ignored/colliding_ignored.hpp"
 #include "search/threads.hpp"
 
 namespace clearway {
@@ -24,19 +26,22 @@ bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress
 
 MergeReport report_of(const PartSet& set) {
   MergeReport report;
-  report.parameters = set.header();
+  static_cast<Answer&>(report) = set.answer();
   report.length_unit = set.parts().front().header().part->length_unit;
   report.parts = static_cast<std::uint32_t>(set.parts().size());
-  report.environment_points = set.header().environment_points;
-  report.model_points = set.header().model_points;
-  report.model_solids = set.header().model_solids;
-  report.poses = set.header().poses;
-  report.bodies = set.header().bodies;
-  report.colliding_points = set.collisions();
-  report.clearance_points = set.clearances();
   report.warnings = set.warnings();
-  report.ignored = set.header().ignored;
   return report;
+}
+
+/// Where ignored points may have made the answer: of all parts, since only together they tell.
+void warn_of_ignored(const PartSet& set, const MergeOptions& options, MergeReport& report) {
+  const ResultPart& part = *set.parts().front().header().part;
+  std::vector<Message> warnings;
+  MessageLog log(options.message, warnings);
+  warn_of_colliding_ignored(report, part.model_is_cut, length_unit_of(part.length_unit), log);
+  for (Message& warning : warnings) {
+    report.warnings.push_back({std::move(warning), report.parts});
+  }
 }
 
 /// Of a result that is there already too.
@@ -64,15 +69,16 @@ MergeReport merge(const std::vector<std::filesystem::path>& parts,
     MergeReport report = report_of(set);
     tell_warnings(report.warnings, report.parts, options);
     report.was_finished = options.resume && is_merged(set, output, progress);
-    if (report.was_finished) return report;
+    if (report.was_finished) {
+      static_cast<Answer&>(report) = answer_of(ResultReader(output));
+      add_doubts({report.warnings.begin(), report.warnings.end()}, report);
+      warn_of_ignored(set, options, report);
+      return report;
+    }
     if (!options.overwrite) pending.refuse_existing();
-    const MergedResult merged = merge_parts(set, pending.partial(), options.memory_bytes, progress);
+    merge_parts(set, pending.partial(), options.memory_bytes, progress, report);
     pending.publish();
-    report.profile_poses = merged.profile_poses;
-    report.inside_points = merged.inside_points;
-    report.first_place = merged.first_place;
-    report.least_clearance = merged.least_clearance;
-    report.least_profile = merged.least_profile;
+    warn_of_ignored(set, options, report);
     return report;
   });
 }

@@ -1,5 +1,6 @@
 #include "clearway/result.hpp"
 
+#include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -14,6 +15,7 @@ const QueryParameters& Result::parameters() const { return reader_->header(); }
 std::uint64_t Result::environment_points() const { return reader_->header().environment_points; }
 const IgnoredPointCounts& Result::ignored() const { return reader_->header().ignored; }
 std::uint64_t Result::poses() const { return reader_->header().poses; }
+Answer Result::answer() const { return answer_of(*reader_); }
 
 std::vector<std::uint64_t> Result::source() const {
   std::vector<std::uint64_t> out(size());
@@ -31,6 +33,13 @@ std::vector<std::uint32_t> Result::first_pose() const {
   if (!parameters().first_pose) return {};
   std::vector<std::uint32_t> out(size());
   reader_->read_first_pose(0, out);
+  return out;
+}
+
+std::vector<std::uint32_t> Result::last_pose() const {
+  if (!reader_->header().last_pose) return {};
+  std::vector<std::uint32_t> out(size());
+  reader_->read_last_pose(0, out);
   return out;
 }
 
@@ -67,6 +76,8 @@ Profile Result::profile() const {
   if (rows > 0) reader_->read_profile(0, out.distance, out.source, out.xyz, out.chainage);
   return out;
 }
+
+double Result::model_spacing() const { return reader_->header().model_spacing.metres; }
 
 std::optional<Box> Result::model_box() const {
   if (!reader_->header().has_model_box()) return std::nullopt;

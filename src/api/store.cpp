@@ -27,4 +27,11 @@ std::vector<std::uint64_t> Store::class_points() const {
 const std::string& Store::crs_wkt() const { return reader_->metadata().crs_wkt; }
 std::string Store::length_unit() const { return to_string(reader_->metadata().unit); }
 
+std::vector<Message> Store::warnings() const { return store_warnings(reader_->metadata()); }
+
+double Store::metres_per_unit() const {
+  const double metres = metres_of(reader_->metadata().unit);
+  return metres > 0 ? metres : 1;
+}
+
 }  // namespace clearway

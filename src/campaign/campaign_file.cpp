@@ -19,6 +19,8 @@ const std::vector<OptionKey> kModelKeys{{"unit", "--model-unit", ValueKind::kTex
                                         {"spacing", "--model-spacing", ValueKind::kLength},
                                         {"vertices", "--model-vertices", ValueKind::kFlag},
                                         {"above", "--model-above", ValueKind::kLength}};
+/// Options of the search alone: conflicts and reports take the kind of model from the result.
+const std::vector<OptionKey> kModelKindKeys{{"as", "--model-as", ValueKind::kText}};
 const std::vector<OptionKey> kAxisKeys{{"forward", "--forward", ValueKind::kText},
                                        {"up", "--up", ValueKind::kText}};
 const std::vector<OptionKey> kTrajectoryKeys{
@@ -29,20 +31,28 @@ const std::vector<OptionKey> kTrajectoryKeys{
     {"datum", "--trajectory-datum", ValueKind::kText},
     {"unit", "--trajectory-unit", ValueKind::kText},
     {"lever_arm", "--lever-arm", ValueKind::kList}};
+const std::vector<OptionKey> kChainageKeys{
+    {"chainage_start", "--chainage-start", ValueKind::kLength}};
 const std::vector<OptionKey> kQueryKeys{{"first_pose", "--first-pose", ValueKind::kFlag},
                                         {"clearance", "--clearance", ValueKind::kLength},
                                         {"profile", "--profile", ValueKind::kLength},
                                         {"between_poses", "--between-poses", ValueKind::kFlag},
+                                        {"tolerance", "--tolerance", ValueKind::kLength},
+                                        {"precision", "--precision", ValueKind::kText},
                                         {"ignore_classes", "--ignore-class", ValueKind::kList},
                                         {"ignore_boxes", "--ignore-box", ValueKind::kLists},
                                         {"strict", "--strict", ValueKind::kFlag}};
 const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
                                            {"min_points", "--min-points", ValueKind::kCount},
                                            {"split", "--split", ValueKind::kLength}};
-const std::vector<OptionKey> kSearchKeys{{"engine", "--engine", ValueKind::kText},
-                                         {"device", "--device", ValueKind::kText},
-                                         {"gpus", "--gpus", ValueKind::kList},
-                                         {"device_memory", "--device-memory", ValueKind::kSize}};
+const std::vector<OptionKey> kSearchKeys{
+    {"engine", "--engine", ValueKind::kText},
+    {"device", "--device", ValueKind::kText},
+    {"gpus", "--gpus", ValueKind::kList},
+    {"device_memory", "--device-memory", ValueKind::kSize},
+    {"field_voxel", "--field-voxel", ValueKind::kLength},
+    {"grid_cell", "--grid-cell", ValueKind::kLength},
+    {"journal_interval", "--journal-interval", ValueKind::kNumber}};
 const std::vector<OptionKey> kLimitKeys{{"memory", "--memory", ValueKind::kSize},
                                         {"threads", "--threads", ValueKind::kCount}};
 
@@ -145,15 +155,19 @@ void read_entries(const KeyReader& file, const fs::path& folder, Campaign& campa
   EntryReader<Entry> environments(folder, "store", {});
   campaign.environments =
       environments.read(file.at("environments"), [](const KeyReader&, Entry&) {});
-  EntryReader<Vehicle> vehicles(folder, "model", names_of(kModelKeys, names_of(kAxisKeys, {})));
+  EntryReader<Vehicle> vehicles(
+      folder, "model", names_of(kModelKeys, names_of(kModelKindKeys, names_of(kAxisKeys, {}))));
   campaign.vehicles =
       vehicles.read(file.at("vehicles"), [](const KeyReader& member, Vehicle& vehicle) {
         vehicle.arguments = arguments_of(member, kModelKeys);
+        vehicle.kind = arguments_of(member, kModelKindKeys);
         vehicle.axes = arguments_of(member, kAxisKeys);
       });
-  EntryReader<Route> routes(folder, "trajectory", names_of(kTrajectoryKeys, {"environment"}));
+  EntryReader<Route> routes(folder, "trajectory",
+                            names_of(kTrajectoryKeys, names_of(kChainageKeys, {"environment"})));
   campaign.routes = routes.read(file.at("routes"), [&](const KeyReader& member, Route& route) {
     route.arguments = arguments_of(member, kTrajectoryKeys);
+    route.chainage = arguments_of(member, kChainageKeys);
     route.environment = environment_of(member, campaign.environments);
   });
 }

@@ -20,11 +20,13 @@ struct Vehicle : Entry {
   /// A JSON file of several bodies, not a model.
   bool has_bodies() const { return file.extension() == ".json"; }
 
-  Arguments axes;  ///< of conflicts and reports
+  Arguments kind;  ///< what the model is searched as: for the search alone
+  Arguments axes;  ///< for conflicts and reports alone
 };
 
 struct Route : Entry {
   std::size_t environment = 0;  ///< its index
+  Arguments chainage;           ///< for conflicts and reports alone
 };
 
 /// A campaign.json, patterns resolved, as far as it can be judged without its inputs.

@@ -27,6 +27,9 @@ std::string value_text(const KeyReader& value, ValueKind kind) {
     case ValueKind::kCount:
       if (!value.value().is_number_integer()) value.refuse("expected a whole number");
       return value.value().dump();
+    case ValueKind::kNumber:
+      if (!value.value().is_number()) value.refuse("expected a number");
+      return number_text(value.value());
     case ValueKind::kSize:
       return value.value().is_number_integer() ? value.value().dump() : value.text();
     case ValueKind::kList:

@@ -23,6 +23,7 @@ enum class ValueKind {
   kFlag,
   kCount,
   kSize,
+  kNumber,
   kList,
   kLists  ///< a list of lists: the option once for each
 };

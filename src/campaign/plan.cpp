@@ -42,8 +42,8 @@ class RunCommands {
         radius_(radius) {}
 
   Arguments run() const {
-    return Arguments{file_argument(environment_, "--env")} + model_ + path_ + Arguments{radius_} +
-           campaign_.query;
+    return Arguments{file_argument(environment_, "--env")} + model_ + vehicle_.kind + path_ +
+           Arguments{radius_} + campaign_.query;
   }
 
   std::vector<std::pair<Command, Arguments>> outputs() const {
@@ -54,7 +54,8 @@ class RunCommands {
       out.emplace_back(Command{"report", kResultName, "--force",
                                std::string("--output=") + kReportName, "--title=" + title},
                        Arguments{file_argument(environment_, "--env")} + model_ + path_ +
-                           vehicle_.axes + campaign_.conflicts + campaign_.classes);
+                           vehicle_.axes + route_.chainage + campaign_.conflicts +
+                           campaign_.classes);
     }
     return out;
   }
@@ -77,8 +78,8 @@ class RunCommands {
       command.push_back("--output=conflicts." + format);
       needs_model = needs_model || format == "bcf";
     }
-    return {std::move(command),
-            path_ + (needs_model ? model_ : Arguments{}) + vehicle_.axes + campaign_.conflicts};
+    return {std::move(command), path_ + (needs_model ? model_ : Arguments{}) + vehicle_.axes +
+                                    route_.chainage + campaign_.conflicts};
   }
 
   const Campaign& campaign_;

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "clearway/error.hpp"
+#include "io/json/parse_json.hpp"
 #include "io/system/file_text.hpp"
 #include "io/system/input_error.hpp"
 
@@ -63,6 +64,8 @@ class PlanLines {
   auto guarded(const Read& read) const {
     try {
       return read();
+    } catch (const JsonError& error) {
+      damaged(error.what());
     } catch (const ordered_json::exception& error) {
       damaged(error.what());
     }
@@ -88,7 +91,7 @@ class PlanLines {
 
   std::string name() const {
     return guarded([&] {
-      const ordered_json head = ordered_json::parse(std::string(lines_[0]) + std::string(kEnd));
+      const ordered_json head = parse_json(std::string(lines_[0]) + std::string(kEnd));
       if (head.at("format") != kFormat) damaged("it is of another version of clearway");
       return head.at("campaign").get<std::string>();
     });
@@ -98,7 +101,7 @@ class PlanLines {
     return guarded([&] {
       std::string_view line = lines_[number + 1];
       if (line.ends_with(',')) line.remove_suffix(1);
-      Task task = task_of(ordered_json::parse(line));
+      Task task = task_of(parse_json(line));
       if (task.number != number || task.commands.empty()) damaged("its tasks are not in order");
       return task;
     });

@@ -1,8 +1,11 @@
 #include "campaign/question.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <system_error>
 
 #include "clearway/error.hpp"
+#include "io/journal/journal.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway::campaign {
@@ -16,6 +19,17 @@ nlohmann::ordered_json ignored_of(const ResultHeader& header) {
   nlohmann::ordered_json ignored{{"classes", header.ignore_classes}, {"boxes", boxes}};
   if (!header.ignore_classes.empty()) ignored["classes_hash"] = hash_text(header.classes_hash);
   return ignored;
+}
+
+/// Of a complete result.
+std::optional<nlohmann::ordered_json> question_in(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown)) return std::nullopt;
+  try {
+    return question_of(ResultReader(file, Parts::kAccepted).header());
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -46,12 +60,28 @@ nlohmann::ordered_json question_of(const ResultHeader& header) {
 }
 
 bool answers(const std::filesystem::path& file, const nlohmann::ordered_json& question) {
+  return question_in(file) == question;
+}
+
+bool answers_another(const std::filesystem::path& file, const nlohmann::ordered_json& question) {
+  const auto found = question_in(file);
+  return found && *found != question;
+}
+
+bool is_journal_of_others(const std::filesystem::path& file,
+                          const nlohmann::ordered_json& question) {
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown)) return false;
   try {
-    return question_of(ResultReader(file, Parts::kAccepted).header()) == question;
+    const JournalReader journal(file);
+    if (!journal.identity()) return false;
+    return std::ranges::any_of(*journal.identity(), [&](const auto& field) {
+      const auto& [name, value] = field;
+      return (name == "model" && question["model_hash"] != value) ||
+             (name == "trajectory" && question["trajectory_hash"] != value);
+    });
   } catch (const Error&) {
-    return false;
+    return false;  // the run says what is wrong with it
   }
 }
 

@@ -19,4 +19,11 @@ void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordere
 /// Whether the file is a complete result of that question. Its rows are not read.
 bool answers(const std::filesystem::path& file, const nlohmann::ordered_json& question);
 
+/// Whether the file is a complete result, but of another question.
+bool answers_another(const std::filesystem::path& file, const nlohmann::ordered_json& question);
+
+/// Whether the file is the journal of a run of another model or trajectory.
+bool is_journal_of_others(const std::filesystem::path& file,
+                          const nlohmann::ordered_json& question);
+
 }  // namespace clearway::campaign

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "clearway/error.hpp"
+#include "io/json/parse_json.hpp"
 #include "io/system/file_text.hpp"
 
 namespace clearway::campaign {
@@ -28,13 +29,20 @@ ordered_json place_of(const ordered_json& place) {
   return out;
 }
 
+/// Null where the query ignores nothing.
+ordered_json ignored_of(const ordered_json& ignored) {
+  if (ignored.at("classes").empty() && ignored.at("boxes").empty()) return nullptr;
+  return {{"points", ignored.at("points")},
+          {"colliding", ignored.value("colliding", ordered_json())}};
+}
+
 }  // namespace
 
 std::optional<TaskState> read_state(const std::filesystem::path& folder) {
   std::error_code unknown;
   if (!std::filesystem::exists(folder / kStateName, unknown)) return std::nullopt;
   try {
-    const ordered_json json = ordered_json::parse(text_of_file(folder / kStateName));
+    const ordered_json json = parse_json(text_of_file(folder / kStateName));
     TaskState state;
     state.ending = ending_of(json.at("state").get<std::string>());
     json.at("question_id").get_to(state.question_id);
@@ -45,8 +53,11 @@ std::optional<TaskState> read_state(const std::filesystem::path& folder) {
     json.at("seconds").get_to(state.seconds);
     json.at("host").get_to(state.host);
     json.at("time").get_to(state.time);
+    state.inputs_changed = json.value("inputs_changed", false);
     state.facts = json.at("facts");
     return state;
+  } catch (const JsonError&) {
+    return std::nullopt;
   } catch (const ordered_json::exception&) {
     return std::nullopt;
   } catch (const ResourceError&) {
@@ -64,22 +75,32 @@ void write_state(const std::filesystem::path& folder, const TaskState& state) {
                           {"time", state.time},
                           {"question_id", state.question_id},
                           {"outputs_id", state.outputs_id},
+                          {"inputs_changed", state.inputs_changed},
                           {"facts", state.facts}};
   replace_file(folder / kStateName,
                json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
-ordered_json task_facts(const std::filesystem::path& run_json) {
+ordered_json task_facts(const std::filesystem::path& run_json, const ordered_json& question) {
   try {
-    const ordered_json run = ordered_json::parse(text_of_file(run_json));
-    ordered_json warnings = ordered_json::array();
-    for (const auto& warning : run.at("warnings")) warnings.push_back(warning.at("code"));
+    const ordered_json run = parse_json(text_of_file(run_json));
+    ordered_json warnings = ordered_json::array(), texts = ordered_json::array();
+    for (const auto& warning : run.at("warnings")) {
+      warnings.push_back(warning.at("code"));
+      texts.push_back(warning.at("message"));
+    }
     const ordered_json& profile = run.at("least_profile");
     return {{"verdict", run.at("verdict")},
+            {"reasons", run.value("reasons", ordered_json::array())},
+            {"exact", question.at("tolerance") == 0 && question.at("single_precision") == false},
             {"colliding_points", run.at("colliding_points")},
+            {"ignored", ignored_of(run.at("ignored"))},
             {"least", place_of(profile.is_null() ? run.at("least_clearance") : profile)},
             {"first", place_of(run.at("first_place"))},
-            {"warnings", std::move(warnings)}};
+            {"warnings", std::move(warnings)},
+            {"warning_texts", std::move(texts)}};
+  } catch (const JsonError& error) {
+    throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());
   } catch (const ordered_json::exception& error) {
     throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());
   }

@@ -19,8 +19,10 @@ struct TaskState {
   int exit_code = 0;
   std::string message;  ///< what the program said last; empty where all went well
   std::uint64_t tries = 0;
-  double seconds = 0;            ///< of the last try
-  std::string host, time;        ///< of its end, in UTC
+  double seconds = 0;      ///< of the last try
+  std::string host, time;  ///< of its end, in UTC
+  /// Whether it failed because an input is not the planned one: another try succeeds once it is.
+  bool inputs_changed = false;
   nlohmann::ordered_json facts;  ///< of the result, once it is done: see task_facts()
   friend bool operator==(const TaskState&, const TaskState&) = default;
 };
@@ -30,8 +32,11 @@ std::optional<TaskState> read_state(const std::filesystem::path& folder);
 
 void write_state(const std::filesystem::path& folder, const TaskState& state);
 
-/// Of what clearway run --json printed: verdict, colliding_points, least and its pose and chainage,
-/// first, and the codes of the warnings. Throws ResourceError where the file is cut.
-nlohmann::ordered_json task_facts(const std::filesystem::path& run_json);
+/// Of what clearway run --json printed: verdict and its reasons, colliding_points, ignored points
+/// (null where the query ignores none), least distance and first place with pose and chainage, and
+/// codes and texts of the warnings; and of the task's question whether it asks for an exact answer.
+/// Throws ResourceError where the file is cut.
+nlohmann::ordered_json task_facts(const std::filesystem::path& run_json,
+                                  const nlohmann::ordered_json& question);
 
 }  // namespace clearway::campaign

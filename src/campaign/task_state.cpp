@@ -82,7 +82,7 @@ TaskLook look_at(const Task& task, const fs::path& campaign) {
 bool may_succeed(const TaskLook& look) {
   constexpr int kResource = 4;
   if (look.status != TaskStatus::kFailed) return true;
-  return look.state->exit_code == kResource;
+  return look.state->exit_code == kResource || look.state->inputs_changed;
 }
 
 }  // namespace clearway::campaign

@@ -35,7 +35,8 @@ bool has_result(const Task& task, const std::filesystem::path& campaign);
 bool is_done(const Task& task, const std::filesystem::path& campaign,
              const std::optional<TaskState>& state);
 
-/// Whether another try may help: not after exit codes 2 and 3, and not after a crash.
+/// Whether another try may help: not after a crash, and after exit codes 2 and 3 only where an
+/// input was not the planned one, which may have been put back.
 bool may_succeed(const TaskLook& look);
 
 /// What a process at work on the task holds locked, in the run's folder.

@@ -41,9 +41,10 @@ std::uint64_t CellSearchOf<Element>::most_bytes(const PackedCloud& cloud, const 
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
   // A list for clearances may have grown to twice its need.
   const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
+  const std::uint64_t of_runs = kIsTriangle<Element> ? 8 * most_poses : 0;  // likewise
   return sizeof(CellSearchOf) +
          depths * (sizeof(std::vector<std::uint32_t>) + most_poses * sizeof(std::uint32_t)) +
-         of_clearance;
+         of_clearance + of_runs;
 }
 
 template <typename Element>
@@ -103,6 +104,7 @@ void CellSearchOf<Element>::search_points(std::uint32_t block,
     const auto joined_count = static_cast<std::uint32_t>(nodes.size());
     joined_.resize(filter_.ref().motion.join_smooth(joined_.data(), joined_count));
   }
+  is_grazed_ = false;
   std::int32_t q[3][kBlockPoints];
   for (std::size_t k = 0; k < 3; ++k) chunks_[k].decode(begin, std::span(q[k], count));
   const std::uint64_t searched = page_.searched(index_, block);
@@ -122,12 +124,18 @@ bool CellSearchOf<Element>::search_hit(const Vec3& e, std::uint32_t index,
                                        std::span<const std::uint32_t> nodes) {
   const Query& query = filter_.query();
   bool hit = false;
+  const SweepStatistics before = statistics_;
   if (query.first_pose) {
-    const std::uint32_t pose = filter_.first_pose(e, nodes, statistics_);
+    const std::uint32_t pose = is_grazed_ ? filter_.first_pose_of_runs(e, runs_, statistics_)
+                                          : filter_.first_pose(e, nodes, statistics_);
     output_.first_poses[index] = pose;
     hit = pose != HitSet::kNever;
   } else {
-    hit = filter_.touches(e, nodes, statistics_);
+    hit = is_grazed_ ? filter_.touches_runs(e, runs_, statistics_)
+                     : filter_.touches(e, nodes, statistics_);
+  }
+  if constexpr (kIsTriangle<Element>) {
+    is_grazed_ = is_grazed_ || filter_.join_runs(statistics_.since(before), nodes, runs_);
   }
   // No point is within a clearance of at most the radius that does not collide.
   if (clearance_search_ && (hit || query.clearance > query.radius)) {

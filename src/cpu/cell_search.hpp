@@ -58,6 +58,8 @@ class CellSearchOf {
   std::size_t poses_ = 0;                          ///< that the cell's nodes have together
   std::vector<std::vector<std::uint32_t>> lists_;  ///< of open motion nodes, one a depth
   std::vector<std::uint32_t> joined_;              ///< motion nodes for clearances
+  std::vector<std::uint32_t> runs_;  ///< of the block, where one of its points grazes the model
+  bool is_grazed_ = false;           ///< whether that is so
   std::optional<ClearanceSearchOf<Element>> clearance_search_;
   SweepStatistics statistics_;
 };

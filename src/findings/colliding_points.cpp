@@ -38,6 +38,8 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
   out.quanta.resize(result.collisions());
   out.source.reserve(result.collisions());
   out.first_pose.reserve(result.collisions());
+  out.last_pose.reserve(result.collisions());
+  if (result.header().has_first_bodies()) out.body.reserve(result.collisions());
   progress.begin("read", result.collisions(), "points");
   ResultRowStream stream(result);
   for (ResultRows rows; stream.read(rows);) {
@@ -50,6 +52,10 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
     }
     out.source.insert(out.source.end(), rows.source.begin(), rows.source.end());
     out.first_pose.insert(out.first_pose.end(), rows.first_pose.begin(), rows.first_pose.end());
+    const std::vector<std::uint32_t>& last =
+        result.header().last_pose ? rows.last_pose : rows.first_pose;
+    out.last_pose.insert(out.last_pose.end(), last.begin(), last.end());
+    for (const std::uint32_t body : rows.body) out.body.push_back(static_cast<std::uint8_t>(body));
     progress.advance(rows.size());
   }
   progress.end();

@@ -12,11 +12,13 @@ namespace clearway {
 /// The rows of a result, of which conflicts are made.
 struct CollidingPoints {
   static constexpr std::uint64_t kBytesOfPoint =
-      sizeof(QuantumPoint) + sizeof(std::uint64_t) + sizeof(std::uint32_t);
+      sizeof(QuantumPoint) + sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) + 1;
 
   std::vector<QuantumPoint> quanta;
   std::vector<std::uint64_t> source;  ///< ascending
   std::vector<std::uint32_t> first_pose;
+  std::vector<std::uint32_t> last_pose;  ///< the first one where the result has none
+  std::vector<std::uint8_t> body;        ///< of the first pose; empty without bodies
 };
 
 /// Throws InputError as ResultRowStream does, and for coordinates that are not those of stored

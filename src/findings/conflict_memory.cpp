@@ -18,9 +18,9 @@ constexpr std::uint64_t kMostPoints = 0xffff'fffe;
 
 /// Of a cell beside what the grid holds: its set, its group, and the count of its points.
 constexpr std::uint64_t kBytesOfCell = CellGrid::kBytesOfCell + 3 * sizeof(std::uint32_t);
-/// Of a point once it is in the grid: its source, its first pose and its part too.
-constexpr std::uint64_t kBytesOfSortedPoint =
-    CellGrid::kBytesOfPoint + sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) + kJoinBytesOfPoint;
+/// Of a point once it is in the grid: its source, its first and last pose, body and part too.
+constexpr std::uint64_t kBytesOfSortedPoint = CellGrid::kBytesOfPoint + sizeof(std::uint64_t) +
+                                              3 * sizeof(std::uint32_t) + 1 + kJoinBytesOfPoint;
 constexpr std::uint64_t kBytesOfUnsortedPoint =
     CollidingPoints::kBytesOfPoint + CellGrid::kBytesOfPoint;
 /// Vectors of conflicts grow to twice their size.

@@ -1,3 +1,4 @@
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -18,9 +19,12 @@
 #include "findings/group/join_cells.hpp"
 #include "findings/group/point_groups.hpp"
 #include "findings/least_distances.hpp"
+#include "findings/least_shift.hpp"
 #include "findings/path_stretches.hpp"
 #include "findings/side.hpp"
 #include "findings/tally_points.hpp"
+#include "findings/touched_first.hpp"
+#include "io/formats/wkt.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/thread_limit.hpp"
 
@@ -30,6 +34,12 @@ namespace {
 /// The work on one result, step by step.
 class ConflictSearch {
  public:
+  static constexpr double kMostShift = 2;  ///< metres
+  /// What shifts are found from: pairs of a point and a pose, which take some 50 ns and, in one
+  /// conflict, 24 bytes each; and points of all conflicts, of 24 bytes each.
+  static constexpr std::uint64_t kMostPairs = 4'000'000, kMostPairsOfAll = 200'000'000;
+  static constexpr std::uint64_t kMostPointsOfAll = 5'000'000;
+
   ConflictSearch(const Result& result, const std::vector<Pose>& poses,
                  const ConflictOptions& options, Progress& progress)
       : reader_(result.reader()),
@@ -43,6 +53,7 @@ class ConflictSearch {
   Conflicts run(std::vector<std::uint32_t>* conflict_of) {
     out_.path_length = chainage_.empty() ? 0 : chainage_.back();
     out_.colliding_points = reader_.collisions();
+    out_.has_last_poses = reader_.header().last_pose;
     if (conflict_of != nullptr) conflict_of->clear();
     if (out_.colliding_points == 0) return std::move(out_);
     memory_.check_points();
@@ -69,26 +80,49 @@ class ConflictSearch {
 
   /// Returns the conflict of each row.
   std::vector<std::uint32_t> list() {
-    memory_.check_parts(grid_->cells(), groups_.count);
-    const std::vector<Tally> groups = tally_groups(*grid_, groups_, points_.first_pose, progress_);
+    const std::uint64_t groups_in_all = groups_.count + groups_.small_groups;
+    memory_.check_parts(grid_->cells(), groups_in_all);
+    const TouchPoses touch{points_.first_pose, points_.last_pose};
+    list_small(tally_small_groups(*grid_, groups_, touch, progress_));
+    const std::vector<Tally> groups = tally_groups(*grid_, groups_, touch, progress_);
     note_longest(groups);
     const PathStretches stretches(chainage_, options_.split);
     const GroupParts parts = cut(groups, stretches);
-    memory_.check_parts(grid_->cells(), groups_.count + parts.count());
+    memory_.check_parts(grid_->cells(), groups_in_all + parts.count());
     std::vector<std::uint32_t> part_of_row(points_.source.size());
     const std::vector<Tally> tallies =
-        tally_parts(*grid_, groups_, parts, stretches, points_.first_pose, part_of_row, progress_);
-    grid_.reset();
+        tally_parts(*grid_, groups_, parts, stretches, touch, part_of_row, progress_);
     make_conflicts(groups, parts, tallies);
+    add_touched_first(tallies, part_of_row);
+    grid_.reset();
     number(part_of_row, tallies.size());
-    if (!reader_.header().bodies.empty()) add_first_bodies(part_of_row);
     add_distances(part_of_row);
     for (Conflict& conflict : out_.listed) complete(conflict);
+    add_shifts(part_of_row);
     return part_of_row;
   }
 
+  void list_small(const std::vector<Tally>& tallies) {
+    for (const Tally& tally : tallies) {
+      out_.small.push_back({tally.points, points_.source[tally.first_row],
+                            position_box(reader_.header().quantisation, tally.box),
+                            tally.first_pose, tally.last_pose,
+                            chainage_[tally.first_pose] + options_.chainage_start,
+                            end_of(tally.last_pose) + options_.chainage_start});
+    }
+    std::ranges::sort(out_.small, {}, [](const SmallGroup& group) {
+      return std::pair(group.chainage_from, group.source);
+    });
+  }
+
+  /// The chainage at which the touch of a last pose ends.
+  double end_of(std::uint32_t last_pose) const {
+    const bool way = reader_.header().between_poses && last_pose + 1 < chainage_.size();
+    return chainage_[last_pose + (way ? 1 : 0)];
+  }
+
   double length_of(const Tally& tally) const {
-    return chainage_[tally.last_pose] - chainage_[tally.first_pose];
+    return chainage_[tally.latest_first_pose] - chainage_[tally.first_pose];
   }
 
   void note_longest(const std::vector<Tally>& groups) {
@@ -110,7 +144,7 @@ class ConflictSearch {
       out.first.push_back(next);
       out.stretch.push_back(stretch);
       out.is_cut.push_back(is_cut);
-      next += is_cut ? stretches[group.last_pose] - stretch + 1 : 1;
+      next += is_cut ? stretches[group.latest_first_pose] - stretch + 1 : 1;
     }
     out.first.push_back(next);
     return out;
@@ -134,7 +168,6 @@ class ConflictSearch {
         conflict.first_pose = tally.first_pose;
         conflict.last_pose = tally.last_pose;
         conflict.chainage_from = chainage_[tally.first_pose];
-        conflict.chainage_to = chainage_[tally.last_pose];
         out_.listed.push_back(conflict);
       }
     }
@@ -158,10 +191,13 @@ class ConflictSearch {
                                                 : a.source < b.source;
     });
     std::vector<std::uint32_t> id_of_part(parts + 1);
+    std::vector<Vec3> places;
     for (std::size_t i = 0; i < out_.listed.size(); ++i) {
+      places.push_back(first_places_[out_.listed[i].id - 1]);
       id_of_part[out_.listed[i].id] = static_cast<std::uint32_t>(i + 1);
       out_.listed[i].id = static_cast<std::uint32_t>(i + 1);
     }
+    first_places_ = std::move(places);
     for (std::uint32_t& part : part_of_row) part = id_of_part[part];
   }
 
@@ -176,19 +212,27 @@ class ConflictSearch {
     return boxes;
   }
 
-  void add_first_bodies(const std::vector<std::uint32_t>& conflict_of_row) {
-    ResultRowStream stream(reader_);
-    std::size_t row = 0;
-    for (ResultRows rows; stream.read(rows);) {
-      throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
-        if (conflict_of_row[row] == 0) continue;
-        Conflict& conflict = out_.listed[conflict_of_row[row] - 1];
-        if (!conflict.body && rows.first_pose[i] == conflict.first_pose) {
-          conflict.body = rows.body[i];
-        }
-      }
+  /// Sides, and the places that conflicts without clearances are seen by. Before they are numbered.
+  void add_touched_first(const std::vector<Tally>& tallies,
+                         std::span<const std::uint32_t> part_of_row) {
+    const Quantisation& quantisation = reader_.header().quantisation;
+    std::vector<TouchedFirst> firsts(tallies.size());
+    for (Conflict& conflict : out_.listed) {
+      const Tally& tally = tallies[conflict.id - 1];
+      if (!points_.body.empty()) conflict.body = points_.body[tally.first_touched];
+      firsts[conflict.id - 1] = {tally.first_pose, tally.first_touched, conflict.body,
+                                 pose_of(conflict.body, tally.first_pose)};
     }
+    const AheadLeftUp axes{options_.forward, options_.up};
+    find_touched_first(*grid_, groups_, points_, part_of_row, quantisation, axes, firsts,
+                       progress_);
+    for (Conflict& conflict : out_.listed) {
+      const TouchedFirst& first = firsts[conflict.id - 1];
+      if (boxes_.empty() || first.pose == nullptr || !first.is_finite()) continue;
+      const Box& box = boxes_[conflict.body.value_or(0)];
+      conflict.side = side_of(first.seen, box, options_.forward, options_.up);
+    }
+    for (const TouchedFirst& first : firsts) first_places_.push_back(first.place);
   }
 
   void add_distances(const std::vector<std::uint32_t>& conflict_of_row) {
@@ -213,25 +257,89 @@ class ConflictSearch {
 
   void complete(Conflict& conflict) const {
     conflict.chainage_from += options_.chainage_start;
-    conflict.chainage_to += options_.chainage_start;
-    const Pose* pose = pose_of(conflict);
-    if (pose == nullptr) return;
-    const Vec3 place = conflict.nearest_point.value_or(conflict.centroid);
-    const Vec3 there = ahead_left_up(place, *pose, options_.forward, options_.up);
-    if (std::isfinite(there.y) && std::isfinite(there.z)) {
-      conflict.lateral = there.y;
-      conflict.height = there.z;
+    if (!out_.has_last_poses && conflict.nearest_pose) {
+      conflict.last_pose = std::max(conflict.last_pose, *conflict.nearest_pose);
     }
-    if (boxes_.empty()) return;
-    const Box& box = boxes_[conflict.body.value_or(0)];
-    conflict.side = side_of(place, *pose, box, options_.forward, options_.up);
+    conflict.chainage_to = end_of(conflict.last_pose) + options_.chainage_start;
+    const std::uint32_t at = conflict.nearest_pose.value_or(conflict.first_pose);
+    const Pose* pose = pose_of(conflict.body, at);
+    if (pose == nullptr) return;
+    const Vec3 place = conflict.nearest_point.value_or(first_places_[conflict.id - 1]);
+    const Vec3 there = ahead_left_up(place, *pose, options_.forward, options_.up);
+    if (!std::isfinite(there.x) || !std::isfinite(there.y) || !std::isfinite(there.z)) return;
+    conflict.lateral = there.y;
+    conflict.height = there.z;
+    // From the path's pose, not from the body's, whose own x axis may begin anywhere.
+    const double ahead = ahead_left_up(place, poses_[at], options_.forward, options_.up).x;
+    if (!std::isfinite(ahead)) return;
+    conflict.obstacle_chainage = chainage_[at] + ahead + options_.chainage_start;
   }
 
-  /// That it is seen from: where its body is, if bodies are given; null where that has none.
-  const Pose* pose_of(const Conflict& conflict) const {
-    const std::uint32_t at = conflict.nearest_pose.value_or(conflict.first_pose);
+  /// Where the conflict's body is at a pose of the path, if bodies are given; null where it has no
+  /// pose there.
+  const Pose* pose_of(std::optional<std::uint32_t> body, std::uint32_t at) const {
     if (options_.bodies.empty()) return &poses_[at];
-    return conflict.body ? pose_at(options_.bodies[*conflict.body], at) : nullptr;
+    return body ? pose_at(options_.bodies[*body], at) : nullptr;
+  }
+
+  /// From the points of each conflict; of very many, from every n-th.
+  void add_shifts(std::span<const std::uint32_t> conflict_of_row) {
+    std::vector<Body> one;
+    std::span<const Body> bodies = options_.bodies;
+    if (bodies.empty()) {
+      if (options_.model == nullptr || options_.model->points.empty()) return;
+      one.push_back({"",
+                     options_.model->points,
+                     poses_,
+                     {},
+                     options_.model->triangles,
+                     options_.model->solid_of});
+      bodies = one;
+    }
+    const std::vector<std::vector<Vec3>> points = points_to_free(conflict_of_row);
+    const double metre = metres_of(units_of_wkt(reader_.header().crs_wkt).horizontal);
+    const double most = kMostShift / (metre > 0 ? metre : 1);
+    const LeastShift shifts(bodies, poses_, direction_to_left(options_.forward, options_.up),
+                            reader_.header().radius, reader_.header().between_poses,
+                            options_.threads);
+    progress_.begin("shifts", out_.listed.size(), "conflicts");
+    tbb::parallel_for(std::size_t{0}, out_.listed.size(), [&](std::size_t i) {
+      if (progress_.stop_requested()) return;
+      Conflict& conflict = out_.listed[i];
+      const bool way = reader_.header().between_poses && conflict.last_pose + 1 < poses_.size();
+      const std::uint32_t last = conflict.last_pose + (way ? 1 : 0);
+      const SideShifts free = shifts.least(points[i], conflict.first_pose, last, most);
+      conflict.shift_left = free.left;
+      conflict.shift_right = free.right;
+      progress_.advance(1);
+    });
+    throw_if_stopped(progress_);
+    progress_.end();
+  }
+
+  /// Of each conflict. The pairs of a point and a pose are bounded, for the time that they take.
+  std::vector<std::vector<Vec3>> points_to_free(std::span<const std::uint32_t> conflict_of_row) {
+    std::vector<std::uint64_t> every, met(out_.listed.size());
+    const std::size_t conflicts = std::max<std::size_t>(1, out_.listed.size());
+    const std::uint64_t most_pairs = std::min(kMostPairs, kMostPairsOfAll / conflicts);
+    for (const Conflict& conflict : out_.listed) {
+      const std::uint64_t poses = conflict.last_pose - conflict.first_pose + std::uint64_t{1};
+      const std::uint64_t most =
+          std::max<std::uint64_t>(1, std::min(most_pairs / poses, kMostPointsOfAll / conflicts));
+      every.push_back((conflict.points + most - 1) / most);
+    }
+    std::vector<std::vector<Vec3>> out(out_.listed.size());
+    ResultRowStream stream(reader_);
+    std::size_t row = 0;
+    for (ResultRows rows; stream.read(rows);) {
+      throw_if_stopped(progress_);
+      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+        const std::uint32_t id = conflict_of_row[row];
+        if (id == 0 || met[id - 1]++ % every[id - 1] != 0) continue;
+        out[id - 1].push_back(rows.xyz[i]);
+      }
+    }
+    return out;
   }
 
   const ResultReader& reader_;
@@ -244,6 +352,7 @@ class ConflictSearch {
   CollidingPoints points_;
   std::optional<CellGrid> grid_;
   PointGroups groups_;
+  std::vector<Vec3> first_places_;  ///< of each conflict, the first point that is touched
   Conflicts out_;
 };
 

@@ -1,7 +1,8 @@
 #include "findings/side.hpp"
 
+#include <algorithm>
 #include <array>
-#include <limits>
+#include <utility>
 
 namespace clearway {
 namespace {
@@ -31,17 +32,6 @@ Vec3 in_model_frame(const Vec3& place, const Pose& pose) {
           dot(x, cross(y, from)) / volume};
 }
 
-/// How far a place is beyond the box in a direction along an axis; negative inside.
-double beyond(const Vec3& place, const Box& box, const Vec3& direction) {
-  for (int k = 0; k < 3; ++k) {
-    if (direction[k] > 0) return place[k] - box.hi[k];
-    if (direction[k] < 0) return box.lo[k] - place[k];
-  }
-  return 0;
-}
-
-Vec3 opposite(const Vec3& v) { return {-v.x, -v.y, -v.z}; }
-
 }  // namespace
 
 const char* name_of(Side side) {
@@ -66,32 +56,42 @@ const char* name_of(Side side) {
 
 bool along_one_line(Axis a, Axis b) { return line_of(a) == line_of(b); }
 
+Vec3 direction_to_left(Axis forward, Axis up) {
+  return cross(direction_of(up), direction_of(forward));
+}
+
 Vec3 ahead_left_up(const Vec3& place, const Pose& pose, Axis forward, Axis up) {
   const Vec3 there = in_model_frame(place, pose);
   const Vec3 ahead = direction_of(forward), above = direction_of(up);
   return {dot(there, ahead), dot(there, cross(above, ahead)), dot(there, above)};
 }
 
-Side side_of(const Vec3& place, const Pose& pose, const Box& model, Axis forward, Axis up) {
-  const Vec3 there = in_model_frame(place, pose);
+Box turned(const Box& box, Axis forward, Axis up) {
   const Vec3 ahead = direction_of(forward), above = direction_of(up);
-  const Vec3 left = cross(above, ahead);
-  const std::array<std::pair<Side, Vec3>, 6> sides{{{Side::kLeft, left},
-                                                    {Side::kRight, opposite(left)},
-                                                    {Side::kAbove, above},
-                                                    {Side::kBelow, opposite(above)},
-                                                    {Side::kFront, ahead},
-                                                    {Side::kBehind, opposite(ahead)}}};
-  Side side = Side::kUnknown;
-  double farthest = -std::numeric_limits<double>::infinity();
-  for (const auto& [name, direction] : sides) {
-    const double far = beyond(there, model, direction);
-    if (far > farthest) {
-      farthest = far;
-      side = name;
-    }
+  const Vec3 axes[3] = {ahead, cross(above, ahead), above};
+  Box out{};
+  for (int k = 0; k < 3; ++k) {
+    const double a = dot(box.lo, axes[k]), b = dot(box.hi, axes[k]);
+    out.lo[k] = std::min(a, b);
+    out.hi[k] = std::max(a, b);
   }
-  return side;
+  return out;
+}
+
+Side side_of(const Box& seen, const Box& model, Axis forward, Axis up) {
+  const Box box = turned(model, forward, up);
+  const std::array<std::pair<Side, double>, 6> beyond{{{Side::kLeft, seen.lo.y - box.hi.y},
+                                                       {Side::kRight, box.lo.y - seen.hi.y},
+                                                       {Side::kAbove, seen.lo.z - box.hi.z},
+                                                       {Side::kBelow, box.lo.z - seen.hi.z},
+                                                       {Side::kFront, seen.lo.x - box.hi.x},
+                                                       {Side::kBehind, box.lo.x - seen.hi.x}}};
+  const auto farther = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto across = std::max_element(beyond.begin(), beyond.begin() + 4, farther);
+  if (across->second > 0) return across->first;
+  const auto along = std::max_element(beyond.begin() + 4, beyond.end(), farther);
+  if (along->second > 0) return along->first;
+  return std::max_element(beyond.begin(), beyond.end(), farther)->first;
 }
 
 }  // namespace clearway

@@ -41,12 +41,12 @@ class RunOfPoints {
   RunOfPoints& operator=(const RunOfPoints&) = delete;
   ~RunOfPoints() { hand_on(); }
 
-  void add(std::uint64_t number, const GridPoint& p, std::uint32_t pose) {
+  void add(std::uint64_t number, const GridPoint& p, const TouchPoses& poses) {
     if (number != number_) {
       hand_on();
       number_ = number;
     }
-    tally_.add(p, pose);
+    tally_.add(p, poses.first[p.row], poses.last[p.row]);
   }
 
  private:
@@ -60,10 +60,10 @@ class RunOfPoints {
   Tally tally_;
 };
 
-/// number_of(group, row) for every point of a listed group.
+/// number_of(group, row) for every point of a listed group, or of a small one.
 template <typename NumberOf>
-std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, std::uint64_t count,
-                            std::span<const std::uint32_t> first_pose, Progress& progress,
+std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, bool small,
+                            std::uint64_t count, const TouchPoses& poses, Progress& progress,
                             NumberOf number_of) {
   SharedTallies tallies(count);
   const ParallelScope scope;
@@ -72,10 +72,8 @@ std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, std
     RunOfPoints run(tallies);
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
       const std::uint32_t group = groups.of_cell[cell];
-      if (group == PointGroups::kSmall) continue;
-      for (const GridPoint& p : grid.points(cell)) {
-        run.add(number_of(group, p.row), p, first_pose[p.row]);
-      }
+      if (PointGroups::is_small(group) != small) continue;
+      for (const GridPoint& p : grid.points(cell)) run.add(number_of(group, p.row), p, poses);
     }
   });
   scope.begin();
@@ -87,20 +85,26 @@ std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, std
 }  // namespace
 
 std::vector<Tally> tally_groups(const CellGrid& grid, const PointGroups& groups,
-                                std::span<const std::uint32_t> first_pose, Progress& progress) {
-  return tally_by(grid, groups, groups.count, first_pose, progress,
+                                const TouchPoses& poses, Progress& progress) {
+  return tally_by(grid, groups, false, groups.count, poses, progress,
                   [](std::uint32_t group, std::uint32_t) { return group; });
+}
+
+std::vector<Tally> tally_small_groups(const CellGrid& grid, const PointGroups& groups,
+                                      const TouchPoses& poses, Progress& progress) {
+  return tally_by(grid, groups, true, groups.small_groups, poses, progress,
+                  [](std::uint32_t group, std::uint32_t) { return group & ~PointGroups::kSmall; });
 }
 
 std::vector<Tally> tally_parts(const CellGrid& grid, const PointGroups& groups,
                                const GroupParts& parts, const PathStretches& stretches,
-                               std::span<const std::uint32_t> first_pose,
-                               std::span<std::uint32_t> part_of_row, Progress& progress) {
-  return tally_by(grid, groups, parts.count(), first_pose, progress,
+                               const TouchPoses& poses, std::span<std::uint32_t> part_of_row,
+                               Progress& progress) {
+  return tally_by(grid, groups, false, parts.count(), poses, progress,
                   [&](std::uint32_t group, std::uint32_t row) {
                     std::uint64_t part = parts.first[group];
                     if (parts.is_cut[group]) {
-                      part += stretches[first_pose[row]] - parts.stretch[group];
+                      part += stretches[poses.first[row]] - parts.stretch[group];
                     }
                     part_of_row[row] = static_cast<std::uint32_t>(part + 1);
                     return part;

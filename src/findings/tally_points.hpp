@@ -12,9 +12,18 @@
 
 namespace clearway {
 
-/// Sums of each listed group. first_pose: by row. Runs in the caller's arena of oneTBB.
+/// The first and the last pose that touch each row's point.
+struct TouchPoses {
+  std::span<const std::uint32_t> first, last;
+};
+
+/// Sums of each listed group. Runs in the caller's arena of oneTBB.
 std::vector<Tally> tally_groups(const CellGrid& grid, const PointGroups& groups,
-                                std::span<const std::uint32_t> first_pose, Progress& progress);
+                                const TouchPoses& poses, Progress& progress);
+
+/// Sums of each small group.
+std::vector<Tally> tally_small_groups(const CellGrid& grid, const PointGroups& groups,
+                                      const TouchPoses& poses, Progress& progress);
 
 /// The parts that groups are cut into: consecutive ones for each group, one for each stretch of the
 /// path from its first to its last pose. Parts may be empty.
@@ -30,7 +39,7 @@ struct GroupParts {
 /// groups. Fewer than 2^32 - 1 parts.
 std::vector<Tally> tally_parts(const CellGrid& grid, const PointGroups& groups,
                                const GroupParts& parts, const PathStretches& stretches,
-                               std::span<const std::uint32_t> first_pose,
-                               std::span<std::uint32_t> part_of_row, Progress& progress);
+                               const TouchPoses& poses, std::span<std::uint32_t> part_of_row,
+                               Progress& progress);
 
 }  // namespace clearway

@@ -40,6 +40,7 @@ SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& a
   move(ref.model.elements, ref.model.size);
   move(ref.model.boxes, ref.model.box_count);
   move(ref.wide.nodes, ref.wide.node_count);
+  ref.wide.slabs = nullptr;
   move(ref.wide.packets, ref.wide.packet_count);
   move(ref.motion.nodes, poses == 0 ? 0 : 2 * poses - 1);
   move(ref.motion.inverse_poses, poses);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -30,21 +31,27 @@ void refuse_masked(const py::handle& object, const char* name) {
   throw UsageError(std::string(name) + ": some values are masked: leave them out before");
 }
 
-/// As numpy.asarray() has it. It holds real numbers.
-py::array numbers(const py::handle& object, const char* name) {
+/// As numpy.asarray() has it.
+py::array array_of(const py::handle& object, const char* name) {
   refuse_masked(object, name);
-  py::array array = py::module_::import("numpy").attr("asarray")(object);
-  const bool empty_list = array.size() == 0 && array.ndim() == 1;
-  const char kind = array.dtype().kind();
-  if (kind == 'f' || kind == 'i' || kind == 'u' || empty_list) return array;
-  throw py::type_error(std::string(name) + ": expected real numbers, found " +
-                       std::string(py::str(array.dtype())));
+  try {
+    return py::module_::import("numpy").attr("asarray")(object);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
+    throw UsageError(std::string(name) +
+                     ": is no array of numbers: " + std::string(py::str(error.value())));
+  }
 }
 
-Doubles as_doubles(const py::array& array) {
-  Doubles doubles = Doubles::ensure(array);
-  if (!doubles) throw py::error_already_set();
-  return doubles;
+bool is_empty_list(const py::array& array) { return array.size() == 0 && array.ndim() == 1; }
+
+/// It holds real numbers.
+py::array numbers(const py::handle& object, const char* name) {
+  py::array array = array_of(object, name);
+  const char kind = array.dtype().kind();
+  if (kind == 'f' || kind == 'i' || kind == 'u' || is_empty_list(array)) return array;
+  throw py::type_error(std::string(name) + ": expected real numbers, found " +
+                       std::string(py::str(array.dtype())));
 }
 
 Doubles empty(std::vector<py::ssize_t> shape) { return Doubles(std::move(shape)); }
@@ -68,7 +75,7 @@ Doubles points_array(const py::handle& object, const char* name) {
   const py::array array = numbers(object, name);
   if (array.ndim() == 1 && array.size() == 0) return empty({0, 3});
   if (array.ndim() != 2 || array.shape(1) != 3) refuse_shape(name, "n x 3 numbers", array);
-  return as_doubles(array);
+  return Doubles(array);
 }
 
 Doubles poses_array(const py::handle& object, const char* name) {
@@ -77,7 +84,7 @@ Doubles poses_array(const py::handle& object, const char* name) {
   const bool fits =
       array.ndim() == 3 && array.shape(2) == 4 && (array.shape(1) == 3 || array.shape(1) == 4);
   if (!fits) refuse_shape(name, "n x 4 x 4 or n x 3 x 4 numbers", array);
-  Doubles doubles = as_doubles(array);
+  Doubles doubles(array);
   if (doubles.shape(1) == 3) return doubles;
   const double* pose = doubles.data();
   for (py::ssize_t i = 0; i < doubles.shape(0); ++i, pose += 16) {
@@ -143,6 +150,36 @@ py::array to_array(const Vec3& point) {
   py::array_t<double> array(3);
   for (int axis = 0; axis < 3; ++axis) array.mutable_at(axis) = point[axis];
   return array;
+}
+
+Vec3 point_of(const py::handle& object, const char* name) {
+  const py::array array = numbers(object, name);
+  if (array.ndim() != 1 || array.size() != 3) refuse_shape(name, "3 numbers", array);
+  const Doubles numbers(array);
+  require_finite(all_of(numbers), 3, name, "point");
+  return {numbers.at(0), numbers.at(1), numbers.at(2)};
+}
+
+std::vector<std::uint32_t> indices_of(const py::handle& object, const char* name) {
+  const py::array array = array_of(object, name);
+  if (is_empty_list(array)) return {};
+  const char kind = array.dtype().kind();
+  if (kind != 'i' && kind != 'u') {
+    throw py::type_error(std::string(name) + ": expected whole numbers, found " +
+                         std::string(py::str(array.dtype())));
+  }
+  if (array.ndim() != 1) refuse_shape(name, "n whole numbers", array);
+  const auto wide = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
+  std::vector<std::uint32_t> indices;
+  for (py::ssize_t i = 0; i < wide.size(); ++i) {
+    const std::int64_t index = wide.at(i);
+    if (index < 0 || index > std::numeric_limits<std::uint32_t>::max()) {
+      throw UsageError(std::string(name) + "[" + std::to_string(i) +
+                       "]: expected 0 to 4294967295, found " + std::to_string(index));
+    }
+    indices.push_back(static_cast<std::uint32_t>(index));
+  }
+  return indices;
 }
 
 py::array to_array(std::vector<Vec3> points) {

@@ -14,7 +14,8 @@
 /// NumPy arrays in and out. Out: made of the library's vectors without a copy.
 namespace clearway::python {
 
-using Doubles = py::array_t<double, py::array::c_style>;
+/// float64 in rows. Made of an array of any other real numbers, long double among them.
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// n x 3, metres, as float64 in rows: the same array where it is so, otherwise a copy. Takes
 /// whatever numpy.asarray() takes. Throws TypeError for what holds no real numbers, UsageError for
@@ -34,6 +35,13 @@ void require_rigid(const std::vector<Pose>& poses);
 /// n x 4 x 4.
 py::array to_array(const std::vector<Pose>& poses);
 py::array to_array(const Vec3& point);  ///< 3
+
+/// Three finite numbers.
+Vec3 point_of(const py::handle& object, const char* name);
+
+/// n whole numbers from 0 to 2^32 - 1. Throws TypeError for other numbers, UsageError for another
+/// shape or a number out of range.
+std::vector<std::uint32_t> indices_of(const py::handle& object, const char* name);
 
 /// Python owns the vector.
 template <typename Value>

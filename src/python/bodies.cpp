@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -8,10 +9,13 @@
 
 #include "clearway/body.hpp"
 #include "clearway/follow.hpp"
+#include "clearway/unsearched.hpp"
 #include "clearway/vehicle.hpp"
+#include "core/util/format.hpp"
 #include "python/arrays.hpp"
 #include "python/inputs.hpp"
 #include "python/model.hpp"
+#include "python/store.hpp"
 #include "python/values.hpp"
 
 namespace clearway::python {
@@ -19,50 +23,74 @@ namespace {
 
 using namespace py::literals;
 
-Body make_body(std::string name, const py::object& model, const py::object& poses,
-               std::optional<std::vector<std::uint32_t>> path_pose) {
+PlacedBody make_body(std::string name, const py::object& model, const py::object& poses,
+                     const py::object& path_pose) {
   ModelShape shape = model_of(model_object(model));
-  Body body{.name = std::move(name),
-            .model = std::move(shape.points),
-            .poses = poses_of(poses_array(poses, "poses"), "poses"),
-            .path_pose = {},
-            .triangles = std::move(shape.triangles),
-            .solid_of = std::move(shape.solid_of)};
-  if (path_pose) {
-    body.path_pose = std::move(*path_pose);
-  } else {
+  PlacedBody body{{.name = std::move(name),
+                   .model = std::move(shape.points),
+                   .poses = poses_of(poses_array(poses, "poses"), "poses"),
+                   .path_pose = {},
+                   .triangles = std::move(shape.triangles),
+                   .solid_of = std::move(shape.solid_of),
+                   .model_spacing = shape.spacing}};
+  body.has_all_poses = path_pose.is_none();
+  if (body.has_all_poses) {
     body.path_pose.resize(body.poses.size());
     std::iota(body.path_pose.begin(), body.path_pose.end(), 0);
+    return body;
   }
-  return body;
+  body.path_pose = indices_of(path_pose, "path_pose");
+  if (body.path_pose.size() == body.poses.size()) return body;
+  throw UsageError("path_pose: expected " + std::to_string(body.poses.size()) +
+                   " indices, one for each pose, found " + std::to_string(body.path_pose.size()));
 }
 
 BodyMount mount_of(const std::optional<double>& at,
                    const std::optional<std::pair<double, double>>& pivots) {
-  if (at && pivots) throw UsageError("a body follows at a station or on pivots, not both");
+  if (at && pivots) {
+    throw UsageError("at, pivots: a body follows at a station or on pivots, expected one of them");
+  }
   if (pivots) return BodyPivots{pivots->first, pivots->second};
   return BodyStation{at.value_or(0)};
 }
 
 void add_body(py::module_& module) {
-  py::class_<Body>(module, "Body",
-                   "One of several rigid parts of a vehicle. path_pose: of each of its poses the "
-                   "index\nof the path's pose, ascending; None: it has all of them.")
-      .def(py::init(&make_body), "name"_a, "model"_a, "poses"_a, "path_pose"_a = py::none())
-      .def_property_readonly("name", [](const Body& b) { return text(b.name); })
+  py::class_<PlacedBody>(
+      module, "Body",
+      "One of the rigid parts of a vehicle, such as a tractor or its trailer.\n\n"
+      "Query(poses=path, bodies=[...]) searches all bodies of a vehicle at once. follow() and\n"
+      "read_vehicle() make bodies that follow the path; a body with a motion of its own is made\n"
+      "of its poses.")
+      .def(py::init(&make_body), "name"_a, "model"_a, "poses"_a, "path_pose"_a = py::none(),
+           R"(__init__(self, name, model, poses, path_pose=None)
+--
+
+Make a body of its own poses.
+
+name: for people, in results and reports; every body of a vehicle has another one.
+model: in the body's own frame: points, n x 3, metres; or a ModelShape.
+poses: n x 4 x 4 or n x 3 x 4; where the body is.
+path_pose: for each of these poses the index of the path's pose at which the body is there,
+    ascending. None: the body has as many poses as the path, one for each.)")
+      .def_property_readonly(
+          "name", [](const PlacedBody& b) { return text(b.name); },
+          "The body's name, which results and reports show.")
       .def_property_readonly(
           "model",
-          [](const Body& b) -> py::object {
-            if (b.is_surface()) return py::cast(ModelShape{b.model, b.triangles, b.solid_of});
+          [](const PlacedBody& b) -> py::object {
+            if (b.is_surface() || b.model_spacing > 0) {
+              return py::cast(ModelShape{b.model, b.triangles, b.solid_of, b.model_spacing});
+            }
             return to_array(b.model);
           },
-          "In the body's own frame: points, n x 3 float64, metres; or a ModelShape.")
+          "The model in the body's own frame: points, n x 3 float64, metres; or a ModelShape.")
       .def_property_readonly(
-          "poses", [](const Body& b) { return to_array(b.poses); }, "n x 4 x 4 float64.")
+          "poses", [](const PlacedBody& b) { return to_array(b.poses); },
+          "The poses at which the body is searched: n x 4 x 4 float64.")
       .def_property_readonly(
-          "path_pose", [](const Body& b) { return to_array(b.path_pose); },
-          "Of each pose the index of the path's: n uint32.")
-      .def("__repr__", [](const Body& b) {
+          "path_pose", [](const PlacedBody& b) { return to_array(b.path_pose); },
+          "For each pose of the body the index of the path's pose that it belongs to: n uint32.")
+      .def("__repr__", [](const PlacedBody& b) {
         return text("<Body " + b.name + ": " + std::to_string(b.model.size()) + " points, " +
                     std::to_string(b.poses.size()) + " poses>");
       });
@@ -74,13 +102,14 @@ void add_follow(py::module_& module) {
       [](std::string name, const py::object& model, const py::object& path,
          std::optional<double> at, std::optional<std::pair<double, double>> pivots,
          const py::object& messages) {
-        Body body = make_body(std::move(name), model, py::tuple(), std::nullopt);
-        const std::vector<Pose> poses = poses_of(poses_array(path, "path"), "path");
+        Body body = make_body(std::move(name), model, py::tuple(), py::none());
+        const auto poses =
+            std::make_shared<const std::vector<Pose>>(poses_of(poses_array(path, "path"), "path"));
         const BodyMount mount = mount_of(at, pivots);
         std::vector<Message> doubts;
-        Body placed = without_gil([&] { return follow(std::move(body), poses, mount, &doubts); });
+        Body placed = without_gil([&] { return follow(std::move(body), *poses, mount, &doubts); });
         append_to(messages, doubts);
-        return placed;
+        return PlacedBody{std::move(placed), poses};
       },
       "name"_a, "model"_a, "path"_a, py::kw_only(), "at"_a = py::none(), "pivots"_a = py::none(),
       "messages"_a = py::none(),
@@ -89,19 +118,16 @@ void add_follow(py::module_& module) {
 
 Place a body of a vehicle at the poses of a path. Returns a Body, for Query(bodies=...).
 
+name: for people, in results and reports; every body of a vehicle has another one.
 model: in the body's own frame, as Query takes it: points, n x 3, metres; or a ModelShape.
-path: the poses that the vehicle follows, n x 4 x 4.
+path: the poses that the vehicle follows, n x 4 x 4: those of the query.
 at: the body has the path's pose so many metres ahead; negative: behind.
 pivots: two places of the body that lie on the path, front and rear, metres ahead: (10, -10).
 messages: a list to which warnings are appended, as of poses where the body is off the path.)");
 }
 
-/// Points of a file stay points, so that one vehicle may have both.
-constexpr Named<ModelAs> kBodiesAs[] = {
-    {"surface", ModelAs::kSurfaceOfMesh}, {"points", ModelAs::kPoints}, {"solid", ModelAs::kSolid}};
-
 constexpr const char* kReadVehicle =
-    R"(read_vehicle(file, poses, model_as='surface', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
+    R"(read_vehicle(file, poses, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, lever_arm=(0.0, 0.0, 0.0), messages=None)
 --
 
 Read the JSON file of a vehicle of several bodies, and the files that it names.
@@ -109,53 +135,112 @@ Read the JSON file of a vehicle of several bodies, and the files that it names.
 Returns a list of Body, in the file's order, for Query(poses=poses, bodies=...).
 
 file: the same as for clearway run --vehicle.
-poses: the path that the vehicle follows, n x 4 x 4.
-model_as: 'surface': meshes as their triangles are, and other models as points.
+poses: the path that the vehicle follows, n x 4 x 4: that of the query.
+model_as: 'auto': meshes as their triangles are, and other models as points.
+    'surface': triangles; each body has to be a mesh.
     'points': the surface of a mesh is sampled, which needs a spacing.
     'solid': triangles, and what closed parts enclose; each body has to be a mesh.
 spacing, vertices_only, above: of all models, as read_model_shape() takes them.
-unit: of models without a model_unit, metres; 0: as the file says, else as they are.
-environment_unit: metres of the environment's unit, into which lengths with a unit are converted.
+unit: of models without a model_unit, as read_model() takes it.
+environment_unit: into which lengths with a unit are converted, as read_model() takes it.
 format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,
-lever_arm: of trajectories that bodies have of their own, as read_trajectory() takes them.
+    lever_arm: for trajectories that bodies have of their own, as read_trajectory() takes them.
 messages: a list to which notes and warnings are appended.)";
 
 void add_read_vehicle(py::module_& module) {
   module.def(
       "read_vehicle",
       [](const py::object& file, const py::object& poses, const std::string& model_as,
-         double spacing, double unit, double environment_unit, bool vertices_only,
-         std::optional<double> above, const std::string& format, bool allow_non_rigid,
-         const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
-         const std::string& default_crs, const std::string& datum, double metres_per_unit,
-         const std::array<double, 3>& lever_arm, const py::object& messages) {
+         double spacing, const UnitArgument& unit, const UnitArgument& environment_unit,
+         bool vertices_only, std::optional<double> above, const std::string& format,
+         bool allow_non_rigid, const std::string& angle_unit, const std::string& angle_frame,
+         const std::string& crs, const std::string& default_crs, const std::string& datum,
+         const UnitArgument& metres_per_unit, const std::array<double, 3>& lever_arm,
+         const py::object& messages) {
         VehicleOptions options;
-        options.model = {value_of("model_as", kBodiesAs, model_as),
-                         spacing,
-                         unit,
-                         environment_unit,
-                         vertices_only,
-                         above};
+        options.model = model_options(value_of("model_as", kModelAs, model_as), spacing, unit,
+                                      environment_unit, vertices_only, above);
         options.trajectory =
             trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
                                datum, metres_per_unit, environment_unit, lever_arm);
-        return read_noting(
-            messages,
-            [&, from = path_of(file), path = poses_of(poses_array(poses, "poses"), "poses")](
-                auto* noted) { return read_vehicle(from, path, options, noted); });
+        const auto path = std::make_shared<const std::vector<Pose>>(
+            poses_of(poses_array(poses, "poses"), "poses"));
+        std::vector<Body> read = read_noting(messages, [&, from = path_of(file)](auto* noted) {
+          return read_vehicle(from, *path, options, noted);
+        });
+        std::vector<PlacedBody> placed;
+        for (Body& body : read) placed.push_back({std::move(body), path});
+        return placed;
       },
-      "file"_a, "poses"_a, "model_as"_a = "surface", py::kw_only(), "spacing"_a = 0.0,
-      "unit"_a = 0.0, "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
+      "file"_a, "poses"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
+      "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
       "format"_a = "auto", "allow_non_rigid"_a = false, "angle_unit"_a = "declared",
       "angle_frame"_a = "declared", "crs"_a = "", "default_crs"_a = "", "datum"_a = "",
       "metres_per_unit"_a = 0.0, "lever_arm"_a = std::array<double, 3>{0, 0, 0},
       "messages"_a = py::none(), kReadVehicle);
 }
 
+void add_unsearched(py::module_& module) {
+  py::class_<UnsearchedStretch>(module, "UnsearchedStretch",
+                                "A stretch of the path on which bodies of a vehicle have no pose, "
+                                "so that nothing is\nknown of them there.")
+      .def_readonly("first_pose", &UnsearchedStretch::first_pose, "The path's pose at its start.")
+      .def_readonly("last_pose", &UnsearchedStretch::last_pose, "The path's pose at its end.")
+      .def_readonly("chainage_from", &UnsearchedStretch::chainage_from, "Metres along the path.")
+      .def_readonly("chainage_to", &UnsearchedStretch::chainage_to, "Metres along the path.")
+      .def_readonly("bodies", &UnsearchedStretch::bodies,
+                    "Indices of the bodies without a pose there, ascending.")
+      .def_readonly("has_answer", &UnsearchedStretch::has_answer,
+                    "Whether other bodies were searched there.")
+      .def("__repr__", [](const UnsearchedStretch& s) {
+        return text("<UnsearchedStretch: chainage " + format_number(s.chainage_from) + " to " +
+                    format_number(s.chainage_to) + ", " +
+                    counted(s.bodies.size(), "body", "bodies") + " without a pose>");
+      });
+  module.def(
+      "unsearched_stretches",
+      [](const py::object& path, const std::vector<PlacedBody>& bodies) {
+        const std::vector<Pose> poses = poses_of(poses_array(path, "path"), "path");
+        return unsearched_stretches(poses, bodies_on(bodies, poses));
+      },
+      "path"_a, "bodies"_a,
+      R"(unsearched_stretches(path, bodies)
+--
+
+Where bodies of a vehicle have no pose, in the order of the path: a list of UnsearchedStretch.
+
+A result without collisions does not say that the vehicle is clear there. In its profile, the
+distance is infinity there too.
+path: the poses that the vehicle follows, n x 4 x 4.
+bodies: a list of Body, as Query(bodies=...) takes it.)");
+}
+
 }  // namespace
+
+std::vector<Body> bodies_on(const std::vector<PlacedBody>& bodies, const std::vector<Pose>& path) {
+  std::vector<Body> placed;
+  for (const PlacedBody& body : bodies) {
+    const std::string name = "bodies[" + std::to_string(placed.size()) + "] (" + body.name + "): ";
+    if (body.has_all_poses && body.poses.size() != path.size()) {
+      throw UsageError(name + "has " + counted(body.poses.size(), "pose") + ", and the path has " +
+                       counted(path.size(), "pose") +
+                       ": expected one for each pose of the path, or Body(..., path_pose=...), "
+                       "which says which poses of the path they belong to");
+    }
+    if (body.path && *body.path != path) {
+      throw UsageError(name + "was placed on another path, of " +
+                       counted(body.path->size(), "pose") + ", than `poses`, which has " +
+                       std::to_string(path.size()) +
+                       ": give follow() or read_vehicle() the same poses");
+    }
+    placed.push_back(body);
+  }
+  return placed;
+}
 
 void add_bodies(py::module_& module) {
   add_body(module);
+  add_unsearched(module);
   add_follow(module);
   add_read_vehicle(module);
 }

@@ -137,27 +137,30 @@ void add_errors(py::module_& module) {
   const py::handle plain = PyExc_Exception, value = PyExc_ValueError;
   error_classes.error = add_class(
       module, "Error",
-      "What the world does wrong. The text says what happened and where.\n\n"
-      "remedy: what would help, such as 'overwrite' or 'more_memory'; None: nothing is known.\n"
-      "amount: a number of the remedy, such as the bytes that are enough; 0: none.",
+      "Raised where a call cannot be done. The text says what happened and where.\n\n"
+      "remedy: what would help, such as 'overwrite' or 'more_memory'; None where nothing is "
+      "known.\n"
+      "amount: the number of the remedy, such as the bytes that are enough; 0 where it has none.",
       py::make_tuple(plain));
   const py::handle error = error_classes.error;
   error.attr("remedy") = py::none();
   error.attr("amount") = 0.0;
-  error_classes.usage = add_class(
-      module, "UsageError", "Options that contradict each other, or ask for what cannot be done.",
-      py::make_tuple(error, value));
-  error_classes.input =
-      add_class(module, "InputError", "An input that is malformed, damaged or not supported.",
-                py::make_tuple(error));
-  error_classes.resource = add_class(
-      module, "ResourceError", "A file cannot be read or written, or memory or a GPU is not there.",
+  error_classes.usage =
+      add_class(module, "UsageError",
+                "Raised for arguments that contradict each other, or ask for what cannot be done.",
+                py::make_tuple(error, value));
+  error_classes.input = add_class(
+      module, "InputError", "Raised for an input that is malformed, damaged or not supported.",
       py::make_tuple(error));
-  error_classes.interrupted =
-      add_class(module, "Interrupted",
-                "Stopped on request. What a journal holds is not lost: the same call with "
-                "resume=True goes on.",
+  error_classes.resource =
+      add_class(module, "ResourceError",
+                "Raised where a file cannot be read or written, or memory or a GPU is missing.",
                 py::make_tuple(error));
+  error_classes.interrupted = add_class(
+      module, "Interrupted",
+      "Raised where a call was stopped on request. Nothing that was found is lost: the same "
+      "search with resume=True goes on.",
+      py::make_tuple(error));
   py::register_local_exception_translator(translate);
 }
 

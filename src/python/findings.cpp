@@ -8,6 +8,8 @@
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
 #include "python/arrays.hpp"
+#include "python/model.hpp"
+#include "python/store.hpp"
 #include "python/values.hpp"
 #include "python/watch.hpp"
 
@@ -30,63 +32,124 @@ py::object place(const std::optional<Vec3>& point) {
 }
 
 void add_conflict(py::module_& module) {
-  py::class_<Conflict>(module, "Conflict", "Colliding points that hang together.")
-      .def_readonly("id", &Conflict::id, "1, 2, ... along the path.")
-      .def_readonly("points", &Conflict::points, "Colliding ones.")
-      .def_readonly("source", &Conflict::source, "The smallest index of its points.")
-      .def_readonly("box", &Conflict::box, "Of its points, metres.")
+  py::class_<Conflict>(
+      module, "Conflict",
+      "A place where the vehicle does not fit: colliding points that hang together.")
+      .def_readonly("id", &Conflict::id,
+                    "The number of the conflict, from 1, in the order of the path.")
+      .def_readonly("points", &Conflict::points, "How many colliding points the conflict has.")
+      .def_readonly("source", &Conflict::source,
+                    "The smallest source index of the conflict's points.")
+      .def_readonly("box", &Conflict::box, "The box around the conflict's points, in metres.")
       .def_property_readonly(
-          "centroid", [](const Conflict& c) { return to_array(c.centroid); }, "3 float64, metres.")
-      .def_readonly("body", &Conflict::body,
-                    "Of a vehicle's result, as an index of Result.bodies(): the one that has the "
-                    "least distance, or else touches first. None where there is one model.")
-      .def_readonly("first_pose", &Conflict::first_pose, "The smallest first pose of its points.")
-      .def_readonly("last_pose", &Conflict::last_pose, "The greatest first pose of its points.")
+          "centroid", [](const Conflict& c) { return to_array(c.centroid); },
+          "The mean of the conflict's points: 3 float64, metres.")
+      .def_readonly(
+          "body", &Conflict::body,
+          "The body of the vehicle that comes closest, or without clearances touches first, as an "
+          "index of Result.bodies(). None where there is one model.")
+      .def_readonly("first_pose", &Conflict::first_pose,
+                    "The least index of a pose that touches one of its points.")
+      .def_readonly("last_pose", &Conflict::last_pose,
+                    "The greatest index of a pose that touches one of its points; between poses, "
+                    "the start of the last way that does. See Conflicts.has_last_poses.")
+      .def_readonly(
+          "obstacle_chainage", &Conflict::obstacle_chainage,
+          "Station of the obstacle itself: the chainage of the pose that it is seen from, "
+          "plus how far ahead of it the nearest point lies, metres, or None.")
+      .def_readonly("shift_left", &Conflict::shift_left,
+                    "How far the vehicle has to be shifted to the left so that the conflict's own "
+                    "points are free, metres. None: 2 m are too little, or no model was given.")
+      .def_readonly("shift_right", &Conflict::shift_right,
+                    "How far the vehicle has to be shifted to the right so that the "
+                    "conflict's own points are free, metres, or None as for shift_left.")
       .def_readonly("chainage_from", &Conflict::chainage_from, "Metres along the path.")
       .def_readonly("chainage_to", &Conflict::chainage_to, "Metres along the path.")
       .def_readonly("least_distance", &Conflict::least_distance,
-                    "Metres; None: the result has no clearances.")
-      .def_readonly("nearest_pose", &Conflict::nearest_pose, "The pose that has it, or None.")
-      .def_readonly("nearest_source", &Conflict::nearest_source, "The point, or None.")
+                    "The least distance between the conflict and the model, metres. None where the "
+                    "result has no clearances.")
+      .def_readonly(
+          "nearest_pose", &Conflict::nearest_pose,
+          "The pose at which the conflict has its least distance, or None without clearances.")
+      .def_readonly(
+          "nearest_source", &Conflict::nearest_source,
+          "The source index of the point with the least distance, or None without clearances.")
       .def_readonly("encroachment", &Conflict::encroachment,
-                    "Radius - least_distance, metres, or None.")
-      .def_readonly("depth", &Conflict::depth,
-                    "Of a model with solids: how deep its deepest point is inside, metres; 0: "
-                    "none is. None: no solids, or no clearances.")
+                    "By how much the conflict is closer than allowed: radius - least_distance, "
+                    "metres, or None without clearances.")
+      .def_readonly(
+          "depth", &Conflict::depth,
+          "How deep the conflict's deepest point is inside the model, metres; 0 where none is. "
+          "None where the model has no solids, or the result no clearances.")
       .def_readonly("points_inside", &Conflict::points_inside,
-                    "How many of its points are inside at any pose, or None.")
+                    "How many of the conflict's points are inside the model at any pose, or None "
+                    "as for depth.")
       .def_property_readonly(
           "nearest_point", [](const Conflict& c) { return place(c.nearest_point); },
-          "3 float64, metres, or None.")
+          "The point with the least distance: 3 float64, metres, or None without clearances.")
       .def_property_readonly(
           "side", [](const Conflict& c) { return name_of(c.side); },
-          "'left', 'right', 'above', 'below', 'front', 'behind' or 'unknown'.")
+          "On which side of the model the conflict is: 'left', 'right', 'above', 'below', "
+          "'front', "
+          "'behind' or 'unknown'.")
       .def_readonly("lateral", &Conflict::lateral,
-                    "To the left of the pose, metres, or None. With bodies=, of the body's pose.")
-      .def_readonly("height", &Conflict::height, "Above the pose, metres, or None. Likewise.")
+                    "How far the conflict is to the left of the model's pose, or of its body's "
+                    "with bodies=; metres, negative to the right, or None.")
+      .def_readonly("height", &Conflict::height,
+                    "How far the conflict is above the model's pose, or of its body's with "
+                    "bodies=; metres, or None.")
       .def_readonly("group", &Conflict::group,
-                    "The smallest index of the whole group, before it was cut.")
+                    "The smallest source index of the group that the conflict was cut from; "
+                    "conflicts of one group have the same.")
       .def("__repr__", [](const Conflict& c) {
         return py::str("<Conflict {}: {} points, {:.3f} to {:.3f} m, {}>")
             .format(c.id, c.points, c.chainage_from, c.chainage_to, name_of(c.side));
       });
 }
 
+void add_small_group(py::module_& module) {
+  py::class_<SmallGroup>(module, "SmallGroup", "A group of too few points to be listed.")
+      .def_readonly("points", &SmallGroup::points, "How many colliding points the group has.")
+      .def_readonly("source", &SmallGroup::source,
+                    "The smallest source index of the group's points.")
+      .def_readonly("box", &SmallGroup::box, "The box around the group's points, metres.")
+      .def_readonly("first_pose", &SmallGroup::first_pose,
+                    "The least index of a pose that touches one of its points.")
+      .def_readonly("last_pose", &SmallGroup::last_pose,
+                    "The greatest index of a pose that touches one of its points.")
+      .def_readonly("chainage_from", &SmallGroup::chainage_from, "Metres along the path.")
+      .def_readonly("chainage_to", &SmallGroup::chainage_to, "Metres along the path.");
+}
+
 void add_conflicts(py::module_& module) {
   using Found = GroupedConflicts;
-  py::class_<Found>(module, "Conflicts", "The colliding points of a result, group by group.")
-      .def_readonly("listed", &Found::listed, "A list of Conflict, by id.")
+  py::class_<Found>(module, "Conflicts",
+                    "The conflicts of a result: its colliding points, grouped place by place.")
+      .def_readonly("listed", &Found::listed,
+                    "The conflicts: a list of Conflict in the order of the path.")
+      .def_property_readonly(
+          "small", [](const Found& c) { return c.small; },
+          "A list of SmallGroup along the path: the groups that are not listed.")
+      .def_readonly("has_last_poses", &Found::has_last_poses,
+                    "Whether the result keeps last poses. Otherwise a conflict's last pose is the "
+                    "last that is known to touch it.")
       .def_property_readonly(
           "conflict_of", [](const Found& c) { return to_array(c.conflict_of); },
-          "The id of each row of the result, uint32; 0: a group too small to be listed.")
-      .def_readonly("colliding_points", &Found::colliding_points)
-      .def_readonly("groups", &Found::groups, "Before cutting, small ones too.")
-      .def_readonly("small_groups", &Found::small_groups, "Not listed.")
-      .def_readonly("small_points", &Found::small_points, "Points of these.")
-      .def_readonly("path_length", &Found::path_length, "Metres.")
+          "The id of the conflict of each row of the result: n uint32; 0 where its group is too "
+          "small to be listed.")
+      .def_readonly("colliding_points", &Found::colliding_points,
+                    "How many colliding points the result has, listed or not.")
+      .def_readonly("groups", &Found::groups,
+                    "How many groups there are before long ones are cut, small ones included.")
+      .def_readonly("small_groups", &Found::small_groups,
+                    "How many groups have too few points to be listed.")
+      .def_readonly("small_points", &Found::small_points,
+                    "How many points the groups have that are not listed.")
+      .def_readonly("path_length", &Found::path_length, "How long the path is, metres.")
       .def_readonly("longest_group", &Found::longest_group,
-                    "The longest stretch of the path that one group has, metres.")
-      .def_readonly("longest_group_points", &Found::longest_group_points)
+                    "The longest stretch of the path that one group covers, metres.")
+      .def_readonly("longest_group_points", &Found::longest_group_points,
+                    "How many points that longest group has.")
       .def("__len__", [](const Found& c) { return c.listed.size(); })
       .def("__repr__", [](const Found& c) {
         return text("<" + std::to_string(c.listed.size()) + " conflicts of " +
@@ -99,14 +162,20 @@ void add_find_conflicts(py::module_& module) {
       "find_conflicts",
       [](const Result& result, const py::object& poses, double gap, std::uint64_t min_points,
          double split, double chainage_start, const std::string& forward, const std::string& up,
-         std::optional<Box> model_box, const std::vector<Body>& bodies, std::uint64_t memory_bytes,
-         int threads, py::object progress, py::object stop) {
+         std::optional<Box> model_box, const py::object& model,
+         const std::vector<PlacedBody>& bodies, std::uint64_t memory_bytes, int threads,
+         py::object progress, py::object stop) {
         ConflictOptions options = conflict_options(gap, min_points, split, chainage_start, forward,
                                                    up, model_box, memory_bytes, threads);
-        options.bodies = bodies;
+        const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
+        const std::vector<Body> placed = bodies_on(bodies, path);
+        options.bodies = placed;
+        std::optional<ModelShape> shape;
+        if (!model.is_none()) shape = model_of(model_object(model));
+        if (shape) options.model = &*shape;
         Watch watch(std::move(progress), py::none(), std::move(stop));
         watch.attach(options);
-        return watch.run([&, path = poses_of(poses_array(poses, "poses"), "poses")] {
+        return watch.run([&] {
           GroupedConflicts found;
           static_cast<Conflicts&>(found) =
               find_conflicts(result, path, options, &found.conflict_of);
@@ -116,22 +185,25 @@ void add_find_conflicts(py::module_& module) {
       "result"_a, "poses"_a, py::kw_only(), "gap"_a = ConflictOptions{}.gap,
       "min_points"_a = ConflictOptions{}.min_points, "split"_a = ConflictOptions{}.split,
       "chainage_start"_a = 0.0, "forward"_a = "+x", "up"_a = "+z", "model_box"_a = py::none(),
-      "bodies"_a = py::tuple(), "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0,
-      "progress"_a = py::none(), "stop"_a = py::none(),
-      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, bodies=(), memory_bytes=4294967296, threads=0, progress=None, stop=None)
+      "model"_a = py::none(), "bodies"_a = py::tuple(),
+      "memory_bytes"_a = ConflictOptions{}.memory_bytes, "threads"_a = 0, "progress"_a = py::none(),
+      "stop"_a = py::none(),
+      R"(find_conflicts(result, poses, *, gap=0.3, min_points=10, split=25.0, chainage_start=0.0, forward='+x', up='+z', model_box=None, model=None, bodies=(), memory_bytes=4294967296, threads=0, progress=None, stop=None)
 --
 
-Group the colliding points of a result, place by place. Returns Conflicts.
+Group the colliding points of a result, place by place. Returns a Conflicts.
 
-result: of a query with first_pose=True.
-poses: those of the search.
+result: the Result of a query with first_pose=True.
+poses: the poses of the search, n x 4 x 4.
 gap: metres; points at most this far apart belong to the same conflict.
 min_points: groups of fewer are counted, not listed.
 split: metres along the path; longer groups are cut at multiples of it; 0: never.
-chainage_start: metres, of the first pose.
-forward, up: axes of the model, such as '+x' or '-z'.
-model_box: of the model, where the result does not hold it.
-bodies: of a vehicle, those of the search; each conflict is seen from its body then.
+chainage_start: the chainage of the first pose, metres.
+forward, up: which axes of the model point ahead and up, such as '+x' or '-z'.
+model_box: the Box around the model, where the result does not hold it.
+model: the one model of the search, an n x 3 array or a ModelShape: for shift_left, shift_right.
+bodies: the bodies of the search, where it was one of a vehicle; sides and offsets are then
+    seen from the body that touches.
 memory_bytes, threads, progress, stop: as search() takes them.)");
 }
 
@@ -160,6 +232,7 @@ py::object to_python(Conflicts conflicts) {
 
 void add_findings(py::module_& module) {
   add_conflict(module);
+  add_small_group(module);
   add_conflicts(module);
   add_find_conflicts(module);
 }

@@ -32,11 +32,12 @@ constexpr Named<AngleFrame> kAngleFrames[] = {
 
 void add_labels(py::module_& module) {
   py::class_<PoseLabels>(module, "PoseLabels",
-                         "What a trajectory's file says of its poses beside where they are.")
-      .def(py::init<>())
+                         "The times and names that a trajectory's file gives its poses. Make an "
+                         "empty one for read_trajectory(labels=...).")
+      .def(py::init<>(), "__init__(self)\n--\n\nMake labels that read_trajectory() can fill.")
       .def_property_readonly(
           "time", [](const PoseLabels& l) { return to_array(l.time); },
-          "Seconds as the file counts them: n float64, or empty.")
+          "The time of each pose in seconds, as the file counts them: n float64, or empty.")
       .def_property_readonly(
           "name",
           [](const PoseLabels& labels) {
@@ -44,7 +45,7 @@ void add_labels(py::module_& module) {
             for (const std::string& name : labels.name) names.append(text(name));
             return names;
           },
-          "Names or indices of the file's own: n texts, or empty.");
+          "The name or index that the file gives each pose: n texts, or empty.");
 }
 
 void add_read_trajectory(py::module_& module) {
@@ -52,9 +53,9 @@ void add_read_trajectory(py::module_& module) {
       "read_trajectory",
       [](const py::object& path, const std::string& format, bool allow_non_rigid,
          const std::string& angle_unit, const std::string& angle_frame, const std::string& crs,
-         const std::string& default_crs, const std::string& datum, double metres_per_unit,
-         double environment_unit, const std::array<double, 3>& lever_arm,
-         const py::object& messages, PoseLabels* labels) {
+         const std::string& default_crs, const std::string& datum,
+         const UnitArgument& metres_per_unit, const UnitArgument& environment_unit,
+         const std::array<double, 3>& lever_arm, const py::object& messages, PoseLabels* labels) {
         const TrajectoryOptions options =
             trajectory_options(format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs,
                                datum, metres_per_unit, environment_unit, lever_arm);
@@ -73,22 +74,28 @@ void add_read_trajectory(py::module_& module) {
       R"(read_trajectory(path, *, format='auto', allow_non_rigid=False, angle_unit='declared', angle_frame='declared', crs='', default_crs='', datum='', metres_per_unit=0.0, environment_unit=1.0, lever_arm=(0.0, 0.0, 0.0), messages=None, labels=None)
 --
 
-Read the poses of a trajectory: n x 4 x 4 float64.
+Read the poses of a trajectory. Returns an array of n x 4 x 4 float64.
 
-pose[:3, :3] is the rotation and pose[:3, 3] the translation in metres:
-a point m of the model is at pose[:3, :3] @ m + pose[:3, 3].
+pose[:3, :3] is the rotation and pose[:3, 3] the translation in metres, so that a point m of
+the model is at pose[:3, :3] @ m + pose[:3, 3].
+
+path: the file.
 
 format: 'auto', 'matrix', 'tum', 'euroc', 'csv', 'pose-xyzw', 'pose-wxyz', 'sbet', '3dtk-pose'
     or '3dtk-frames'.
-allow_non_rigid: takes matrices that scale or shear too.
-angle_unit: 'deg', 'rad', or 'declared': as the file says.
-angle_frame: 'ned' (clockwise from north), 'enu' (counter-clockwise from east), or 'declared'.
+allow_non_rigid: also takes matrices that scale or shear.
+angle_unit: the unit of angles: 'deg', 'rad', or 'declared', which is what the file says.
+angle_frame: how angles count: 'ned' (clockwise from north), 'enu' (counter-clockwise from
+    east), or 'declared', which is what the file says.
 crs: the projected coordinate system to turn latitudes and longitudes into, such as 'EPSG:25832'.
-default_crs: taken where crs is empty, for example store.crs_wkt().
+default_crs: the coordinate system to take where crs is empty, for example store.crs_wkt().
 datum: the geographic coordinate system of latitudes and longitudes; empty: WGS 84.
-metres_per_unit: of positions; 0: metres, unless the file says another.
-environment_unit: metres of the environment's unit, into which a known unit is converted.
-lever_arm: where the file's positions lie in the model's frame: x, y, z.
+metres_per_unit: the unit of positions: metres, or a name: 'mm', 'cm', 'm', 'in', 'ft' (the
+    environment's foot, also METRES_PER_FOOT), 'ift' (the international foot) or 'us-ft' (the US
+    survey foot); 0: metres, unless the file names a unit.
+environment_unit: the environment's unit, into which a known unit is converted: metres, a name, or
+    store.length_unit().
+lever_arm: where the positions of the file lie in the model's frame: x, y and z, metres.
 messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the times and names that the file has.)");
 }
@@ -101,32 +108,44 @@ py::dict busy_seconds(const ConvertReport& report) {
 
 void add_convert_report(py::module_& module) {
   using Report = ConvertReport;
-  py::class_<Report>(module, "ConvertReport", "What a conversion did.")
+  py::class_<Report>(
+      module, "ConvertReport",
+      "What a conversion did: how many points it stored, how exactly, and in what time.")
       .def_readonly("was_finished", &Report::was_finished,
-                    "The store was there already: nothing was converted.")
-      .def_readonly("points", &Report::points, "Points stored.")
-      .def_readonly("cells", &Report::cells)
-      .def_readonly("non_finite_points", &Report::non_finite_points, "Left out.")
-      .def_readonly("absent_points", &Report::absent_points, "Records without a point.")
+                    "Whether the store was there already, so that nothing was converted.")
+      .def_readonly("points", &Report::points, "How many points were stored.")
+      .def_readonly("cells", &Report::cells, "Into how many cells the points were divided.")
+      .def_readonly("non_finite_points", &Report::non_finite_points,
+                    "How many points were left out because a coordinate was not a finite number.")
+      .def_readonly("absent_points", &Report::absent_points,
+                    "How many records of the scans have no point, such as beams that hit nothing.")
       .def_property_readonly(
           "scale", [](const Report& r) { return to_array(r.scale); },
-          "Of the stored integers: 3 float64, metres.")
+          "The step of the stored coordinates on each axis: 3 float64, metres.")
       .def_property_readonly(
           "offset", [](const Report& r) { return to_array(r.offset); },
-          "Of the stored integers: 3 float64, metres.")
-      .def_readonly("box", &Report::box, "Of the stored points; None: there is none.")
+          "The place that the stored coordinates count from: 3 float64, metres.")
+      .def_readonly("box", &Report::box,
+                    "The Box around the stored points; None where there are no points.")
       .def_readonly("largest_change", &Report::largest_change,
-                    "Of any coordinate by rounding to the scale, metres.")
-      .def_readonly("temporary_bytes", &Report::temporary_bytes)
-      .def_readonly("output_bytes", &Report::output_bytes)
-      .def_readonly("count_seconds", &Report::count_seconds)
-      .def_readonly("distribute_seconds", &Report::distribute_seconds)
-      .def_readonly("partition_seconds", &Report::partition_seconds)
-      .def_readonly("confirm_seconds", &Report::confirm_seconds)
+                    "By how much rounding to the scale changed any coordinate at the most, metres.")
+      .def_readonly("temporary_bytes", &Report::temporary_bytes,
+                    "How many bytes temporary files took.")
+      .def_readonly("output_bytes", &Report::output_bytes, "How many bytes the store has.")
+      .def_readonly("count_seconds", &Report::count_seconds,
+                    "Seconds of counting the points of the inputs.")
+      .def_readonly("distribute_seconds", &Report::distribute_seconds,
+                    "Seconds of distributing the points to places of the store.")
+      .def_readonly("partition_seconds", &Report::partition_seconds,
+                    "Seconds of dividing the points into cells and writing them.")
+      .def_readonly("confirm_seconds", &Report::confirm_seconds,
+                    "Seconds of confirming that the inputs did not change meanwhile.")
       .def_property_readonly("busy_seconds", busy_seconds,
-                             "How long all threads together were busy with each stage.")
+                             "For how many seconds all threads together were busy with each stage: "
+                             "a dict by its name.")
       .def_property_readonly(
-          "warnings", [](const Report& r) { return to_list(r.warnings); }, "A list of Message.")
+          "warnings", [](const Report& r) { return to_list(r.warnings); },
+          "What may be wrong with the scans: a list of Message.")
       .def("__repr__", [](const Report& r) {
         return text("<" + std::to_string(r.points) + " points in " + std::to_string(r.cells) +
                     " cells" + warning_words(r.warnings) + ">");
@@ -138,13 +157,21 @@ void add_convert(py::module_& module) {
       "convert",
       [](const py::object& inputs, const py::object& output, std::optional<double> scale,
          std::uint32_t cell_points, std::optional<double> regular_size, std::uint64_t memory_bytes,
-         int threads, bool ignore_crs, std::vector<std::string> columns, bool skip_unreadable,
-         bool strict, bool overwrite, bool resume, py::object progress, py::object message,
-         py::object stop) {
-        ConvertOptions options{
-            scale,      cell_points,        regular_size,    memory_bytes, threads,
-            ignore_crs, std::move(columns), skip_unreadable, strict,       overwrite,
-            resume};
+         int threads, const UnitArgument& unit, bool ignore_crs, std::vector<std::string> columns,
+         bool skip_unreadable, bool strict, bool overwrite, bool resume, py::object progress,
+         py::object message, py::object stop) {
+        ConvertOptions options{.scale = scale,
+                               .cell_points = cell_points,
+                               .regular_size = regular_size,
+                               .memory_bytes = memory_bytes,
+                               .threads = threads,
+                               .unit = file_unit(unit),
+                               .ignore_crs = ignore_crs,
+                               .columns = std::move(columns),
+                               .skip_unreadable = skip_unreadable,
+                               .strict = strict,
+                               .overwrite = overwrite,
+                               .resume = resume};
         Watch watch(std::move(progress), std::move(message), std::move(stop));
         watch.attach(options);
         return watch.run([&, from = paths_of(inputs), to = path_of(output)] {
@@ -153,27 +180,29 @@ void add_convert(py::module_& module) {
       },
       "inputs"_a, "output"_a, py::kw_only(), "scale"_a = py::none(),
       "cell_points"_a = ConvertOptions{}.cell_points, "regular_size"_a = py::none(),
-      "memory_bytes"_a = ConvertOptions{}.memory_bytes, "threads"_a = 0, "ignore_crs"_a = false,
-      "columns"_a = std::vector<std::string>{}, "skip_unreadable"_a = false, "strict"_a = false,
-      "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
+      "memory_bytes"_a = ConvertOptions{}.memory_bytes, "threads"_a = 0, "unit"_a = 0.0,
+      "ignore_crs"_a = false, "columns"_a = std::vector<std::string>{}, "skip_unreadable"_a = false,
+      "strict"_a = false, "overwrite"_a = false, "resume"_a = false, "progress"_a = py::none(),
       "message"_a = py::none(), "stop"_a = py::none(),
-      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, ignore_crs=False, columns=(), skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
+      R"(convert(inputs, output, *, scale=None, cell_points=65536, regular_size=None, memory_bytes=4294967296, threads=0, unit=0.0, ignore_crs=False, columns=(), skip_unreadable=False, strict=False, overwrite=False, resume=False, progress=None, message=None, stop=None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.
 
 inputs: a path, or several: files or folders of LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK or text.
-output: the store.
-scale: of the stored integers, metres; None: as the input has it, else what fits.
-cell_points: 64 to 1048576.
+output: the file of the store to write.
+scale: the step of the stored coordinates, metres; None: that of the input, or what fits.
+cell_points: how many points a cell has at the most, from 64 to 1048576.
 regular_size: metres; cells are cubes of it. None: cells of about the same number of points.
-memory_bytes: bound of the working memory.
-threads: 0: all cores.
+memory_bytes: how many bytes of working memory may be taken.
+threads: how many threads work; 0: as many as there are cores.
+unit: the unit of the coordinates where the inputs name none: 'm', 'ft', 'ift', 'us-ft', or metres;
+    0: not known, and taken for metres.
 ignore_crs: takes coordinates in degrees, or in different units, as they are.
-columns: of x, y and z in texts: numbers from 1, or names of the header.
+columns: which columns of texts are x, y and z: numbers from 1, or names of the header.
 skip_unreadable: leaves out files that cannot be read, with a warning.
 strict: raises InputError where anything is warned of.
-overwrite: an existing store.
+overwrite: replaces an existing store.
 resume: leaves a store of the same inputs as it is.
 progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
@@ -185,8 +214,8 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_rigid,
                                      const std::string& angle_unit, const std::string& angle_frame,
                                      const std::string& crs, const std::string& default_crs,
-                                     const std::string& datum, double metres_per_unit,
-                                     double environment_unit,
+                                     const std::string& datum, const UnitArgument& metres_per_unit,
+                                     const UnitArgument& environment_unit,
                                      const std::array<double, 3>& lever_arm) {
   TrajectoryOptions options;
   options.format = value_of("format", kFormats, format);
@@ -196,8 +225,10 @@ TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_r
   options.crs = crs;
   options.default_crs = default_crs;
   options.datum = datum;
-  options.metres_per_unit = metres_per_unit;
-  options.environment_unit = environment_unit;
+  options.metres_per_unit = file_unit(metres_per_unit);
+  const EnvironmentUnit environment = environment_unit_of(environment_unit);
+  options.environment_unit = environment.metres;
+  options.environment_unit_is_assumed = environment.is_assumed;
   options.lever_arm = {lever_arm[0], lever_arm[1], lever_arm[2]};
   return options;
 }

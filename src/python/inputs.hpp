@@ -4,6 +4,7 @@
 #include <string>
 
 #include "clearway/trajectory.hpp"
+#include "python/values.hpp"
 
 namespace clearway::python {
 
@@ -11,8 +12,8 @@ namespace clearway::python {
 TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_rigid,
                                      const std::string& angle_unit, const std::string& angle_frame,
                                      const std::string& crs, const std::string& default_crs,
-                                     const std::string& datum, double metres_per_unit,
-                                     double environment_unit,
+                                     const std::string& datum, const UnitArgument& metres_per_unit,
+                                     const UnitArgument& environment_unit,
                                      const std::array<double, 3>& lever_arm);
 
 }  // namespace clearway::python

@@ -23,32 +23,17 @@ py::list list_of(const std::vector<PartWarning>& warnings) {
 void add_merge_report(py::module_& module) {
   py::class_<PartWarning, Message>(module, "PartWarning",
                                    "A warning of the searches that wrote the parts.")
-      .def_readonly("parts", &PartWarning::parts, "In how many parts it is.");
+      .def_readonly("parts", &PartWarning::parts, "How many of the parts have this warning.");
   using Report = MergeReport;
-  py::class_<Report>(module, "MergeReport", "What a merged result says.")
-      .def_readonly("was_finished", &Report::was_finished,
-                    "The result was there already: it has the places.")
-      .def_readonly("parameters", &Report::parameters, "QueryParameters.")
+  py::class_<Report, Answer>(module, "MergeReport", "What merge() found in the merged result.")
+      .def_readonly("was_finished", &Report::was_finished, "The result was there already.")
       .def_property_readonly(
           "length_unit", [](const Report& r) { return text(r.length_unit); },
-          "Of the environment: 'metre', 'foot', 'us-survey-foot', 'degree' or 'unknown'.")
-      .def_readonly("parts", &Report::parts)
-      .def_readonly("environment_points", &Report::environment_points)
-      .def_readonly("model_points", &Report::model_points)
-      .def_readonly("poses", &Report::poses)
-      .def_readonly("model_solids", &Report::model_solids, "Parts of it that have an inside.")
-      .def_readonly("colliding_points", &Report::colliding_points)
-      .def_readonly("inside_points", &Report::inside_points,
-                    "With clearances: colliding points inside a solid of the model at any pose.")
-      .def_readonly("clearance_points", &Report::clearance_points)
-      .def_readonly("profile_poses", &Report::profile_poses)
-      .def_readonly("ignored", &Report::ignored, "IgnoredPointCounts.")
-      .def_readonly("first_place", &Report::first_place, "A FoundPlace, or None.")
-      .def_readonly("least_clearance", &Report::least_clearance, "A FoundPlace, or None.")
-      .def_readonly("least_profile", &Report::least_profile, "A FoundPlace, or None.")
+          "The unit of the environment: 'metre', 'foot', 'us-survey-foot', 'degree' or 'unknown'.")
+      .def_readonly("parts", &Report::parts, "How many parts were merged.")
       .def_property_readonly(
           "warnings", [](const Report& r) { return list_of(r.warnings); },
-          "A list of PartWarning: what the searches of the parts warned of, each once.")
+          "What the searches of the parts warned of, each once: a list of PartWarning.")
       .def("__repr__", [](const Report& r) {
         return text("<" + std::to_string(r.colliding_points) + " of " +
                     std::to_string(r.environment_points) + " points collide, of " +
@@ -84,8 +69,8 @@ Make one result of all parts of a search, in any order. Returns a MergeReport.
 The result has the same bytes as one search of everything.
 
 parts: the files that searches with shard=(1, n) to shard=(n, n) wrote.
-output: the result.
-overwrite: an existing result.
+output: the file of the result to write.
+overwrite: replaces an existing result.
 resume: leaves a result of the same parts as it is.
 strict: raises InputError where a search of the parts warned of anything, and merges nothing.
 message: called with each of these warnings once, a Message, in this thread.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,9 +21,6 @@ using namespace py::literals;
 
 using Triangle = std::array<std::uint32_t, 3>;
 using Corners = py::array_t<std::uint32_t, py::array::c_style>;
-
-constexpr Named<ModelAs> kModelAs[] = {
-    {"points", ModelAs::kPoints}, {"surface", ModelAs::kSurface}, {"solid", ModelAs::kSolid}};
 
 py::array triangles_array(const std::vector<Triangle>& triangles) {
   Corners array({static_cast<py::ssize_t>(triangles.size()), py::ssize_t{3}});
@@ -61,26 +59,44 @@ std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points)
 
 void add_shape(py::module_& module) {
   py::class_<ModelShape> shapes(
-      module, "ModelShape", "A model of points, or of triangles that are searched as they are.");
+      module, "ModelShape",
+      "A model: points, or a surface of triangles, which is searched as it is.");
   shapes.attr("NO_SOLID") = kNoSolid;
   shapes
-      .def(py::init([](const py::object& points, const py::object& triangles) {
+      .def(py::init([](const py::object& points, const py::object& triangles, double spacing) {
+             if (!(spacing >= 0) || !std::isfinite(spacing)) {
+               throw UsageError("spacing: expected metres from 0");
+             }
              ModelShape shape;
              shape.points = points_of(points_array(points, "points"), "points");
              shape.triangles = triangles_of(triangles, shape.points.size());
+             shape.spacing = spacing;
              return shape;
            }),
-           "points"_a, "triangles"_a = py::tuple())
+           "points"_a, "triangles"_a = py::tuple(), "spacing"_a = 0.0,
+           R"(__init__(self, points, triangles=(), spacing=0.0)
+--
+
+Make a model of arrays.
+
+points: n x 3 real numbers, metres, in the model's own frame.
+triangles: m x 3 indices of points. Empty: the points themselves are the model.
+spacing: where the points are samples of a mesh, how far its surface may be from them, metres.)")
       .def_property_readonly(
           "points", [](const ModelShape& s) { return to_array(s.points); },
-          "Points, or the corners of the triangles: n x 3 float64, metres.")
+          "The points of the model, or the corners of its triangles: n x 3 float64, metres.")
       .def_property_readonly(
           "triangles", [](const ModelShape& s) { return triangles_array(s.triangles); },
-          "Three indices of points for each: n x 3 uint32. None: the points are the model.")
+          "The triangles, each as three indices of points: n x 3 uint32. Empty where the model is "
+          "its points.")
       .def_property_readonly(
           "solid_of", [](const ModelShape& s) { return to_array(s.solid_of); },
-          "The number of each triangle's solid, or NO_SOLID: n uint32. Empty: nothing has an "
-          "inside.")
+          "The number of the solid that each triangle belongs to, or NO_SOLID: n uint32. Empty "
+          "where "
+          "nothing has an inside.")
+      .def_readonly("spacing", &ModelShape::spacing,
+                    "Metres. The points are samples of a mesh, and no place of its surface is "
+                    "farther than this from one of them. 0 where the model is no sampled mesh.")
       .def("__repr__", [](const ModelShape& s) {
         return text("<ModelShape: " + std::to_string(s.points.size()) + " points, " +
                     std::to_string(s.triangles.size()) + " triangles>");
@@ -90,10 +106,11 @@ void add_shape(py::module_& module) {
 void add_read_model(py::module_& module) {
   module.def(
       "read_model",
-      [](const py::object& path, double spacing, double unit, double environment_unit,
-         bool vertices_only, std::optional<double> above, const py::object& messages) {
-        const ModelOptions options{ModelAs::kPoints, spacing,       unit,
-                                   environment_unit, vertices_only, above};
+      [](const py::object& path, double spacing, const UnitArgument& unit,
+         const UnitArgument& environment_unit, bool vertices_only, std::optional<double> above,
+         const py::object& messages) {
+        const ModelOptions options =
+            model_options(ModelAs::kPoints, spacing, unit, environment_unit, vertices_only, above);
         return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
           return read_model(file, options, noted);
         }));
@@ -106,10 +123,16 @@ void add_read_model(py::module_& module) {
 Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
 
 The surface of a mesh is sampled to points. Returns n x 3 float64, metres, in the model's frame.
+read_model_shape() also keeps how far the surface may be from the points, so that answers say it.
 
-spacing: of a mesh, metres; no place of its surface is farther from a point. A mesh needs one.
-unit: metres of a unit of the file; 0: as the file says, else as they are.
-environment_unit: metres of the environment's unit, into which a known unit is converted.
+path: the file.
+spacing: how closely a mesh is sampled, metres: no place of its surface is farther from a point.
+    A mesh needs a spacing.
+unit: the unit of the file: metres, or a name: 'mm', 'cm', 'm', 'in', 'ft' (the environment's foot,
+    also METRES_PER_FOOT), 'ift' (the international foot) or 'us-ft' (the US survey foot);
+    0: as the file says, or else that of the environment.
+environment_unit: the environment's unit, into which a known unit is converted: metres, a name, or
+    store.length_unit().
 vertices_only: takes the vertices of a mesh alone, and not its surface.
 above: leaves out points whose z is below it, metres; for example wheels on the ground.
 messages: a list to which notes and warnings are appended.)");
@@ -118,31 +141,31 @@ messages: a list to which notes and warnings are appended.)");
 void add_read_model_shape(py::module_& module) {
   module.def(
       "read_model_shape",
-      [](const py::object& path, const std::string& model_as, double spacing, double unit,
-         double environment_unit, bool vertices_only, std::optional<double> above,
-         const py::object& messages) {
-        const ModelOptions options{value_of("model_as", kModelAs, model_as),
-                                   spacing,
-                                   unit,
-                                   environment_unit,
-                                   vertices_only,
-                                   above};
+      [](const py::object& path, const std::string& model_as, double spacing,
+         const UnitArgument& unit, const UnitArgument& environment_unit, bool vertices_only,
+         std::optional<double> above, const py::object& messages) {
+        const ModelOptions options =
+            model_options(value_of("model_as", kModelAs, model_as), spacing, unit, environment_unit,
+                          vertices_only, above);
         return read_noting(messages, [&, file = path_of(path)](auto* noted) {
           return read_model_shape(file, options, noted);
         });
       },
-      "path"_a, "model_as"_a = "surface", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
+      "path"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
       "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
       "messages"_a = py::none(),
-      R"(read_model_shape(path, model_as='surface', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
+      R"(read_model_shape(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
 --
 
-Read a mesh, to be searched as its triangles are. Returns a ModelShape.
+Read a model, to be searched as it is. Returns a ModelShape.
 
-model_as: 'surface': the triangles of the mesh; a file without any is refused.
+path: the file.
+model_as: 'auto': a mesh as its surface, any other file as its points; with spacing or
+    vertices_only a mesh as points.
+    'surface': the triangles of the mesh; a file without any is refused.
     'solid': the same, and what its closed parts enclose; a mesh without any is refused.
     'points': as read_model() reads it.
-spacing, vertices_only: for 'points', as read_model() takes them.
+spacing, vertices_only: for points, as read_model() takes them.
 above: cuts the triangles at this height, and leaves out what is below it; metres; not for 'solid'.
 unit, environment_unit, messages: as read_model() takes them.)");
 }
@@ -159,6 +182,19 @@ ModelShape model_of(const py::object& object) {
   ModelShape shape;
   shape.points = points_of(points_array(object, "model"), "model");
   return shape;
+}
+
+ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
+                           const UnitArgument& environment_unit, bool vertices_only,
+                           std::optional<double> above) {
+  const EnvironmentUnit environment = environment_unit_of(environment_unit);
+  return {.as = as,
+          .spacing = spacing,
+          .unit = file_unit(unit),
+          .environment_unit = environment.metres,
+          .vertices_only = vertices_only,
+          .above = above,
+          .environment_unit_is_assumed = environment.is_assumed};
 }
 
 std::string model_words(const py::object& object) {

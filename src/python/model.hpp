@@ -1,19 +1,31 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "clearway/model.hpp"
 #include "python/arrays.hpp"
 #include "python/python.hpp"
+#include "python/values.hpp"
 
 /// Models of queries and reports: an array of points, or a ModelShape.
 namespace clearway::python {
+
+inline constexpr Named<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
+                                              {"points", ModelAs::kPoints},
+                                              {"surface", ModelAs::kSurface},
+                                              {"solid", ModelAs::kSolid}};
 
 /// A ModelShape as it is, anything else as points_array() has it.
 py::object model_object(const py::handle& object);
 
 /// A copy. object: as model_object() has it. Throws InputError for numbers that are not finite.
 ModelShape model_of(const py::object& object);
+
+/// Of the values that Python has for them. Throws UsageError for an unknown unit.
+ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
+                           const UnitArgument& environment_unit, bool vertices_only,
+                           std::optional<double> above);
 
 /// "12 model points", "12 model triangles".
 std::string model_words(const py::object& object);

@@ -17,17 +17,20 @@ namespace {
 using namespace py::literals;
 
 void add_summary(py::module_& module) {
-  py::class_<ReportSummary>(module, "ReportSummary", "What a report's page says.")
-      .def_readonly("clear", &ReportSummary::clear, "Whether no point collides.")
-      .def_readonly("bytes", &ReportSummary::bytes, "Of the page.")
+  py::class_<ReportSummary>(module, "ReportSummary", "What the page of write_report() says.")
+      .def_readonly("clear", &ReportSummary::clear, "Whether the verdict is 'clear'.")
+      .def_property_readonly(
+          "verdict", [](const ReportSummary& s) { return text(name_of(s.verdict)); },
+          "The verdict: 'clear', 'conflict' or 'undecided'.")
+      .def_readonly("bytes", &ReportSummary::bytes, "How many bytes the page has.")
       .def_property_readonly(
           "conflicts", [](const ReportSummary& s) { return to_python(s.conflicts); },
-          "Conflicts; conflict_of is empty.")
+          "The conflicts on the page: a Conflicts, whose conflict_of is empty.")
       .def_property_readonly(
           "facts", [](const ReportSummary& s) { return text(s.facts); },
-          "JSON: what the page says, without its points.")
+          "What the page says, without its points: a text of JSON.")
       .def("__repr__", [](const ReportSummary& s) {
-        return text(std::string(s.clear ? "<clear" : "<conflict") + ": a page of " +
+        return text("<" + std::string(name_of(s.verdict)) + ": a page of " +
                     std::to_string(s.bytes) + " bytes>");
       });
 }
@@ -40,18 +43,22 @@ Write one HTML file that needs nothing else: verdict, profile, plan, conflicts, 
 
 Returns a ReportSummary.
 
-result, store, model, poses: those of the search. A surface was read as a ModelShape.
-output: the page.
-title, project, client, author, date: for the head of the page. Nothing else depends on the time.
-result_name, environment_name, model_name, trajectory_name: names of the files, for people.
+result, store, model, poses: those of the search; what does not fit the result is refused.
+output: the HTML file to write.
+title, project, client, author, date: texts for the head of the page, where nothing else depends
+    on the time.
+result_name, environment_name, model_name, trajectory_name: names of the files, for the page to
+    show.
 model_above, model_left_out: what read_model() left out of the model's file, for the page to say.
 classes: one to three distances, metres, ascending: below these a point is hit, near, or to watch.
-max_points: environment points on the page at most.
+max_points: how many environment points the page shows at the most.
 gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes them.
-labels: PoseLabels of read_trajectory().
-warnings: messages of the inputs and of the search, which the page shows.
-bodies: of a vehicle, those of the search; then model is (), and poses are the path's.
-overwrite: an existing page.
+labels: the PoseLabels that read_trajectory() filled.
+warnings: messages of reading the inputs, which the page shows. What the search warned of is found
+    again and shown in any case; it may be among them.
+bodies: the bodies of the search, where it was one of a vehicle; then model is (), and poses are
+    those of the path.
+overwrite: replaces an existing page.
 memory_bytes, threads, progress, stop: as search() takes them.)";
 
 void add_write_report(py::module_& module) {
@@ -65,8 +72,8 @@ void add_write_report(py::module_& module) {
          std::vector<double> classes, std::uint64_t max_points, double gap,
          std::uint64_t min_points, double split, double chainage_start, const std::string& forward,
          const std::string& up, std::uint64_t memory_bytes, int threads, const PoseLabels* labels,
-         const py::object& warnings, std::vector<Body> bodies, bool overwrite, py::object progress,
-         py::object stop) {
+         const py::object& warnings, const std::vector<PlacedBody>& bodies, bool overwrite,
+         py::object progress, py::object stop) {
         ReportOptions options{std::move(title),
                               std::move(project),
                               std::move(client),
@@ -91,13 +98,13 @@ void add_write_report(py::module_& module) {
         ModelShape shape = model_of(model);
         options.model_triangles = std::move(shape.triangles);
         options.model_solid_of = std::move(shape.solid_of);
-        options.bodies = std::move(bodies);
-        return watch.run(
-            [&, to = path_of(output), path = poses_of(poses_array(poses, "poses"), "poses")] {
-              return in_turn(store, options.conflicts.stop, [&](const Store& own) {
-                return write_report(result, own, shape.points, path, to, options);
-              });
-            });
+        const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
+        options.bodies = bodies_on(bodies, path);
+        return watch.run([&, to = path_of(output)] {
+          return in_turn(store, options.conflicts.stop, [&](const Store& own) {
+            return write_report(result, own, shape.points, path, to, options);
+          });
+        });
       },
       "result"_a, "store"_a, "model"_a, "poses"_a, "output"_a, py::kw_only(), "title"_a = "",
       "project"_a = "", "client"_a = "", "author"_a = "", "date"_a = "", "result_name"_a = "",

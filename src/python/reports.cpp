@@ -13,105 +13,200 @@ using Report = SearchReport;
 
 void add_seconds(py::module_& module) {
   using Seconds = SearchSeconds;
-  py::class_<Seconds>(module, "SearchSeconds", "Wall clock of a search. Parts overlap.")
-      .def_readonly("total", &Seconds::total)
-      .def_readonly("context", &Seconds::context)
-      .def_readonly("context_wait", &Seconds::context_wait)
-      .def_readonly("thin", &Seconds::thin)
-      .def_readonly("field", &Seconds::field)
-      .def_readonly("plan", &Seconds::plan)
-      .def_readonly("engine", &Seconds::engine)
-      .def_readonly("search", &Seconds::search)
-      .def_readonly("read", &Seconds::read)
-      .def_readonly("upload", &Seconds::upload)
-      .def_readonly("compute", &Seconds::compute)
-      .def_readonly("collect", &Seconds::collect)
-      .def_readonly("write", &Seconds::write)
-      .def_readonly("end_wait", &Seconds::end_wait);
-  py::class_<ToleranceReport>(module, "ToleranceReport", "What a tolerance spared.")
-      .def_readonly("model_points_kept", &ToleranceReport::model_points_kept)
-      .def_readonly("poses_kept", &ToleranceReport::poses_kept)
-      .def_readonly("resolved_by_bounds", &ToleranceReport::resolved_by_bounds);
-  py::class_<EngineEstimate>(module, "EngineEstimate", "Of the whole call on the CPU.")
-      .def_readonly("sweep_seconds", &EngineEstimate::sweep_seconds)
-      .def_readonly("kdtree_seconds", &EngineEstimate::kdtree_seconds);
-  py::class_<DeviceEstimate>(module, "DeviceEstimate", "Seconds, a GPU's start included.")
-      .def_readonly("cpu", &DeviceEstimate::cpu)
-      .def_readonly("cuda", &DeviceEstimate::cuda);
+  py::class_<Seconds>(module, "SearchSeconds",
+                      "How many seconds the parts of a search took. Parts that run at the same "
+                      "time overlap, so that their sum may exceed the total.")
+      .def_readonly("total", &Seconds::total, "Seconds from the call until the result was written.")
+      .def_readonly("context", &Seconds::context,
+                    "Seconds that starting the GPUs took, beside all that comes before the engine.")
+      .def_readonly("context_wait", &Seconds::context_wait,
+                    "Seconds that the search waited for the GPUs to start.")
+      .def_readonly(
+          "ignored", &Seconds::ignored,
+          "Seconds of searching the ignored points too, to tell how many of them would collide.")
+      .def_readonly("thin", &Seconds::thin,
+                    "Seconds of choosing which model points and poses a tolerance keeps.")
+      .def_readonly(
+          "field", &Seconds::field,
+          "Seconds of making what the engine looks up, such as the field around the model.")
+      .def_readonly("plan", &Seconds::plan,
+                    "Seconds of planning which cells are searched at which poses.")
+      .def_readonly("engine", &Seconds::engine, "Seconds of making the engine with its memory.")
+      .def_readonly("search", &Seconds::search,
+                    "Seconds from the first cell that was read to the last one that was searched.")
+      .def_readonly("read", &Seconds::read, "Seconds in which cells of the store were read.")
+      .def_readonly("upload", &Seconds::upload, "Seconds in which cells were copied to a GPU.")
+      .def_readonly("compute", &Seconds::compute, "Seconds in which distances were computed.")
+      .def_readonly("collect", &Seconds::collect, "Seconds in which what was found was gathered.")
+      .def_readonly("write", &Seconds::write, "Seconds of writing the result.")
+      .def_readonly(
+          "end_wait", &Seconds::end_wait,
+          "Seconds that the call waited, once the result was written, for the GPUs to end.");
+  py::class_<ToleranceReport>(module, "ToleranceReport",
+                              "How much work the tolerance of a query saved.")
+      .def_readonly("model_points_kept", &ToleranceReport::model_points_kept,
+                    "How many model points were searched.")
+      .def_readonly("poses_kept", &ToleranceReport::poses_kept, "How many poses were searched.")
+      .def_readonly("resolved_by_bounds", &ToleranceReport::resolved_by_bounds,
+                    "How many exact tests of a point at a pose were not needed.");
+  py::class_<EngineEstimate>(
+      module, "EngineEstimate",
+      "How many seconds each engine would take on the CPU, as estimated before the search.")
+      .def_readonly("sweep_seconds", &EngineEstimate::sweep_seconds,
+                    "Estimated seconds of engine 'sweep'.")
+      .def_readonly("kdtree_seconds", &EngineEstimate::kdtree_seconds,
+                    "Estimated seconds of engine 'kdtree'.");
+  py::class_<DeviceEstimate>(
+      module, "DeviceEstimate",
+      "How many seconds the search would take on each device, as estimated before it.")
+      .def_readonly("cpu", &DeviceEstimate::cpu, "Estimated seconds on the CPU.")
+      .def_readonly("cuda", &DeviceEstimate::cuda,
+                    "Estimated seconds on a GPU, its start included.");
 }
 
-void add_findings_of(py::class_<Report>& report) {
-  report
-      .def_readonly("was_finished", &Report::was_finished,
-                    "The result was there already: nothing was searched.")
-      .def_readonly("environment_points", &Report::environment_points)
-      .def_readonly("model_points", &Report::model_points)
-      .def_readonly("model_triangles", &Report::model_triangles,
-                    "Of a surface, whose corners the model points are; otherwise 0.")
-      .def_readonly("poses", &Report::poses)
-      .def_readonly("model_solids", &Report::model_solids, "Parts of it that have an inside.")
-      .def_readonly("colliding_points", &Report::colliding_points)
-      .def_readonly("inside_points", &Report::inside_points,
-                    "With clearances: colliding points inside a solid of the model at any pose.")
-      .def_readonly("clearance_points", &Report::clearance_points,
-                    "Points closer than the clearance asked for.")
-      .def_readonly("profile_poses", &Report::profile_poses,
-                    "Poses closer than the profile's distance asked for.")
-      .def_readonly("ignored", &Report::ignored, "IgnoredPointCounts of the whole environment.")
-      .def_readonly("ignored_looked_at", &Report::ignored_looked_at,
-                    "Ignored points of the cells that this search looked at.")
-      .def_readonly("first_place", &Report::first_place,
-                    "The point with the smallest first pose, a FoundPlace, or None.")
-      .def_readonly("least_clearance", &Report::least_clearance,
-                    "The point with the least clearance, a FoundPlace, or None.")
-      .def_readonly("least_profile", &Report::least_profile,
-                    "The point with the least distance of the profile, a FoundPlace, or None.")
-      .def_property_readonly(
-          "warnings", [](const Report& r) { return to_list(r.warnings); },
-          "A list of Message: what may be wrong with the question.");
+py::list reasons_of(const Answer& answer) {
+  py::list list;
+  for (const Reason reason : answer.reasons()) list.append(text(name_of(reason)));
+  return list;
 }
 
-void add_work_of(py::class_<Report>& report) {
-  report
+void add_answer(py::module_& module) {
+  py::class_<Answer>(
+      module, "Answer",
+      "The answer to a query in short: the verdict, and the places that matter most.")
       .def_property_readonly(
-          "engine", [](const Report& r) { return name_of(r.engine); }, "That searched.")
-      .def_property_readonly("device", [](const Report& r) { return name_of(r.device); })
-      .def_property_readonly("device_name", [](const Report& r) { return text(r.device_name); })
-      .def_readonly("engine_estimate", &Report::engine_estimate,
-                    "Where engine 'auto' chose, an EngineEstimate.")
-      .def_readonly("estimate", &Report::estimate, "Where device 'auto' chose, a DeviceEstimate.")
+          "verdict", [](const Answer& a) { return text(name_of(a.verdict())); },
+          "The verdict: 'clear', 'conflict' or 'undecided'; 'unknown' of one part alone that has "
+          "no colliding point.")
+      .def_property_readonly(
+          "reasons", reasons_of,
+          "Why the verdict is undecided: a list of 'question-in-doubt'; otherwise empty.")
+      .def_readonly("doubts", &Answer::doubts,
+                    "The codes of the warnings that put the question in doubt: a list of str.")
+      .def_readonly("parameters", &Answer::parameters, "What was asked: QueryParameters.")
+      .def_readonly("environment_points", &Answer::environment_points,
+                    "How many points the environment has.")
+      .def_readonly("model_points", &Answer::model_points,
+                    "How many points the model has, or corners where it is a surface.")
+      .def_readonly("poses", &Answer::poses, "How many poses the path has.")
+      .def_readonly("model_spacing", &Answer::model_spacing,
+                    "Metres. The model's points are samples of a mesh, and no place of its surface "
+                    "is farther than this from one of them. 0: the model is no sampled mesh.")
+      .def_readonly("model_solids", &Answer::model_solids,
+                    "How many parts of the model have an inside.")
+      .def_readonly("colliding_points", &Answer::colliding_points,
+                    "How many environment points are closer to the moving model than the radius.")
+      .def_readonly("inside_points", &Answer::inside_points,
+                    "How many colliding points are inside a solid of the model at any pose. "
+                    "Counted where clearances were asked for.")
+      .def_readonly("clearance_points", &Answer::clearance_points,
+                    "How many points are closer than the clearance that was asked for.")
+      .def_readonly(
+          "profile_poses", &Answer::profile_poses,
+          "At how many poses something is closer than the profile's distance that was asked for.")
+      .def_readonly("ignored", &Answer::ignored,
+                    "How many points of the environment the query left out: IgnoredPointCounts.")
+      .def_readonly("ignored_colliding", &Answer::ignored_colliding,
+                    "How many ignored points would collide if they were searched; None where an "
+                    "earlier release wrote the result.")
+      .def_readonly(
+          "ignored_colliding_high", &Answer::ignored_colliding_high,
+          "How many ignored points the model would first touch more than half a metre above its "
+          "lowest point; or None as for ignored_colliding.")
+      .def_readonly("first_place", &Answer::first_place,
+                    "The colliding point with the smallest first pose: a FoundPlace. None where "
+                    "nothing collides or first poses were not asked for.")
+      .def_readonly("least_clearance", &Answer::least_clearance,
+                    "The point with the least clearance: a FoundPlace. None where there is none or "
+                    "clearances were not asked for.")
+      .def_readonly("least_profile", &Answer::least_profile,
+                    "The point with the least distance of the profile: a FoundPlace. None where "
+                    "there is none or no profile was asked for.")
       .def_property_readonly(
           "shard",
-          [](const Report& r) -> py::object {
-            if (!r.shard) return py::none();
-            return py::make_tuple(r.shard->number, r.shard->count);
+          [](const Answer& a) -> py::object {
+            if (!a.shard) return py::none();
+            return py::make_tuple(a.shard->number, a.shard->count);
           },
-          "Where it is the answer of one part alone: (i, n); otherwise None.")
+          "(i, n) where only the i-th of n parts was searched; otherwise None.")
+      .def("__repr__", [](const Answer& a) {
+        return text("<Answer: " + std::string(name_of(a.verdict())) + ", " +
+                    std::to_string(a.colliding_points) + " of " +
+                    std::to_string(a.environment_points) + " points collide>");
+      });
+}
+
+void add_findings_of(py::class_<Report, Answer>& report) {
+  report
+      .def_readonly("was_finished", &Report::was_finished,
+                    "Whether the result was there already, so that nothing was searched.")
+      .def_readonly("model_triangles", &Report::model_triangles,
+                    "How many triangles the model has; 0 where it is points.")
+      .def_readonly("ignored_looked_at", &Report::ignored_looked_at,
+                    "How many of the ignored points were in cells that this search looked at.")
+      .def_property_readonly(
+          "warnings", [](const Report& r) { return to_list(r.warnings); },
+          "What may be wrong with the question: a list of Message. Read it before you trust an "
+          "answer.");
+}
+
+void add_work_of(py::class_<Report, Answer>& report) {
+  report
+      .def_property_readonly(
+          "engine", [](const Report& r) { return name_of(r.engine); },
+          "The engine that searched: 'sweep', 'grid' or 'kdtree'.")
+      .def_property_readonly(
+          "device", [](const Report& r) { return name_of(r.device); },
+          "The device that searched: 'cpu' or 'cuda'.")
+      .def_property_readonly(
+          "device_name", [](const Report& r) { return text(r.device_name); },
+          "The name of the device for people, such as that of the GPU.")
+      .def_readonly(
+          "engine_estimate", &Report::engine_estimate,
+          "The EngineEstimate by which engine 'auto' chose. None where an engine was asked for.")
+      .def_readonly("estimate", &Report::estimate,
+                    "The DeviceEstimate by which device 'auto' chose. None where it had no choice.")
       .def_readonly("shard_share", &Report::shard_share,
-                    "Of a shard: its estimated work over the mean; otherwise None.")
-      .def_readonly("searches", &Report::searches, "Pairs of pose and model point or triangle.")
-      .def_readonly("tolerance", &Report::tolerance, "A ToleranceReport, or None.")
-      .def_readonly("field_voxel", &Report::field_voxel, "Metres; 0: none.")
-      .def_readonly("grid_cell", &Report::grid_cell, "Metres; 0: none.")
-      .def_readonly("cells_total", &Report::cells_total)
-      .def_readonly("cells_read", &Report::cells_read)
-      .def_readonly("bytes_read", &Report::bytes_read)
-      .def_readonly("resumed_cells", &Report::resumed_cells, "Known from a journal.")
-      .def_readonly("resumed_poses", &Report::resumed_poses, "Known from a journal.")
-      .def_readonly("pages", &Report::pages)
-      .def_readonly("page_bytes", &Report::page_bytes)
-      .def_readonly("slots", &Report::slots)
-      .def_readonly("needed_host_bytes", &Report::needed_host_bytes)
-      .def_readonly("pinned_bytes", &Report::pinned_bytes)
-      .def_readonly("peak_device_bytes", &Report::peak_device_bytes)
-      .def_readonly("seconds", &Report::seconds, "A SearchSeconds.");
+                    "The estimated work of this part over the mean of all parts; None where "
+                    "everything was searched.")
+      .def_readonly("searches", &Report::searches,
+                    "How many pairs of a pose and a model point or triangle were asked about.")
+      .def_readonly("tolerance", &Report::tolerance,
+                    "What the tolerance saved: a ToleranceReport. None without a tolerance.")
+      .def_readonly(
+          "field_voxel", &Report::field_voxel,
+          "The side of a voxel of the field around the model, in metres; 0: there was none.")
+      .def_readonly("grid_cell", &Report::grid_cell,
+                    "The side of a cell of engine grid, in metres; 0: there was none.")
+      .def_readonly("cells_total", &Report::cells_total, "How many cells the store has.")
+      .def_readonly("cells_read", &Report::cells_read,
+                    "How many cells were read; the model comes near no other.")
+      .def_readonly("bytes_read", &Report::bytes_read, "How many bytes of the store were read.")
+      .def_readonly("resumed_cells", &Report::resumed_cells,
+                    "How many cells an interrupted search had finished before.")
+      .def_readonly("resumed_poses", &Report::resumed_poses,
+                    "How many poses an interrupted search had finished before.")
+      .def_readonly("pages", &Report::pages, "In how many pieces the environment was searched.")
+      .def_readonly("page_bytes", &Report::page_bytes,
+                    "How many bytes such a piece had at the most.")
+      .def_readonly("slots", &Report::slots, "How many pieces were in work at the same time.")
+      .def_readonly("needed_host_bytes", &Report::needed_host_bytes,
+                    "How much memory the search took at the most, in bytes.")
+      .def_readonly("pinned_bytes", &Report::pinned_bytes,
+                    "How much memory of the host was reserved for the GPUs, in bytes.")
+      .def_readonly("peak_device_bytes", &Report::peak_device_bytes,
+                    "How much memory was taken on a GPU at the most, in bytes.")
+      .def_readonly("seconds", &Report::seconds,
+                    "How long each part of the search took: a SearchSeconds.");
 }
 
 }  // namespace
 
 void add_reports(py::module_& module) {
   add_seconds(module);
-  py::class_<Report> report(module, "SearchReport", "What a search found, and how.");
+  add_answer(module);
+  py::class_<Report, Answer> report(module, "SearchReport",
+                                    "What a search found, and how it searched.");
   add_findings_of(report);
   add_work_of(report);
   report.def("__repr__", [](const Report& r) {

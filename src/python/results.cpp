@@ -52,36 +52,50 @@ py::object first_pose(const Result& result) {
   return to_array(without_gil([&] { return result.first_pose(); }));
 }
 
+py::object last_pose(const Result& result) {
+  if (!result.parameters().first_pose) return py::none();
+  std::vector<std::uint32_t> poses = without_gil([&] { return result.last_pose(); });
+  if (poses.size() != result.size()) return py::none();
+  return to_array(std::move(poses));
+}
+
 py::object first_body(const Result& result) {
   if (result.bodies().empty() || !result.parameters().first_pose) return py::none();
   return to_array(without_gil([&] { return result.first_body(); }));
 }
 
 void add_columns(py::module_& module) {
-  py::class_<ClearanceColumns>(
-      module, "Clearances",
-      "Distances of environment points to the model, ascending by source. Arrays of one length.")
-      .def_readonly("source", &ClearanceColumns::source, "Indices of the points: uint64.")
+  py::class_<ClearanceColumns>(module, "Clearances",
+                               "The distances of environment points to the moving model: arrays of "
+                               "one length, in which row i of each is the same point.")
+      .def_readonly("source", &ClearanceColumns::source,
+                    "The index of each point in the order of the scans, ascending: n uint64.")
       .def_readonly("xyz", &ClearanceColumns::xyz,
-                    "n x 3 float64, metres. Empty in files before version 3.")
+                    "The coordinates of the points: n x 3 float64, metres. Empty in files of "
+                    "versions before 3.")
       .def_readonly("distance", &ClearanceColumns::distance,
-                    "The least over all poses: float64, metres.")
-      .def_readonly("pose", &ClearanceColumns::pose, "The first pose that has it: uint32.")
+                    "The least distance of each point over all poses: n float64, metres.")
+      .def_readonly("pose", &ClearanceColumns::pose,
+                    "The first pose at which each point has this distance: n uint32.")
       .def_readonly("body", &ClearanceColumns::body,
-                    "The body that has it there, as an index of Result.bodies(): uint32. Empty "
-                    "where there is one model.")
+                    "The body that is so close to the point there, as an index of Result.bodies(): "
+                    "n uint32. Empty where there is one model.")
       .def("__len__", [](const ClearanceColumns& c) { return c.source.size(); });
-  py::class_<ProfileColumns> profiles(
-      module, "Profile", "Of every pose the least distance between the model and the environment.");
+  py::class_<ProfileColumns> profiles(module, "Profile",
+                                      "The least distance between model and environment at every "
+                                      "pose: arrays with a row for each pose.");
   profiles
       .def_readonly("distance", &ProfileColumns::distance,
-                    "float64, metres; infinity where it is not below the one asked for.")
-      .def_readonly("source", &ProfileColumns::source,
-                    "Index of the point: uint64; NO_POINT where there is none.")
+                    "The least distance at each pose: n float64, metres; infinity where nothing is "
+                    "closer than the distance that was asked for.")
+      .def_readonly(
+          "source", &ProfileColumns::source,
+          "The index of the nearest point at each pose: n uint64; NO_POINT where there is none.")
       .def_readonly("xyz", &ProfileColumns::xyz,
-                    "Of the point: n x 3 float64, metres; NaN where there is none.")
+                    "The coordinates of the nearest point at each pose: n x 3 float64, metres; NaN "
+                    "where there is none.")
       .def_readonly("chainage", &ProfileColumns::chainage,
-                    "Along the positions of the path: float64, metres.")
+                    "How far along the path each pose is: n float64, metres, from 0.")
       .def("__len__", [](const ProfileColumns& p) { return p.distance.size(); });
   profiles.attr("NO_POINT") = Profile::kNoPoint;
 }
@@ -89,20 +103,36 @@ void add_columns(py::module_& module) {
 void add_parameters(py::module_& module) {
   using Counts = IgnoredPointCounts;
   py::class_<Counts>(module, "IgnoredPointCounts",
-                     "How many points of a whole environment a query leaves out.")
-      .def_readonly("points", &Counts::points, "Each once.")
-      .def_readonly("of_classes", &Counts::of_classes, "Of each of the parameters' classes.")
-      .def_readonly("in_boxes", &Counts::in_boxes, "In each of the parameters' boxes.");
+                     "How many points of the environment a query leaves out of the search.")
+      .def_readonly("points", &Counts::points,
+                    "How many points are left out in all; a point of an ignored class in an "
+                    "ignored box counts once.")
+      .def_readonly("of_classes", &Counts::of_classes,
+                    "How many points each ignored class has: a list in the order of the query's "
+                    "ignore_classes, sorted.")
+      .def_readonly("in_boxes", &Counts::in_boxes,
+                    "How many points each ignored box has: a list in the order of the query's "
+                    "ignore_boxes, sorted.");
   using Q = QueryParameters;
-  py::class_<Q>(module, "QueryParameters", "What was asked, whatever the model and the poses.")
-      .def_readonly("radius", &Q::radius, "Metres.")
-      .def_readonly("first_pose", &Q::first_pose)
-      .def_readonly("between_poses", &Q::between_poses)
-      .def_readonly("clearance", &Q::clearance, "Metres; 0: not asked for.")
-      .def_readonly("profile", &Q::profile, "Metres; 0: not asked for.")
-      .def_readonly("tolerance", &Q::tolerance, "Metres; 0: exact.")
-      .def_readonly("ignore_classes", &Q::ignore_classes, "Of points left out of the search.")
-      .def_readonly("ignore_boxes", &Q::ignore_boxes, "The same, Box objects.");
+  py::class_<Q>(module, "QueryParameters",
+                "The parameters of a query: all of it but the model and the poses.")
+      .def_readonly("radius", &Q::radius, "A point strictly closer to the model collides; metres.")
+      .def_readonly("first_pose", &Q::first_pose,
+                    "Whether the first pose that touches each point was asked for.")
+      .def_readonly("between_poses", &Q::between_poses,
+                    "Whether the model was moved on straight segments from pose to pose.")
+      .def_readonly("clearance", &Q::clearance,
+                    "Distances below it were asked for; metres; 0: none were.")
+      .def_readonly("profile", &Q::profile,
+                    "The least distance at every pose was asked for where it is below this; "
+                    "metres; 0: it was not.")
+      .def_readonly("tolerance", &Q::tolerance,
+                    "Points whose distance differs from the radius by no more may be answered "
+                    "wrongly; metres; 0: the answer is exact.")
+      .def_readonly("ignore_classes", &Q::ignore_classes,
+                    "The numbers of the classes whose points were left out of the search.")
+      .def_readonly("ignore_boxes", &Q::ignore_boxes,
+                    "The boxes whose points were left out of the search: a list of Box.");
 }
 
 }  // namespace
@@ -111,37 +141,57 @@ void add_results(py::module_& module) {
   add_columns(module);
   add_parameters(module);
   py::class_<Result>(module, "Result",
-                     "A result that search() wrote. Row i of each column is the same point.")
+                     "A result file that search() or merge() wrote. Row i of each of its arrays is "
+                     "the same point.")
       .def(py::init([](const py::object& path) {
              return without_gil([file = path_of(path)] { return std::make_unique<Result>(file); });
            }),
-           py::arg("path"))
-      .def("size", &Result::size, "Colliding points.")
+           py::arg("path"),
+           "__init__(self, path)\n--\n\nOpen a result file, to be read as its methods are called.")
+      .def("size", &Result::size, "The number of colliding points.")
       .def("__len__", &Result::size)
       .def(
-          "parameters", [](const Result& r) { return r.parameters(); }, "QueryParameters.")
-      .def("environment_points", &Result::environment_points)
+          "parameters", [](const Result& r) { return r.parameters(); },
+          "What was asked: QueryParameters.")
+      .def("environment_points", &Result::environment_points,
+           "The number of points that the environment has.")
       .def(
           "ignored", [](const Result& r) { return r.ignored(); },
-          "How many points of the whole environment the search left out: IgnoredPointCounts.")
-      .def("poses", &Result::poses, "The number of poses.")
+          "How many points of the environment the search left out: IgnoredPointCounts.")
+      .def("poses", &Result::poses, "The number of poses that the path had.")
+      .def(
+          "answer", [](const Result& r) { return without_gil([&] { return r.answer(); }); },
+          "The verdict and the places that matter most, an Answer. Reads all tables.")
       .def(
           "source",
           [](const Result& r) { return to_array(without_gil([&] { return r.source(); })); },
-          "Indices of the points in the order of the scans, ascending: n uint64.")
+          "The index of each colliding point in the order of the scans, ascending: n uint64.")
       .def(
           "xyz", [](const Result& r) { return to_array(without_gil([&] { return r.xyz(); })); },
-          "Coordinates: n x 3 float64, metres.")
+          "The coordinates of the colliding points: n x 3 float64, metres.")
       .def("first_pose", first_pose,
-           "The first pose that touches each point: n uint32. None: the query did not ask for it.")
+           "The first pose that touches each colliding point: n uint32. None where the query did "
+           "not ask for it.")
+      .def("last_pose", last_pose,
+           "The last pose that touches each colliding point: n uint32. Between poses, the start of "
+           "the last way that does. None where the query did not ask for first poses, or an older "
+           "release wrote the file.")
       .def("bodies", &Result::bodies,
-           "Names of a vehicle's bodies; empty where there is one model.")
+           "The names of the vehicle's bodies: a list, which is empty where there is one model.")
       .def("first_body", first_body,
            "The body that touches each point at its first pose, as an index of bodies(): n uint32. "
-           "None: there is one model, or the query did not ask for first poses.")
-      .def("clearance", clearance, "Clearances. None: the query did not ask for them.")
-      .def("profile", profile, "A Profile. None: the query did not ask for it.")
-      .def("model_box", &Result::model_box, "Of the model's points: a Box, or None.")
+           "None where there is one model, or the query did not ask for first poses.")
+      .def("clearance", clearance,
+           "The distances of the points that are closer than the clearance: Clearances. None where "
+           "the query did not ask for them.")
+      .def("profile", profile,
+           "The least distance at every pose: a Profile. None where the query did not ask for it.")
+      .def("model_spacing", &Result::model_spacing,
+           "Metres: the model's points are samples of a mesh, and no place of its surface is "
+           "farther than this from one of them. 0 where the model is no sampled mesh.")
+      .def("model_box", &Result::model_box,
+           "The box around the model in its own frame: a Box, or None where the file does not have "
+           "it.")
       .def("__repr__", [](const Result& r) {
         return text("<Result: " + std::to_string(r.size()) + " of " +
                     std::to_string(r.environment_points()) + " points collide>");

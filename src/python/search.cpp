@@ -28,18 +28,22 @@ constexpr Named<Device> kDevices[] = {
 void add_store(py::module_& module) {
   py::class_<SharedStore>(
       module, "Store",
-      "An environment that convert() made. Searches on one Store take turns; open it twice to run\n"
-      "two at once.")
+      "An environment: the file that convert() made of scans.\n\n"
+      "Searches on one Store take turns; open the file twice to run two at once.")
       .def(py::init([](const py::object& path) {
              return without_gil(
                  [file = path_of(path)] { return std::make_unique<SharedStore>(file); });
            }),
-           "path"_a)
-      .def("point_count", [](const SharedStore& s) { return s.store.point_count(); })
-      .def("cell_count", [](const SharedStore& s) { return s.store.cell_count(); })
+           "path"_a, "__init__(self, path)\n--\n\nOpen a store.")
+      .def(
+          "point_count", [](const SharedStore& s) { return s.store.point_count(); },
+          "The number of points.")
+      .def(
+          "cell_count", [](const SharedStore& s) { return s.store.cell_count(); },
+          "The number of cells into which the points are divided.")
       .def(
           "box", [](const SharedStore& s) { return s.store.box(); },
-          "Of all points, a Box; of no points: zeros.")
+          "The Box around all points; zeros where there are none.")
       .def(
           "class_points",
           [](const SharedStore& s) {
@@ -50,15 +54,23 @@ void add_store(py::module_& module) {
             }
             return out;
           },
-          "Number of points by class; empty where the points have no classes.")
+          "The number of points of each class: a dict, which is empty where the points have no "
+          "classes.")
       .def(
           "crs_wkt", [](const SharedStore& s) { return text(s.store.crs_wkt()); },
-          "Coordinate reference system as the scans had it, or ''.")
+          "The coordinate reference system as the scans had it, as WKT, or ''.")
       .def(
           "length_unit", [](const SharedStore& s) { return text(s.store.length_unit()); },
-          "'metre', 'foot', 'us-survey-foot', 'degree' or 'unknown'.")
+          "The unit of the coordinates: 'metre', 'foot', 'us-survey-foot', 'degree' or 'unknown'.")
+      .def(
+          "metres_per_unit", [](const SharedStore& s) { return s.store.metres_per_unit(); },
+          "The metres of that unit; 1 where it is unknown.")
+      .def(
+          "warnings", [](const SharedStore& s) { return to_list(s.store.warnings()); },
+          "What the conversion warned of: a list of Message, with codes as 'store-same-place'.")
       .def_property_readonly(
-          "path", [](const SharedStore& s) { return to_python(s.store.path()); }, "A pathlib.Path.")
+          "path", [](const SharedStore& s) { return to_python(s.store.path()); },
+          "The file: a pathlib.Path.")
       .def("__repr__", [](const SharedStore& s) {
         return text("<Store " + s.store.path().string() + ": " +
                     std::to_string(s.store.point_count()) + " points>");
@@ -75,12 +87,12 @@ void add_parameter(py::class_<ArrayQuery>& query, const char* name, const char* 
       doc);
 }
 
-ArrayQuery make_query(const py::object& model, const py::object& poses, double radius,
-                      bool first_pose, bool between_poses, double clearance, double profile,
-                      double tolerance, std::vector<std::uint8_t> ignore_classes,
-                      std::vector<Box> ignore_boxes, bool allow_non_rigid,
-                      std::vector<Body> bodies) {
-  return {{radius, first_pose, between_poses, clearance, profile, tolerance,
+ArrayQuery make_query(const py::object& model, const py::object& poses,
+                      std::optional<double> radius, bool first_pose, bool between_poses,
+                      double clearance, double profile, double tolerance,
+                      std::vector<std::uint8_t> ignore_classes, std::vector<Box> ignore_boxes,
+                      bool allow_non_rigid, std::vector<PlacedBody> bodies) {
+  return {{radius.value_or(0), first_pose, between_poses, clearance, profile, tolerance,
            std::move(ignore_classes), std::move(ignore_boxes)},
           model_object(model),
           poses_array(poses, "poses"),
@@ -92,47 +104,67 @@ void add_query(py::module_& module) {
   const py::tuple nothing;
   py::class_<ArrayQuery> query(
       module, "Query",
-      "Which points of an environment lie within the search radius of the moving model?");
+      "A question: which points of an environment does the moving model come too close to?\n\n"
+      "Its properties can be changed between searches. Arrays are copied when a search begins.");
   query
-      .def(py::init(&make_query), "model"_a = nothing, "poses"_a = nothing, "radius"_a = 0.0,
-           py::kw_only(), "first_pose"_a = false, "between_poses"_a = false, "clearance"_a = 0.0,
-           "profile"_a = 0.0, "tolerance"_a = 0.0, "ignore_classes"_a = nothing,
-           "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false, "bodies"_a = nothing)
+      .def(
+          py::init(&make_query), "model"_a = nothing, "poses"_a = nothing, "radius"_a = py::none(),
+          py::kw_only(), "first_pose"_a = false, "between_poses"_a = false, "clearance"_a = 0.0,
+          "profile"_a = 0.0, "tolerance"_a = 0.0, "ignore_classes"_a = nothing,
+          "ignore_boxes"_a = nothing, "allow_non_rigid"_a = false, "bodies"_a = nothing,
+          R"(__init__(self, model=(), poses=(), radius=None, *, first_pose=False, between_poses=False, clearance=0.0, profile=0.0, tolerance=0.0, ignore_classes=(), ignore_boxes=(), allow_non_rigid=False, bodies=())
+--
+
+Ask which points the model comes closer to than the radius, on its way along the poses.
+
+model: in its own frame: points, n x 3, metres; or a ModelShape.
+poses: n x 4 x 4 or n x 3 x 4; the translation, in metres, is the last column.
+radius: metres, above 0; a search needs one. A point strictly closer to the model collides.
+The other arguments are the properties of the same names.)")
       .def_property(
           "model", [](const ArrayQuery& q) { return q.model; },
           [](ArrayQuery& q, const py::object& value) { q.model = model_object(value); },
-          "In the model's own frame: points, n x 3 float64, metres; or a ModelShape.")
+          "The model in its own frame: points, n x 3 float64, metres; or a ModelShape.")
       .def_property(
           "poses", [](const ArrayQuery& q) { return q.poses; },
           [](ArrayQuery& q, const py::object& value) { q.poses = poses_array(value, "poses"); },
-          "n x 4 x 4 or n x 3 x 4 float64; the translation, in metres, is the last column.")
-      .def_readwrite("allow_non_rigid", &ArrayQuery::allow_non_rigid,
-                     "Takes poses that scale or shear too.")
+          "The poses of the path: n x 4 x 4 or n x 3 x 4 float64; the translation, in metres, is "
+          "the last column.")
+      .def_readwrite(
+          "allow_non_rigid", &ArrayQuery::allow_non_rigid,
+          "Whether poses that scale or shear are searched too, which are refused otherwise.")
       .def_readwrite("bodies", &ArrayQuery::bodies,
-                     "Of a vehicle: Body objects, in the place of a model; poses are the path's.")
+                     "The bodies of a vehicle, a list of Body, in the place of a model; poses are "
+                     "then those of the path.")
       .def("__repr__", [](const ArrayQuery& q) {
         return py::str("<Query: {}, {} poses, radius {} m>")
             .format(model_words(q.model), q.poses.shape(0), q.parameters.radius);
       });
   using Q = QueryParameters;
-  add_parameter<&Q::radius>(query, "radius",
-                            "Metres, above 0: a point strictly closer to the model collides.");
-  add_parameter<&Q::first_pose>(query, "first_pose",
-                                "Asks for the first pose that touches each colliding point.");
+  add_parameter<&Q::radius>(
+      query, "radius", "A point strictly closer to the model than this collides; metres, above 0.");
+  add_parameter<&Q::first_pose>(
+      query, "first_pose",
+      "Whether the first pose that touches each colliding point is asked for.");
   add_parameter<&Q::between_poses>(query, "between_poses",
-                                   "Moves model points on straight segments from pose to pose.");
-  add_parameter<&Q::clearance>(query, "clearance",
-                               "Metres: asks for the distances below it too; 0: none.");
-  add_parameter<&Q::profile>(
-      query, "profile", "Metres: asks for the least distance below it of every pose; 0: none.");
+                                   "Whether model points move on straight segments from pose to "
+                                   "pose, so that nothing between poses is missed.");
+  add_parameter<&Q::clearance>(
+      query, "clearance",
+      "The distance of every point that is closer than this is asked for too; metres; 0: of none.");
+  add_parameter<&Q::profile>(query, "profile",
+                             "The least distance at every pose is asked for, where it is below "
+                             "this; metres; 0: it is not.");
   add_parameter<&Q::tolerance>(
       query, "tolerance",
-      "Metres: points whose distance differs from the radius by no more may be answered wrongly.");
+      "Points whose distance differs from the radius by no more than this may be answered wrongly, "
+      "which saves time; metres; 0: the answer is exact.");
   add_parameter<&Q::ignore_classes>(query, "ignore_classes",
-                                    "Numbers of classes: their points are left out of the search.");
-  add_parameter<&Q::ignore_boxes>(
-      query, "ignore_boxes",
-      "Boxes in the environment's coordinates: points in them are left out of the search.");
+                                    "The numbers of the classes whose points are left out of the "
+                                    "search, such as [2] for the ground.");
+  add_parameter<&Q::ignore_boxes>(query, "ignore_boxes",
+                                  "The boxes whose points are left out of the search, in the "
+                                  "environment's coordinates: a list of Box.");
 }
 
 void add_searches(py::module_& module) {
@@ -143,7 +175,7 @@ void add_searches(py::module_& module) {
          std::uint64_t memory_bytes, std::uint64_t device_memory_bytes, double field_voxel,
          double grid_cell, bool float_precision,
          std::optional<std::pair<std::uint32_t, std::uint32_t>> shard, bool overwrite, bool resume,
-         bool strict, const py::object& input_warnings, bool end_gpus,
+         bool strict, const py::object& input_warnings, bool model_is_cut, bool end_gpus,
          double journal_interval_seconds, py::object progress, py::object message,
          py::object stop) {
         SearchOptions options;
@@ -160,6 +192,7 @@ void add_searches(py::module_& module) {
         options.overwrite = overwrite;
         options.resume = resume;
         options.strict = strict;
+        options.model_is_cut = model_is_cut;
         options.input_warnings = messages_of(input_warnings);
         options.end_gpus = end_gpus;
         options.journal_interval_seconds = journal_interval_seconds;
@@ -180,10 +213,10 @@ void add_searches(py::module_& module) {
       "memory_bytes"_a = SearchOptions{}.memory_bytes, "device_memory_bytes"_a = 0,
       "field_voxel"_a = 0.0, "grid_cell"_a = 0.0, "float_precision"_a = false,
       "shard"_a = py::none(), "overwrite"_a = false, "resume"_a = false, "strict"_a = false,
-      "input_warnings"_a = py::tuple(), "end_gpus"_a = false,
+      "input_warnings"_a = py::tuple(), "model_is_cut"_a = false, "end_gpus"_a = false,
       "journal_interval_seconds"_a = SearchOptions{}.journal_interval_seconds,
       "progress"_a = py::none(), "message"_a = py::none(), "stop"_a = py::none(),
-      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, field_voxel=0.0, grid_cell=0.0, float_precision=False, shard=None, overwrite=False, resume=False, strict=False, input_warnings=(), end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
+      R"(search(store, query, output, *, engine='auto', device='auto', gpus=(), threads=0, memory_bytes=4294967296, device_memory_bytes=0, field_voxel=0.0, grid_cell=0.0, float_precision=False, shard=None, overwrite=False, resume=False, strict=False, input_warnings=(), model_is_cut=False, end_gpus=False, journal_interval_seconds=5.0, progress=None, message=None, stop=None)
 --
 
 Find every point of the store within the query's radius of the moving model.
@@ -191,20 +224,29 @@ Find every point of the store within the query's radius of the moving model.
 Writes the result file `output` and returns a SearchReport. Open the file with Result.
 Ctrl-C stops the search and raises KeyboardInterrupt. The same call with resume=True goes on.
 
-engine: 'auto', 'sweep', 'grid' or 'kdtree'. device: 'auto', 'cpu' or 'cuda'.
-gpus: CUDA's numbers; empty: the first with room.
-threads: 0: all cores.
-memory_bytes: bound of the working memory.
-device_memory_bytes: bound on each GPU; 0: 2 GiB, or what is free.
-field_voxel, grid_cell: metres; 0: chosen.
+store: the Store to search.
+query: the Query to answer.
+output: the file of the result to write.
+engine: 'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes the one that is estimated faster.
+device: 'auto', 'cpu' or 'cuda'; 'auto' takes a GPU where that is estimated faster.
+gpus: the numbers that CUDA gives the GPUs to take; empty: the first one with room.
+threads: how many threads work; 0: as many as there are cores.
+memory_bytes: how many bytes of working memory may be taken.
+device_memory_bytes: how many bytes may be taken on each GPU; 0: 2 GiB, or what is free.
+field_voxel: the side of a voxel of engine sweep, metres; 0: it is chosen.
+grid_cell: the side of a cell of engine grid, metres; 0: it is chosen.
 float_precision: engine grid decides in single precision, for comparison.
 shard: (i, n) searches the i-th of n parts, from 1; the output is a part for merge().
-overwrite: an existing result, and the journal of an earlier run.
-resume: goes on from the journal of an earlier run.
+overwrite: replaces an existing result, and the journal of an earlier search.
+resume: goes on from the journal of an earlier search.
 strict: raises InputError where anything is warned of, and searches nothing.
-input_warnings: messages of read_model and read_trajectory, for the report and for strict.
-end_gpus: nothing else in this process uses CUDA: its contexts end with the search.
-journal_interval_seconds: between two syncs of the journal to the disk.
+input_warnings: messages of read_model() and read_trajectory(), which the report then holds too,
+    and which strict counts.
+model_is_cut: says that the model lacks its lowest part, as with above= of read_model(), so that it
+    does not stand on the ground: ignored points that collide are not warned of for their number
+    alone.
+end_gpus: says that nothing else in this process uses CUDA, so that it ends with the search.
+journal_interval_seconds: how often what was found is made safe on the disk, seconds.
 progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
 stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)");
@@ -213,11 +255,9 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 }  // namespace
 
 Query query_of(const ArrayQuery& query) {
-  ModelShape shape = model_of(query.model);
-  Query asked(std::move(shape.points), poses_of(query.poses, "poses"), query.parameters);
-  asked.triangles = std::move(shape.triangles);
-  asked.solid_of = std::move(shape.solid_of);
-  asked.bodies = query.bodies;
+  Query asked({}, poses_of(query.poses, "poses"), query.parameters);
+  set_model(asked, model_of(query.model));
+  asked.bodies = bodies_on(query.bodies, asked.poses);
   return asked;
 }
 

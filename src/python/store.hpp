@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "clearway/error.hpp"
 #include "clearway/progress.hpp"
@@ -34,13 +36,24 @@ auto in_turn(SharedStore& shared, StopFlag stop, Call call) {
   return call(std::as_const(shared.store));
 }
 
+/// A Body, and what it knows of the path that it was placed on.
+struct PlacedBody : Body {
+  /// That follow() and read_vehicle() placed it on. Null: it was made of its own poses.
+  std::shared_ptr<const std::vector<Pose>> path = nullptr;
+  bool has_all_poses = false;  ///< path_pose was not given: it has each of the path's
+};
+
+/// The bodies of a query on that path. Throws UsageError where one of them was placed on another
+/// path, or lacks poses without saying which.
+std::vector<Body> bodies_on(const std::vector<PlacedBody>& bodies, const std::vector<Pose>& path);
+
 /// A Query whose model and poses are Python's.
 struct ArrayQuery {
   QueryParameters parameters;
   py::object model;  ///< as model_object() has it
   Doubles poses;     ///< as poses_array() has them
   bool allow_non_rigid = false;
-  std::vector<Body> bodies = {};
+  std::vector<PlacedBody> bodies = {};
 };
 
 /// With copies of model and poses, so that Python may change them meanwhile.

@@ -24,14 +24,16 @@ const char* severity_of(const Message& message) {
 }
 
 void add_messages(py::module_& module) {
-  py::class_<Message>(module, "Message", "Something to tell people about a call.")
+  py::class_<Message>(module, "Message", "A note or a warning about a call, for people to read.")
       .def_property_readonly("severity", severity_of, "'note' or 'warning'.")
       .def_property_readonly(
           "code", [](const Message& m) { return text(m.code); },
-          "Of a warning: the same for the same cause, such as 'no-poses'.")
+          "The cause of a warning in one word, such as 'no-poses'; '' for a note.")
       .def_property_readonly(
-          "text", [](const Message& m) { return text(m.text); }, "For people.")
-      .def_property_readonly("numbers", numbers_of, "The numbers of the text, by name.")
+          "text", [](const Message& m) { return text(m.text); },
+          "What is told, in one or more sentences.")
+      .def_property_readonly("numbers", numbers_of,
+                             "The numbers that the text gives, for programs: a dict by name.")
       .def("__str__", [](const Message& m) { return text(m.text); })
       .def("__repr__", [](const Message& m) {
         return text(std::string("<") + severity_of(m) + (m.code.empty() ? "" : " ") + m.code +
@@ -39,39 +41,40 @@ void add_messages(py::module_& module) {
       });
   py::class_<KeptProgress>(module, "ProgressUpdate", "How far a stage of a long call is.")
       .def_property_readonly(
-          "stage", [](const KeptProgress& p) { return text(p.stage); }, "For people.")
-      .def_readonly("done", &KeptProgress::done)
-      .def_readonly("total", &KeptProgress::total, "0: not known.")
+          "stage", [](const KeptProgress& p) { return text(p.stage); },
+          "The name of the stage, for people.")
+      .def_readonly("done", &KeptProgress::done, "How much of the stage is done.")
+      .def_readonly("total", &KeptProgress::total,
+                    "How much the stage has in all; 0 where that is not known.")
       .def_property_readonly(
-          "unit", [](const KeptProgress& p) { return text(p.unit); }, "Of done and total.")
-      .def_readonly("finished", &KeptProgress::finished, "Whether the stage ended.")
+          "unit", [](const KeptProgress& p) { return text(p.unit); },
+          "What done and total count, such as 'points'.")
+      .def_readonly("finished", &KeptProgress::finished, "Whether the stage has ended.")
       .def("__repr__", [](const KeptProgress& p) {
         return text("<" + p.stage + ": " + std::to_string(p.done) +
                     (p.total > 0 ? " of " + std::to_string(p.total) : "") + " " + p.unit + ">");
       });
 }
 
-Vec3 corner_of(const py::handle& object) {
-  const py::array array = py::module_::import("numpy").attr("asarray")(object, "float64");
-  if (array.ndim() != 1 || array.size() != 3) {
-    throw UsageError("Box: expected 3 numbers for each corner");
-  }
-  const auto numbers = Doubles::ensure(array);
-  return {numbers.at(0), numbers.at(1), numbers.at(2)};
-}
-
 void add_places(py::module_& module) {
-  py::class_<Box>(module, "Box", "A box along the axes, both corners included. Metres.")
+  py::class_<Box>(module, "Box", "A box along the axes, which includes its borders; in metres.")
       .def(py::init([](const py::object& lo, const py::object& hi) {
-             return Box{corner_of(lo), corner_of(hi)};
+             return Box{point_of(lo, "lo"), point_of(hi, "hi")};
            }),
-           py::arg("lo"), py::arg("hi"))
+           py::arg("lo"), py::arg("hi"),
+           R"(__init__(self, lo, hi)
+--
+
+Make a box of two corners.
+
+lo: the least coordinates: 3 numbers, metres.
+hi: the greatest coordinates: 3 numbers, metres.)")
       .def_property_readonly(
           "lo", [](const Box& box) { return to_array(box.lo); },
-          "The least coordinates: 3 float64.")
+          "The least coordinates: 3 float64, metres.")
       .def_property_readonly(
           "hi", [](const Box& box) { return to_array(box.hi); },
-          "The greatest coordinates: 3 float64.")
+          "The greatest coordinates: 3 float64, metres.")
       .def(
           "__eq__", [](const Box& a, const Box& b) { return a == b; }, py::is_operator())
       .def("__repr__", [](const Box& box) {
@@ -79,12 +82,16 @@ void add_places(py::module_& module) {
         return py::str("Box(lo={}, hi={})").format(list(box.lo), list(box.hi));
       });
   py::class_<FoundPlace>(module, "FoundPlace",
-                         "An environment point, and the pose at which it counts.")
-      .def_readonly("source", &FoundPlace::source, "Index of the point in the order of the scans.")
-      .def_readonly("pose", &FoundPlace::pose, "Index of the pose, from 0.")
+                         "A point of the environment that was found, and the pose at which it was.")
+      .def_readonly("source", &FoundPlace::source,
+                    "The index of the point in the order of the scans.")
+      .def_readonly("pose", &FoundPlace::pose, "The index of the pose, from 0.")
       .def_property_readonly(
-          "xyz", [](const FoundPlace& p) { return to_array(p.xyz); }, "3 float64, metres.")
-      .def_readonly("distance", &FoundPlace::distance, "Metres, where one was asked for.")
+          "xyz", [](const FoundPlace& p) { return to_array(p.xyz); },
+          "The coordinates of the point: 3 float64, metres.")
+      .def_readonly("distance", &FoundPlace::distance,
+                    "The distance between the point and the model at this pose, metres; 0 where "
+                    "distances were not asked for.")
       .def("__repr__", [](const FoundPlace& p) {
         return py::str("<point {} at pose {}, {} m>").format(p.source, p.pose, p.distance);
       });
@@ -123,6 +130,17 @@ std::string warning_words(const std::vector<Message>& warnings) {
   return words;
 }
 
+FileUnit file_unit(const UnitArgument& unit) {
+  const auto* const name = std::get_if<std::string>(&unit);
+  return name != nullptr ? FileUnit::named(*name) : FileUnit(std::get<double>(unit));
+}
+
+EnvironmentUnit environment_unit_of(const UnitArgument& unit) {
+  if (unit == UnitArgument("unknown")) return {.is_assumed = true};
+  if (unit == UnitArgument("degree")) return {};
+  return {.metres = file_unit(unit).metres()};
+}
+
 void add_values(py::module_& module) {
   add_messages(module);
   add_places(module);
@@ -130,6 +148,7 @@ void add_values(py::module_& module) {
   module.attr("METRES_PER_CENTIMETRE") = kMetresPerCentimetre;
   module.attr("METRES_PER_INCH") = kMetresPerInch;
   module.attr("METRES_PER_FOOT") = kMetresPerFoot;
+  module.attr("METRES_PER_US_SURVEY_FOOT") = kMetresPerUsSurveyFoot;
 }
 
 }  // namespace clearway::python

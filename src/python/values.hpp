@@ -1,8 +1,11 @@
 #pragma once
 
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/file_unit.hpp"
 #include "clearway/progress.hpp"
 #include "python/python.hpp"
 
@@ -30,6 +33,19 @@ auto read_noting(const py::object& messages, Read call) {
     throw;
   }
 }
+
+/// Metres of a unit of length, or its name.
+using UnitArgument = std::variant<double, std::string>;
+
+/// The unit of a file. Throws UsageError for a name that is none of a unit.
+FileUnit file_unit(const UnitArgument& unit);
+
+/// The unit of an environment, also by what Store.length_unit() says.
+struct EnvironmentUnit {
+  double metres = 1;
+  bool is_assumed = false;  ///< the environment names none
+};
+EnvironmentUnit environment_unit_of(const UnitArgument& unit);
 
 /// "; 2 warnings: no-poses, steps", or nothing.
 std::string warning_words(const std::vector<Message>& warnings);

@@ -1,8 +1,11 @@
 #include "report/report_facts.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "core/query/ignored_text.hpp"
+#include "findings/conflict_rank.hpp"
 #include "io/result/result.hpp"
 #include "io/store/class_names.hpp"
 #include "io/store/store_reader.hpp"
@@ -14,13 +17,6 @@ namespace clearway {
 namespace {
 
 constexpr const char* kClassNames[] = {"hit", "near", "watch"};
-
-bool is_worse(const Conflict& a, const Conflict& b) {
-  const double missing_a = a.encroachment.value_or(0), missing_b = b.encroachment.value_or(0);
-  if (missing_a != missing_b) return missing_a > missing_b;
-  if (a.points != b.points) return a.points > b.points;
-  return a.id < b.id;
-}
 
 void write_box(JsonText& json, const char* name, const Box& box) {
   json.key(name).begin('{').field("lo", box.lo).field("hi", box.hi).end('}');
@@ -63,6 +59,12 @@ void write_body(JsonText& json, const ReportFacts& facts,
   if (body) json.field("body", facts.bodies[*body].name);
 }
 
+/// Of a mesh that was searched as points.
+std::optional<double> spacing_of(const ResultHeader& header) {
+  if (!(header.model_spacing.metres > 0)) return std::nullopt;
+  return header.model_spacing.metres;
+}
+
 void write_inputs(JsonText& json, const ReportFacts& facts) {
   const ReportOptions& options = facts.options;
   const ResultHeader& header = facts.result.reader().header();
@@ -79,6 +81,7 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.field("points", header.model_points).field("hash", hash_text(header.model_hash));
   json.field("triangles", header.model_triangles).field("solids", header.model_solids);
   json.field("surface_triangles", surface_triangles(options));
+  json.field("spacing", spacing_of(header));
   write_box(json, "box", facts.model_box);
   json.field("above", options.model_above).field("left_out", options.model_left_out);
   if (!header.bodies.empty()) write_bodies(json, facts);
@@ -86,17 +89,36 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.key("trajectory").begin('{').field("name", options.trajectory_name);
   json.field("poses", header.poses).field("hash", hash_text(header.trajectory_hash));
   json.field("chainage_start", facts.options.conflicts.chainage_start);
-  json.field("length", facts.path_length).end('}').end('}');
+  json.field("length", facts.searched.path);
+  json.field("searched_length", facts.searched.whole);
+  json.field("partly_searched_length", facts.searched.part).end('}').end('}');
+}
+
+/// Where bodies have no pose, so that nothing is known of them.
+void write_unsearched(JsonText& json, const ReportFacts& facts) {
+  const double start = facts.options.conflicts.chainage_start;
+  json.key("unsearched").begin('[');
+  for (const UnsearchedStretch& stretch : facts.unsearched) {
+    json.begin('{').field("first_pose", std::uint64_t{stretch.first_pose});
+    json.field("last_pose", std::uint64_t{stretch.last_pose});
+    json.field("chainage_from", start + stretch.chainage_from);
+    json.field("chainage_to", start + stretch.chainage_to);
+    json.key("bodies").begin('[');
+    for (const std::uint32_t body : stretch.bodies) json.value(facts.bodies[body].name);
+    json.end(']').field("has_answer", stretch.has_answer).end('}');
+  }
+  json.end(']');
 }
 
 /// What the search left out; null for nothing.
-void write_ignored_points(JsonText& json, const ResultHeader& header) {
+void write_ignored_points(JsonText& json, const ResultHeader& header, const Answer& answer) {
   json.key("ignored");
   if (!header.ignores_points()) {
     json.raw("null");
     return;
   }
   json.begin('{').field("points", header.ignored.points);
+  json.field("colliding", answer.ignored_colliding);
   json.field("what", ignored_text(header)).key("classes").begin('[');
   for (std::size_t i = 0; i < header.ignore_classes.size(); ++i) {
     json.begin('{').field("class", std::uint64_t{header.ignore_classes[i]});
@@ -118,7 +140,7 @@ void write_query(JsonText& json, const ReportFacts& facts) {
   json.field("clearance", header.clearance).field("profile", header.profile);
   json.field("tolerance", header.tolerance);
   json.field("exact", header.tolerance == 0 && !header.float_precision).end('}');
-  write_ignored_points(json, header);
+  write_ignored_points(json, header, facts.answer);
 }
 
 void write_classes(JsonText& json, const ReportFacts& facts) {
@@ -131,14 +153,19 @@ void write_classes(JsonText& json, const ReportFacts& facts) {
   json.end(']').field("points_without_place", facts.points.without_place);
 }
 
-void write_conflict(JsonText& json, const Conflict& conflict, const ReportFacts& facts) {
+/// rank: 1 for the worst of all.
+void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
+                    const ReportFacts& facts) {
   json.begin('{').field("id", std::uint64_t{conflict.id}).field("points", conflict.points);
+  json.field("rank", std::uint64_t{rank});
   json.field("source", conflict.source).field("group", conflict.group);
   json.field("lo", conflict.box.lo).field("hi", conflict.box.hi);
   json.field("centroid", conflict.centroid);
   json.field("first_pose", std::uint64_t{conflict.first_pose});
   json.field("last_pose", std::uint64_t{conflict.last_pose});
   json.field("chainage_from", conflict.chainage_from).field("chainage_to", conflict.chainage_to);
+  json.field("obstacle_chainage", conflict.obstacle_chainage);
+  json.field("shift_left", conflict.shift_left).field("shift_right", conflict.shift_right);
   json.field("least_distance", conflict.least_distance)
       .field("nearest_pose", conflict.nearest_pose);
   json.field("nearest_source", conflict.nearest_source)
@@ -157,14 +184,35 @@ void write_conflict(JsonText& json, const Conflict& conflict, const ReportFacts&
   json.field("height", conflict.height).end('}');
 }
 
-std::vector<const Conflict*> listed_in_page(const Conflicts& conflicts) {
+/// Of the groups that are too small for the list, the first along the path; null without any.
+void write_first_small(JsonText& json, const Conflicts& found) {
+  json.key("first_small");
+  if (found.small.empty()) {
+    json.raw("null");
+    return;
+  }
+  const SmallGroup& first = found.small.front();
+  json.begin('{').field("points", first.points).field("source", first.source);
+  json.field("lo", first.box.lo).field("hi", first.box.hi);
+  json.field("chainage_from", first.chainage_from).field("chainage_to", first.chainage_to);
+  json.end('}');
+}
+
+/// A conflict and its rank, 1 for the worst.
+using RankedConflict = std::pair<const Conflict*, std::size_t>;
+
+/// The worst ones, by id.
+std::vector<RankedConflict> listed_in_page(const Conflicts& conflicts) {
   std::vector<const Conflict*> out;
   for (const Conflict& conflict : conflicts.listed) out.push_back(&conflict);
-  if (out.size() <= kMostListedConflicts) return out;
-  std::ranges::sort(out, [](const Conflict* a, const Conflict* b) { return is_worse(*a, *b); });
-  out.resize(kMostListedConflicts);
-  std::ranges::sort(out, {}, [](const Conflict* conflict) { return conflict->id; });
-  return out;
+  const bool shifts = has_shifts(conflicts);
+  std::ranges::sort(out,
+                    [&](const Conflict* a, const Conflict* b) { return is_worse(*a, *b, shifts); });
+  if (out.size() > kMostListedConflicts) out.resize(kMostListedConflicts);
+  std::vector<RankedConflict> ranked;
+  for (const Conflict* conflict : out) ranked.emplace_back(conflict, ranked.size() + 1);
+  std::ranges::sort(ranked, {}, [](const RankedConflict& one) { return one.first->id; });
+  return ranked;
 }
 
 void write_conflicts(JsonText& json, const ReportFacts& facts) {
@@ -179,6 +227,8 @@ void write_conflicts(JsonText& json, const ReportFacts& facts) {
   json.field("gap", options.gap).field("min_points", options.min_points);
   json.field("split", options.split).field("groups", found.groups);
   json.field("small_groups", found.small_groups).field("small_points", found.small_points);
+  json.field("has_last_poses", found.has_last_poses);
+  write_first_small(json, found);
   json.field("longest_group", found.longest_group);
   json.field("longest_group_points", found.longest_group_points);
   const Conflict* worst = worst_of(found);
@@ -189,8 +239,8 @@ void write_conflicts(JsonText& json, const ReportFacts& facts) {
     json.value(std::uint64_t{worst->id});
   }
   json.key("list").begin('[');
-  for (const Conflict* conflict : listed_in_page(found)) {
-    write_conflict(json, *conflict, facts);
+  for (const auto& [conflict, rank] : listed_in_page(found)) {
+    write_conflict(json, *conflict, rank, facts);
   }
   json.end(']').end('}');
 }
@@ -262,7 +312,10 @@ void write_warnings(JsonText& json, const std::vector<Message>& warnings) {
 }  // namespace
 
 const Conflict* worst_of(const Conflicts& conflicts) {
-  const auto worst = std::ranges::min_element(conflicts.listed, is_worse);
+  const bool shifts = has_shifts(conflicts);
+  const auto worst = std::ranges::min_element(
+      conflicts.listed,
+      [&](const Conflict& a, const Conflict& b) { return is_worse(a, b, shifts); });
   return worst == conflicts.listed.end() ? nullptr : &*worst;
 }
 
@@ -271,13 +324,19 @@ std::string json_of(const ReportFacts& facts) {
   json.begin('{').field("clearway", CLEARWAY_VERSION).field("title", facts.title);
   json.field("project", facts.options.project).field("client", facts.options.client);
   json.field("author", facts.options.author).field("date", facts.options.date);
-  json.field("verdict", facts.result.size() == 0 ? "clear" : "conflict");
+  json.field("verdict", name_of(facts.answer.verdict()));
+  json.key("reasons").begin('[');
+  for (const Reason reason : facts.answer.reasons()) json.value(name_of(reason));
+  json.end(']').key("doubts").begin('[');
+  for (const std::string& code : facts.answer.doubts) json.value(code);
+  json.end(']');
   json.field("colliding_points", facts.result.size());
   json.field("unit", facts.store.length_unit());
   write_least(json, facts);
   write_inside(json, facts);
   write_query(json, facts);
   write_inputs(json, facts);
+  write_unsearched(json, facts);
   write_warnings(json, facts.options.warnings);
   write_classes(json, facts);
   write_conflicts(json, facts);

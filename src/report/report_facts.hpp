@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clearway/report.hpp"
+#include "clearway/unsearched.hpp"
 #include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/path_places.hpp"
@@ -16,13 +17,15 @@ namespace clearway {
 /// All that the page says in words and numbers.
 struct ReportFacts {
   const Result& result;
+  Answer answer;  ///< without what only its rows tell
   const Store& store;
   const ReportOptions& options;
   std::string title;
   Box model_box{};
   std::span<const DrawnBody> bodies;  ///< the model alone, where it is no vehicle
   std::vector<double> classes;
-  double path_length = 0;
+  std::vector<UnsearchedStretch> unsearched;
+  SearchedLength searched;
   const Conflicts* conflicts = nullptr;  ///< none where the result has no first poses
   const ShownPoints& points;
   const EnvironmentSample& environment;

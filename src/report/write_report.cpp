@@ -10,7 +10,9 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
+#include "core/util/message_log.hpp"
 #include "findings/side.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
@@ -25,6 +27,9 @@
 #include "report/report_facts.hpp"
 #include "report/shown_points.hpp"
 #include "report/shown_poses.hpp"
+#include "search/checks/query_warnings.hpp"
+#include "search/ignored/colliding_ignored.hpp"
+#include "search/ignored/count_ignored.hpp"
 
 namespace clearway {
 namespace {
@@ -69,13 +74,23 @@ Box page_box(const PathPlaces& path) {
   return box;
 }
 
+/// The answer of the result, doubtful also where a warning that was given with it says so: results
+/// of earlier releases do not keep doubts.
+Answer judged(const Result& result, const std::vector<Message>& warnings) {
+  Answer answer = counted_answer(result.reader());
+  add_doubts(warnings, answer);
+  return answer;
+}
+
 /// One call of write_report, step by step.
 class Report {
  public:
   Report(const Result& result, const Store& store, const std::vector<Vec3>& model,
          const std::vector<Pose>& poses, const ReportOptions& options)
       : result_(result),
+        answer_(judged(result, options.warnings)),
         store_(store),
+        model_(model),
         poses_(poses),
         options_(options),
         progress_(options.conflicts.progress, options.conflicts.stop),
@@ -96,7 +111,8 @@ class Report {
         sample_environment(store_, path_, environment_lattice_, options_.max_points, progress_);
     std::vector<PageColumn> columns = make_columns(summary.conflicts);
     summary.facts = facts(summary.conflicts);
-    summary.clear = result_.size() == 0;
+    summary.verdict = answer_.verdict();
+    summary.clear = summary.verdict == Verdict::kClear;
     summary.bytes = write_page(path, title(), summary.facts, columns);
     return summary;
   }
@@ -113,6 +129,8 @@ class Report {
     if (result_.parameters().first_pose) {
       ConflictOptions find = options_.conflicts;
       find.bodies = options_.bodies;
+      const ModelShape shape{model_, options_.model_triangles, options_.model_solid_of};
+      if (options_.bodies.empty()) find.model = &shape;
       conflicts = find_conflicts(result_, poses_, find, &conflict_of);
     }
     PointSelection selection{
@@ -167,7 +185,7 @@ class Report {
     if (pose == nullptr) return;
     const Vec3 there = ahead_left_up(*least_->xyz, *pose, how.forward, how.up);
     if (!std::isfinite(there.y) || !std::isfinite(there.z)) return;
-    least_->side = side_of(*least_->xyz, *pose, body.box, how.forward, how.up);
+    least_->side = side_of({there, there}, body.box, how.forward, how.up);
     least_->lateral = there.y;
     least_->height = there.z;
   }
@@ -199,13 +217,15 @@ class Report {
   std::string facts(const Conflicts& conflicts) const {
     return json_of(
         {.result = result_,
+         .answer = answer_,
          .store = store_,
          .options = options_,
          .title = title(),
          .model_box = model_box_,
          .bodies = bodies_,
          .classes = classes_,
-         .path_length = chainage_.empty() ? 0 : chainage_.back(),
+         .unsearched = unsearched_stretches(poses_, options_.bodies),
+         .searched = searched_length(poses_, options_.bodies),
          .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
          .points = points_,
          .environment = environment_,
@@ -222,7 +242,9 @@ class Report {
   }
 
   const Result& result_;
+  const Answer answer_;
   const Store& store_;
+  const std::vector<Vec3>& model_;
   const std::vector<Pose>& poses_;
   const ReportOptions& options_;
   CallbackProgress progress_;
@@ -243,6 +265,32 @@ class Report {
 
 }  // namespace
 
+namespace {
+
+/// Adds what the search warned of, which follows from the question alone, unless it was given.
+void add_query_warnings(const Result& result, const Store& store, const std::vector<Vec3>& model,
+                        const std::vector<Pose>& poses, ReportOptions& options) {
+  Query query(model, poses, result.parameters());
+  query.triangles = options.model_triangles;
+  query.solid_of = options.model_solid_of;
+  query.bodies = options.bodies;
+  std::vector<Message> found;
+  const MessageCallback quiet;
+  MessageLog log(quiet, found);
+  warn_of_query(store.reader(), query, log);
+  warn_of_ignored(store.reader(), query, result.ignored(), log);
+  warn_of_colliding_ignored(counted_answer(result.reader()), options.model_above.has_value(),
+                            store.reader().metadata().unit, log);
+  for (Message& warning : found) {
+    const bool given = std::ranges::any_of(options.warnings, [&](const Message& other) {
+      return other.code == warning.code && other.text == warning.text;
+    });
+    if (!given) options.warnings.push_back(std::move(warning));
+  }
+}
+
+}  // namespace
+
 ReportSummary write_report(const Result& result, const Store& store, const std::vector<Vec3>& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options) {
@@ -251,7 +299,9 @@ ReportSummary write_report(const Result& result, const Store& store, const std::
   const int threads = options.conflicts.threads;
   ReportSummary summary;
   ThreadLimit(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()).run([&] {
-    Report report(result, store, model, poses, options);
+    ReportOptions complete = options;
+    add_query_warnings(result, store, model, poses, complete);
+    Report report(result, store, model, poses, complete);
     summary = report.write(file.partial());
   });
   file.publish();

@@ -174,13 +174,15 @@ void check_surface(const QueryParameters& query, const SearchOptions& options) {
   const Engine engine = chosen_engine(options);
   if (engine != Engine::kSweep) {
     throw UsageError(std::string("engine ") + name_of(engine) +
-                         " needs a model of points, and this one is a surface: engine sweep "
-                         "searches surfaces",
+                         " searches models of points, and this model is the surface of a mesh, "
+                         "which engine sweep searches",
                      Remedy::kModelPoints);
   }
   if (query.between_poses) {
-    throw UsageError("motion between poses needs a model of points, and this one is a surface",
-                     Remedy::kModelPoints);
+    throw UsageError(
+        "motion between poses is searched for models of points, and this model is the surface of "
+        "a mesh",
+        Remedy::kModelPoints);
   }
 }
 

@@ -31,7 +31,14 @@ std::uint64_t search_result_bytes(const StoreReader& store, const Query& query) 
   const std::uint64_t a_slot = (query.first_pose ? sizeof(std::uint32_t) : 0) +
                                (query.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
   const std::uint64_t a_pose = query.profile > 0 ? sizeof(ProfilePoint) + sizeof(double) : 0;
-  return store.entry_count() / 8 + a_slot * store.entry_count() + a_pose * query.poses.size();
+  return store.entry_count() / 8 + a_slot * store.entry_count() + a_pose * query.poses.size() +
+         last_pose_bytes(store, query);
+}
+
+std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query) {
+  if (!query.first_pose) return 0;
+  const std::uint64_t inputs = input_bytes(store, query) - store.allocated_bytes();
+  return store.entry_count() / 8 + store.entry_count() * sizeof(std::uint32_t) + inputs;
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {

@@ -15,9 +15,12 @@ std::uint64_t program_bytes(int threads);
 /// Index of the store, model and poses.
 std::uint64_t input_bytes(const StoreReader& store, const Query& query);
 
-/// Hits, first poses and clearances of all points, nearest points and chainage of all
+/// Hits, first and last poses and clearances of all points, nearest points and chainage of all
 /// poses.
 std::uint64_t search_result_bytes(const StoreReader& store, const Query& query);
+
+/// What a search for last poses keeps at the same time: the other hits, and a copy of the inputs.
+std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query);
 
 /// While the trees over model and poses are built. Choosing what a tolerance keeps takes less.
 std::uint64_t tree_building_bytes(const Query& query);

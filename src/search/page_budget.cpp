@@ -39,18 +39,19 @@ std::uint64_t PageEngineKind::most_poses(const MotionTree& motion,
 
 PageBudget::PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
                        std::uint64_t thinned_bytes, std::uint64_t memory_bytes,
-                       PageEngineKind& kind, const ShardCells* only)
+                       PageEngineKind& kind, const ShardCells* only, IgnoredPoints::Search search)
     : store_(store),
       asked_(asked),
       memory_bytes_(memory_bytes),
       kind_(kind),
       only_(only),
-      ignored_(store, asked),
+      keeps_answer_(search == IgnoredPoints::Search::kOthers),
+      ignored_(store, asked, search),
       masked_(asked.ignores_points()),
       trees_(kind.whose_trees(searched), kind.needs().threads - kind.needs().waiting_threads),
       building_bytes_(tree_building_bytes(asked)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(store, asked) + thinned_bytes +
-                  search_result_bytes(store, asked)) {}
+                  (keeps_answer_ ? search_result_bytes(store, asked) : 0)) {}
 
 void PageBudget::find() {
   const std::vector<PageEngineKind::IndexSize> sizes = kind_.index_sizes();
@@ -64,6 +65,7 @@ void PageBudget::find() {
 
 /// From here to the end of the run. A page under way has one record of the journal at a time.
 std::uint64_t PageBudget::kept_bytes(const SlotLayout& layout) const {
+  if (!keeps_answer_) return kept_bytes_;
   const std::uint64_t pages = std::uint64_t{kind_.needs().devices} * layout.slots;
   const auto threads = static_cast<std::uint64_t>(kind_.needs().threads);
   return kept_bytes_ +
@@ -94,7 +96,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
   const double indexed = clock.seconds();
   cells_ = kind_.plan_cells(store_, reach);
   std::erase_if(cells_, [&](const PlannedCell& cell) {
-    return (only_ != nullptr && !only_->contains(cell.cell)) || ignored_.holds(cell.cell);
+    return (only_ != nullptr && !only_->contains(cell.cell)) || ignored_.skips(cell.cell);
   });
   index_seconds_ += indexed;
   plan_seconds_ += clock.seconds() - indexed;
@@ -131,7 +133,7 @@ bool PageBudget::fits(const SlotLayout& layout, std::uint64_t planned, std::uint
   const std::uint64_t searching = planned + kind_.host_bytes(layout, most_poses);
   const std::uint64_t kept = kept_bytes(layout);
   layout_ = layout;
-  needed_bytes_ = kept + std::max(searching, least_write_bytes(store_));
+  needed_bytes_ = kept + std::max(searching, keeps_answer_ ? least_write_bytes(store_) : 0);
   const std::uint64_t budget = std::max(needed_bytes_, kept + building);
   const std::uint64_t on_device = kind_.device_bytes(layout);
   const bool device_fits = on_device <= kind_.needs().most_device_bytes;

@@ -19,10 +19,11 @@ namespace clearway {
 class PageBudget {
  public:
   /// asked: as the caller put it; searched: with what a tolerance leaves of it, thinned_bytes.
-  /// only: the cells to plan, null for all. All outlive it.
+  /// only: the cells to plan, null for all. All outlive it. search: where the ignored points are
+  /// searched, they are only counted, so that no answer, journal or result takes memory.
   PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
              std::uint64_t thinned_bytes, std::uint64_t memory_bytes, PageEngineKind& kind,
-             const ShardCells* only);
+             const ShardCells* only, IgnoredPoints::Search search = IgnoredPoints::Search::kOthers);
 
   /// Throws ResourceError naming the smallest budget that works.
   void find();
@@ -30,6 +31,7 @@ class PageBudget {
   // Once found:
   std::vector<PlannedCell>& cells() { return cells_; }
   const SlotLayout& layout() const { return layout_; }
+  const IgnoredPoints& ignored() const { return ignored_; }
   double index_seconds() const { return trees_.model_seconds + index_seconds_; }
   double plan_seconds() const { return trees_.motion_seconds + plan_seconds_; }
   std::uint64_t needed_bytes() const { return needed_bytes_; }
@@ -49,6 +51,7 @@ class PageBudget {
   const std::uint64_t memory_bytes_;
   PageEngineKind& kind_;
   const ShardCells* only_;
+  const bool keeps_answer_;
   const IgnoredPoints ignored_;
   const bool masked_;  ///< pages have masks
   const QueryTrees trees_;

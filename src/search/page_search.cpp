@@ -70,7 +70,7 @@ Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines en
 
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
                    PageEngineKind& kind, const ShardCells* only,
-                   const std::function<SearchJournal&()>& open_journal, Progress& progress,
+                   const std::function<SearchJournal*()>& open_journal, Progress& progress,
                    SearchReport& report, const MessageLog& log) {
   const SearchedQuery searched(query, report, log);
   throw_if_stopped(progress);
@@ -83,9 +83,12 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
   const Stopwatch making;
   PageEngines engines = kind.make(budget.layout());
   report.seconds.engine = making.seconds();
-  SearchJournal& journal = open_journal();
+  SearchJournal* const journal = open_journal();
   std::vector<PlannedCell>& cells = budget.cells();
-  std::erase_if(cells, [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
+  if (journal != nullptr) {
+    std::erase_if(cells,
+                  [&](const PlannedCell& cell) { return journal->cell_finished(cell.cell); });
+  }
   const std::vector<PlannedPage> pages = paginate(store, cells, budget.layout().page_bytes,
                                                   budget.layout().cells, query.ignores_points());
   report.pages = pages.size();
@@ -95,8 +98,8 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
     lanes.push_back(engine.get());
   }
   StageTimes stages;
-  SearchResult result = run_pages(store, cells, pages, lanes, query, kind.needs().threads, progress,
-                                  stages, &journal);
+  SearchResult result =
+      run_pages(store, cells, pages, lanes, query, kind.needs().threads, progress, stages, journal);
   report_stages(stages, report.seconds);
   kind.report_search({lanes.data(), lanes.size()}, report, log);
   return ended(store, kind, std::move(engines), {std::move(result), budget.write_bytes()},

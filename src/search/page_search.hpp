@@ -25,7 +25,7 @@ struct Found {
 /// asked for, naming the smallest budget that works.
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
                    PageEngineKind& kind, const ShardCells* only,
-                   const std::function<SearchJournal&()>& open_journal, Progress& progress,
+                   const std::function<SearchJournal*()>& open_journal, Progress& progress,
                    SearchReport& report, const MessageLog& log);
 
 }  // namespace clearway

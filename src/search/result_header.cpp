@@ -77,7 +77,9 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
                       solid_count(query),
                       std::move(ignored),
                       by_class ? metadata.classes->hash : 0,
-                      names_of(query)};
+                      names_of(query),
+                      {model_spacing(query)}};
+  header.last_pose = header.first_pose;
   header.version = header.written_version();
   return header;
 }

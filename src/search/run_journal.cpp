@@ -101,9 +101,10 @@ RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const Searc
   }
   if (!fs::is_regular_file(fs::symlink_status(path_)) || fs::hard_link_count(path_) > 1 ||
       (fs::file_size(path_) > 0 && !is_journal(path_))) {
-    throw UsageError(path_.string() +
-                     ": is in the place of this output's journal and is none; move it away, or "
-                     "choose another output");
+    throw UsageError(
+        path_.string() +
+        ": is where this output's journal has to be, but is no journal; move it away, or "
+        "choose another output");
   }
   if (options.overwrite) {
     unwanted_ = "journal of an unfinished run removed, starts from the beginning";

@@ -5,10 +5,12 @@
 #include <optional>
 
 #include "clearway/error.hpp"
+#include "core/query/last_poses.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/callback_progress.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/result/answer.hpp"
 #include "io/system/pending_file.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/query_warnings.hpp"
@@ -17,6 +19,7 @@
 #include "search/counts/report_counts.hpp"
 #include "search/device_start.hpp"
 #include "search/devices.hpp"
+#include "search/ignored/colliding_ignored.hpp"
 #include "search/ignored/count_ignored.hpp"
 #include "search/kdtree_search.hpp"
 #include "search/kinds/body_kind.hpp"
@@ -28,6 +31,7 @@
 #include "search/run_journal.hpp"
 #include "search/shard/shard_cells.hpp"
 #include "search/threads.hpp"
+#include "stream/write/set_cells.hpp"
 #include "stream/write_result.hpp"
 
 namespace clearway {
@@ -35,6 +39,22 @@ namespace {
 
 /// A GPU is not to be had, which has been told.
 struct NoGpu {};
+
+/// Progress of another search within a search, which bears a name of its own.
+class StageOf final : public Progress {
+ public:
+  StageOf(Progress& all, std::string_view name) : all_(all), name_(name) {}
+  void begin(std::string_view, std::uint64_t total, std::string_view unit) override {
+    all_.begin(name_, total, unit);
+  }
+  void advance(std::uint64_t units) override { all_.advance(units); }
+  void end() override { all_.end(); }
+  bool stop_requested() const override { return all_.stop_requested(); }
+
+ private:
+  Progress& all_;
+  std::string_view name_;
+};
 
 /// One call of search(), step by step.
 class Search {
@@ -50,24 +70,29 @@ class Search {
         journal_(pending_, output, options_, log_),
         header_(result_header(store_, query_, options_)) {
     if (!options.overwrite && !options.resume) pending_.refuse_existing();
+    end_gpus_ = options_.end_gpus;
+    if (query_.first_pose) options_.end_gpus = false;  // they search twice
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
   SearchReport run() {
     check();
+    static_cast<Answer&>(report_) = answer_of(header_);
     report_sizes(store_, query_, report_);
-    report_.ignored = header_.ignored;
+    report_.doubts = doubts_among(report_.warnings);
     divide();
     if (journal_.already_done(store_, header_, progress_)) {
       report_finished(ResultReader(journal_.output(), Parts::kAccepted), report_);
     } else {
       resolve_device();
       Found found = find();
+      if (query_.first_pose) find_last_poses(found);
       publish(found);
       const Stopwatch ending;
       found.engine_end.clear();
       report_.seconds.end_wait = ending.seconds();
     }
+    warn_of_colliding_ignored(report_, options_.model_is_cut, store_.metadata().unit, log_);
     report_.seconds.total = total_.seconds();
     return std::move(report_);
   }
@@ -114,13 +139,49 @@ class Search {
     if (gpu && !options_.started) options_.started = std::make_shared<DeviceStart>(options_);
     choose_engine(store_, query_, journal_.earlier_engine(), gpu, options_, report_, log_);
     report_.engine = options_.engine;
+    count_ignored_that_collide(gpu && options_.engine != Engine::kKdtree);
     Found found =
         options_.engine == Engine::kKdtree
-            ? search_kdtree(store_, query_, only(), options_, open_journal(), progress_, report_)
+            ? search_kdtree(store_, query_, only(), options_, &open_journal(), progress_, report_)
             : find_on_pages(gpu);
+    report_.needed_host_bytes = std::max(report_.needed_host_bytes, ignored_.needed_host_bytes);
+    report_.peak_device_bytes = std::max(report_.peak_device_bytes, ignored_.peak_device_bytes);
     report_.resumed_cells = journal_.earlier().cells;
     report_.resumed_poses = journal_.earlier().poses;
     return found;
+  }
+
+  /// A second search, of the ignored points alone. It comes first, because it leaves nothing in
+  /// memory, and it is not kept in the journal: a run that is resumed does it again.
+  void count_ignored_that_collide(bool gpu) {
+    if (!query_.ignores_points()) return;
+    const Stopwatch clock;
+    if (report_.ignored.points > 0) ignored_ = colliding_ignored(gpu);
+    report_.ignored_colliding = ignored_.points;
+    report_.ignored_colliding_high = ignored_.high;
+    report_.seconds.ignored = clock.seconds();
+  }
+
+  /// The numbers do not depend on the device, so the CPU counts where a GPU that was not asked for
+  /// cannot.
+  CollidingIgnored colliding_ignored(bool gpu) {
+    const Query query = query_of_ignored(query_);
+    SearchOptions options = options_;
+    options.engine = Engine::kSweep;
+    options.float_precision = false;
+    options.end_gpus = false;
+    const auto count_on = [&](Device device) {
+      return count_colliding_ignored(store_, query, options.memory_bytes,
+                                     *kind_on(device, query, options), only(), progress_);
+    };
+    if (!gpu) return count_on(Device::kCpu);
+    try {
+      return count_on(Device::kCuda);
+    } catch (const NoGpu&) {
+    } catch (const ResourceError&) {
+      if (!fallback_allowed(options_)) throw;
+    }
+    return count_on(Device::kCpu);
   }
 
   /// By estimate, where neither device was asked for.
@@ -159,38 +220,95 @@ class Search {
     report_.device_name = DeviceChoice().name;
     // What is refused is so before it is planned.
     if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
-    const std::unique_ptr<PageEngineKind> kind = kind_on(device);
+    const std::unique_ptr<PageEngineKind> kind = kind_on(device, query_, options_);
     return search_pages(
-        store_, query_, options_.memory_bytes, *kind, only(),
-        [this]() -> SearchJournal& { return open_journal(); }, progress_, report_, log_);
+        store_, query_, options_.memory_bytes, *kind, only(), [this] { return &open_journal(); },
+        progress_, report_, log_);
   }
 
-  std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] Device device) {
+  /// Searches the cells that have colliding points once more, with the poses in reverse order. No
+  /// journal keeps this: a run that goes on from one begins it again.
+  void find_last_poses(Found& found) {
+    found.engine_end.clear();
+    options_.end_gpus = end_gpus_;
+    SetCells with_hits;
+    in_threads(options_.threads, [&] { with_hits = cells_of(store_, found.result.hits); });
+    if (with_hits.cells.empty()) return;
+    std::vector<bool> hit(store_.cells().size());
+    for (const std::uint32_t cell : with_hits.cells) hit[cell] = true;
+    const ShardCells cells(std::move(hit));
+    backwards_ = backwards(query_);
+    backwards_options_ = options_;
+    // What the search before took is enough but for roundings of a plan.
+    backwards_options_.memory_bytes += options_.memory_bytes / 16;
+    SearchReport report;
+    const MessageCallback silent;
+    const MessageLog log(silent, report.warnings);
+    StageOf progress(progress_, "last poses");
+    const auto search_on = [&](Device device) {
+      return search_pages(
+          store_, backwards_, backwards_options_.memory_bytes,
+          *kind_on(device, backwards_, backwards_options_), &cells,
+          []() -> SearchJournal* { return nullptr; }, progress, report, log);
+    };
+    Found other = [&] {
+      if (report_.engine == Engine::kKdtree) {
+        return search_kdtree(store_, backwards_, &cells, backwards_options_, nullptr, progress,
+                             report);
+      }
+      try {
+        return search_on(report_.device);
+      } catch (const ResourceError&) {
+        if (report_.device != Device::kCuda || !fallback_allowed(options_)) throw;
+      }
+      return search_on(Device::kCpu);
+    }();
+    found.result.last_poses.emplace(query_, std::move(other.result.hits));
+    found.engine_end = std::move(other.engine_end);
+    found.write_bytes = std::min(found.write_bytes, other.write_bytes);
+    add_seconds(report.seconds, report_.seconds);
+  }
+
+  static void add_seconds(const SearchSeconds& more, SearchSeconds& seconds) {
+    for (const auto stage : {&SearchSeconds::field, &SearchSeconds::plan, &SearchSeconds::engine,
+                             &SearchSeconds::search, &SearchSeconds::read, &SearchSeconds::upload,
+                             &SearchSeconds::compute, &SearchSeconds::collect}) {
+      seconds.*stage += more.*stage;
+    }
+  }
+
+  /// query and options outlive the kind.
+  std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] Device device, const Query& query,
+                                          const SearchOptions& options) {
 #ifdef CLEARWAY_CUDA
     if (device == Device::kCuda) {
       const OpenGpus open = [this] { return open_gpus(); };
-      if (!query_.bodies.empty()) return cuda_body_kind(store_, query_, options_, open);
-      return cuda_kind(store_, query_, options_, open);
+      if (!query.bodies.empty()) return cuda_body_kind(store_, query, options, open);
+      return cuda_kind(store_, query, options, open);
     }
 #endif
-    if (!query_.bodies.empty()) return cpu_body_kind(store_, query_, options_);
-    if (options_.engine == Engine::kGrid) {
-      return std::make_unique<CpuGridKind>(store_, query_, options_);
+    if (!query.bodies.empty()) return cpu_body_kind(store_, query, options);
+    if (options.engine == Engine::kGrid) {
+      return std::make_unique<CpuGridKind>(store_, query, options);
     }
-    return cpu_sweep_kind(store_, query_, options_);
+    return cpu_sweep_kind(store_, query, options);
   }
 
   /// Where the search needs them: they have been starting meanwhile. Throws NoGpu.
   DeviceChoice open_gpus() {
-    if (gpus_) return *gpus_;
+    if (gpus_) return usable(*gpus_);
     const Stopwatch waiting;
     options_.started->wait();
     DeviceChoice choice = choose_device(options_, log_);
     report_.seconds.context_wait = waiting.seconds();
     report_.seconds.context = std::max(options_.started->seconds(), waiting.seconds());
+    gpus_ = choice;
+    return usable(choice);
+  }
+
+  DeviceChoice usable(const DeviceChoice& choice) {
     if (!choice.is_cuda()) throw NoGpu();
     report_.device_name = choice.name;
-    gpus_ = choice;
     return choice;
   }
 
@@ -207,9 +325,10 @@ class Search {
     try {
       const std::vector<double> chainage =
           query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
-      report_written(write_result(store_, found.result, header_, pending_.partial(),
-                                  found.write_bytes, progress_, chainage, options_.threads),
-                     found.result.profile, report_);
+      report_written(
+          write_result(store_, found.result, header_, pending_.partial(), found.write_bytes,
+                       progress_, chainage, options_.threads, findings()),
+          found.result.profile, report_);
       pending_.publish();
     } catch (const ResourceError& error) {
       throw ResourceError(error.what(), Remedy::kResume);
@@ -222,11 +341,20 @@ class Search {
     report_.seconds.write = write.seconds();
   }
 
+  ResultFindings findings() const {
+    ResultFindings found{.doubts = report_.doubts};
+    if (!query_.ignores_points()) return found;
+    found.ignored_colliding = report_.ignored_colliding;
+    found.ignored_colliding_high = report_.ignored_colliding_high;
+    return found;
+  }
+
   /// What merging parts asks of them: how an answer that is not exact was computed, and what was
   /// warned of.
   void describe_part() {
     if (!header_.part) return;
     header_.part->warnings = report_.warnings;
+    header_.part->model_is_cut = options_.model_is_cut;
     if (header_.is_exact()) return;
     header_.part->device = name_of(report_.device);
     header_.part->field_voxel = report_.field_voxel;
@@ -244,7 +372,11 @@ class Search {
   RunJournal journal_;
   ResultHeader header_;
   std::optional<ShardCells> shard_;
+  CollidingIgnored ignored_;
   std::optional<DeviceChoice> gpus_;  ///< once they are open
+  Query backwards_;                   ///< for last poses; it and its options outlive the engines
+  SearchOptions backwards_options_;
+  bool end_gpus_ = false;  ///< as options.end_gpus asked
   SearchJournal* open_ = nullptr;
 };
 

@@ -49,12 +49,11 @@ class FreeSlots {
 /// What the lanes share: pages are taken in their order by whichever lane has a slot for one.
 struct Pages {
   const PackedCloud& cloud;
-  const IgnoredPoints ignored;
+  const IgnoredPoints& ignored;
   const std::span<const PlannedCell> cells;
   const std::span<const PlannedPage> pages;
   Progress& progress;
-  SearchResult& answer;
-  SearchJournal* const journal;
+  const CollectPage& keep;
   std::vector<PageTimes> times = std::vector<PageTimes>(pages.size());
   std::atomic<std::size_t> next = 0;
   std::atomic<std::uint64_t> ignored_points = 0;
@@ -145,10 +144,7 @@ class Lane {
     times.upload = found.upload;
     times.compute = found.compute;
     times.collect.begin = Clock::now();
-    collect_page(pages_.cloud, cells, found, pages_.answer);
-    if (pages_.journal != nullptr) {
-      pages_.journal->append_page(cells, found, pages_.answer.profile);
-    }
+    pages_.keep(cells, found);
     times.collect.end = Clock::now();
     free_slots_.give_back(slot);
     pages_.progress.advance(points_of(pages_.cloud, cells));
@@ -174,6 +170,21 @@ void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {
 
 }  // namespace
 
+std::uint64_t run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                        std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
+                        const PageRun& run, const CollectPage& collect, Progress& progress,
+                        StageTimes& times) {
+  const ThreadLimit limit(run.threads == 0 ? tbb::this_task_arena::max_concurrency() : run.threads);
+  progress.begin(run.stage, points_of(cloud, cells), "points");
+  const Clock::time_point begin = Clock::now();
+  Pages shared{cloud, run.ignored, cells, pages, progress, collect};
+  limit.run([&] { run_lanes(shared, engines); });
+  times = stage_times(shared.times);
+  times.total = std::chrono::duration<double>(Clock::now() - begin).count();
+  progress.end();
+  return shared.ignored_points;
+}
+
 SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                        std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
                        const Query& query, int threads, Progress& progress, StageTimes& times,
@@ -182,16 +193,14 @@ SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> ce
                       ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0),
                       query.profile > 0 ? ProfileSet(query.poses.size()) : ProfileSet()};
   if (journal != nullptr) journal->restore(answer);
-  if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
-  const ThreadLimit limit(threads);
-  progress.begin("search", points_of(cloud, cells), "points");
-  const Clock::time_point begin = Clock::now();
-  Pages shared{cloud, IgnoredPoints(cloud, query), cells, pages, progress, answer, journal};
-  limit.run([&] { run_lanes(shared, engines); });
-  times = stage_times(shared.times);
-  times.total = std::chrono::duration<double>(Clock::now() - begin).count();
-  progress.end();
-  answer.ignored_points = shared.ignored_points;
+  const IgnoredPoints ignored(cloud, query);
+  const CollectPage keep = [&](std::span<const PlannedCell> of, const PageResult& found) {
+    collect_page(cloud, of, found, answer);
+    if (journal != nullptr) journal->append_page(of, found, answer.profile);
+  };
+  answer.ignored_points =
+      run_pages(cloud, cells, pages, engines, {.ignored = ignored, .threads = threads}, keep,
+                progress, times);
   return answer;
 }
 

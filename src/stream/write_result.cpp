@@ -115,11 +115,14 @@ class ResultWriting {
     const WritePlan plan = plan_of<CollisionRow>(store_, memory_bytes_);
     const HitSet& hits = answer_.hits;
     const bool first_pose = hits.has_first_pose();
+    const LastPoses* last_poses = answer_.last_poses ? &*answer_.last_poses : nullptr;
     const auto rows_of = [&](std::uint32_t cell) {
       return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
                                                std::uint32_t i) {
-        return CollisionRow{
-            source, {q[0][i], q[1][i], q[2][i]}, first_pose ? hits.first_pose(entry) : 0};
+        const std::uint32_t touched = first_pose ? hits.first_pose(entry) : 0;
+        const std::uint32_t last =
+            last_poses ? last_poses->at(entry, meaning_.numbers.pose_of(touched)) : 0;
+        return CollisionRow{source, {q[0][i], q[1][i], q[2][i]}, touched, last};
       };
     };
     const auto encode_rows = [&](std::span<const CollisionRow> rows) {
@@ -174,7 +177,7 @@ class ResultWriting {
 WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
                            const ResultHeader& header, const std::filesystem::path& path,
                            std::uint64_t memory_bytes, Progress& progress,
-                           std::span<const double> chainage) {
+                           std::span<const double> chainage, const ResultFindings& findings) {
   WrittenResult out;
   const SetCells collisions = cells_of(store, answer.hits);
   const SetCells clearances =
@@ -190,7 +193,7 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
     out.least_profile =
         write_profile(store, answer.profile, chainage, header.part.has_value(), writer, progress);
   }
-  writer.finish();
+  writer.finish(findings);
   progress.end();
   return out;
 }
@@ -200,10 +203,12 @@ WrittenResult write_tables(const StoreReader& store, const SearchResult& answer,
 WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
                            const ResultHeader& header, const std::filesystem::path& path,
                            std::uint64_t memory_bytes, Progress& progress,
-                           std::span<const double> chainage, int threads) {
+                           std::span<const double> chainage, int threads,
+                           const ResultFindings& findings) {
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
-  return ThreadLimit(threads).run(
-      [&] { return write_tables(store, answer, header, path, memory_bytes, progress, chainage); });
+  return ThreadLimit(threads).run([&] {
+    return write_tables(store, answer, header, path, memory_bytes, progress, chainage, findings);
+  });
 }
 
 std::uint64_t least_write_bytes(const StoreReader& store) {

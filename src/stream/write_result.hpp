@@ -31,7 +31,8 @@ struct WrittenResult {
 WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
                            const ResultHeader& header, const std::filesystem::path& path,
                            std::uint64_t memory_bytes, Progress& progress,
-                           std::span<const double> chainage = {}, int threads = 0);
+                           std::span<const double> chainage = {}, int threads = 0,
+                           const ResultFindings& findings = {});
 
 /// The least memory in which write_result works, bytes.
 std::uint64_t least_write_bytes(const StoreReader& store);

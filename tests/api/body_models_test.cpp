@@ -60,7 +60,8 @@ TEST_CASE("a vehicle with a surface has no motion between poses") {
   Vehicle vehicle(88, false);
   vehicle.make_surface(2);
   vehicle.query.between_poses = true;
-  CHECK_THROWS_WITH(vehicle.run(), Contains("between poses needs a model of points"));
+  CHECK_THROWS_WITH(vehicle.run(),
+                    Contains("motion between poses is searched for models of points"));
   vehicle.query.bodies[2].triangles.back()[1] = 25;
   vehicle.query.between_poses = false;
   CHECK_THROWS_WITH(vehicle.run(), Contains("of body rear has the corner 25"));

@@ -168,3 +168,17 @@ TEST_CASE("depths and profiles whatever distance is asked for") {
   CHECK(found > 20);
   CHECK(scene.check_profile(distance) > 10);
 }
+
+TEST_CASE("solids that hundreds of poses graze") {
+  SolidScene scene;
+  scene.bodies = {};
+  scene.bodies.add(box_surface({{-3, -0.4, -0.3}, {3, 0.5, 0.2}}));
+  scene.poses = slow_path(400, GENERATE(0.0, 0.05));
+  std::vector<Vec3> walls;
+  for (int i = 0; i < 400; ++i) {
+    const double off = i % 5 == 0 ? -0.3 : scene.radius + uniform(scene.random, -0.01, 0.1);
+    walls.push_back({uniform(scene.random, -1, 6), 0.5 + off, uniform(scene.random, -0.3, 0.2)});
+  }
+  scene.points = quantise(walls, scene.quantisation);
+  CHECK(scene.check() > 0);
+}

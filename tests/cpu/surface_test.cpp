@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/geometry/triangle_box.hpp"
+#include "core/sweep/sweep_filter.hpp"
 #include "support/engines/scene_checks.hpp"
 #include "support/engines/tolerance_runs.hpp"
 #include "support/surface_scene.hpp"
@@ -41,6 +43,13 @@ TEST_CASE("surfaces of every kind") {
     scene.radius = 0.6;
   }
   SECTION("one that is an edge") { scene.surface.triangles = {{2, 3, 2}}; }
+  SECTION("lines and single points, as meshes draw them") {
+    auto& triangles = scene.surface.triangles;
+    triangles.clear();
+    for (std::uint32_t i = 1; i + 1 < 40; ++i) triangles.push_back({i, i + 1, i + 1});
+    for (std::uint32_t i = 40; i < 60; ++i) triangles.push_back({i, i, i});
+  }
+  SECTION("one that is a segment") { scene.surface.triangles = {{2, 3, 3}}; }
   SECTION("the same one many times") {
     scene.surface.triangles.assign(30, scene.surface.triangles[0]);
   }
@@ -142,6 +151,17 @@ TEST_CASE("clearances of surfaces along slow paths") {
   CHECK(scene.check_profile(0.6) > 10);
 }
 
+TEST_CASE("clearances and profiles of lines and single points") {
+  SurfaceScene scene;
+  scene.surface = box_surface(kPart);
+  scene.surface.triangles = {{0, 7, 7}, {1, 1, 1}, {4, 4, 4}};
+  SECTION("beside each other") {}
+  SECTION("a mast alone") { scene.surface.triangles.resize(1); }
+  SECTION("along a slow path") { scene.poses = slow_path(100, 1e-3); }
+  CHECK(scene.check_clearance(1.5) > 0);
+  CHECK(scene.check_profile(1.5) > 0);
+}
+
 TEST_CASE("clearances and profiles of surfaces of every size") {
   SurfaceScene scene;
   const double distance = GENERATE(1e-7, 0.1, 0.2, 2.0, 1e150, 1e200);
@@ -170,4 +190,71 @@ TEST_CASE("surfaces within a tolerance") {
   Query query = scene.query();
   query.tolerance = tolerance;
   CHECK(check_tolerance(scene.points, scene.quantisation, query).colliding > 0);
+}
+
+namespace {
+
+/// A long load of few triangles, and walls beside it that it just fits between.
+struct GrazingScene : SurfaceScene {
+  explicit GrazingScene(double bend) {
+    surface = box_surface({{-3, -0.4, -0.3}, {3, 0.5, 0.2}});
+    poses = slow_path(400, bend);
+    std::vector<Vec3> walls;
+    for (int i = 0; i < 500; ++i) {
+      const double off = radius + uniform(random, -0.01, 0.1);
+      const double x = uniform(random, -1, 6);
+      walls.push_back(i % 2 == 0 ? Vec3{x, 0.5 + off, uniform(random, -0.3, 0.2)}
+                                 : Vec3{x, uniform(random, -0.4, 0.5), 0.2 + off});
+    }
+    points = quantise(walls, quantisation);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("surfaces that hundreds of poses graze") {
+  GrazingScene scene(GENERATE(0.0, 1e-3, 0.05));
+  SECTION("as they are") {}
+  SECTION("with a stop") { scene.poses.insert(scene.poses.begin() + 200, 100, scene.poses[200]); }
+  SECTION("to and fro") {
+    const auto there = scene.poses;
+    scene.poses.insert(scene.poses.end(), there.rbegin(), there.rend());
+  }
+  SECTION("with a jump") {
+    for (std::size_t i = 200; i < 400; ++i) scene.poses[i].translation[1] += 0.03;
+  }
+  SECTION("far away") { scene.move_far_away({5e6, 2e6, 1e3}); }
+  SECTION("with printed poses") {
+    for (Pose& pose : scene.poses) pose = printed_with_six_digits(pose);
+  }
+  CHECK(scene.check() > 0);
+}
+
+TEST_CASE("runs of poses take a fraction of the tests that single poses do") {
+  const GrazingScene scene(1e-3);
+  const Query query = scene.query();
+  const MemoryCloud cloud(scene.points, scene.quantisation);
+  const TriangleTree model(triangles_of(query.model, query.triangles));
+  const ModelField field(model, query.radius, {}, 1);
+  const MotionTree motion(query.poses, model.box());
+  const SweepFilterOf<Triangle> filter(query, motion, model, field, cloud);
+  SweepStatistics by_poses, by_runs, narrowing;
+  std::uint64_t grazing = 0;
+  for (const Quantum& point : scene.points) {
+    const Vec3 e = position(scene.quantisation, point[0], point[1], point[2]);
+    std::vector<std::uint32_t> nodes, runs;
+    filter.narrow({plus(e, -1, {0.1, 0.1, 0.1}), plus(e, 1, {0.1, 0.1, 0.1})},
+                  std::vector<std::uint32_t>{0}, nodes, narrowing);
+    SweepStatistics tests;
+    const bool touches = filter.touches(e, nodes, tests);
+    if (!filter.join_runs(tests, nodes, runs)) continue;
+    ++grazing;
+    by_poses.add(tests);
+    CHECK(runs.size() < nodes.size());
+    CHECK(filter.touches_runs(e, runs, by_runs) == touches);
+    SweepStatistics unused;
+    CHECK(filter.first_pose_of_runs(e, runs, unused) == filter.first_pose(e, nodes, unused));
+  }
+  CHECK(grazing > 50);
+  CHECK(8 * by_runs.point_tests < by_poses.point_tests);
 }

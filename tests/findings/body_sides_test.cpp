@@ -68,7 +68,7 @@ TEST_CASE("with clearances it is seen from the nearest body at the nearest pose"
   CHECK(seen.lateral == -3.5);
   found.clearances.pose = {0};  // where it is not
   const Conflict lost = found.conflict(found.bodies);
-  CHECK(lost.side == Side::kUnknown);
+  CHECK(lost.side == Side::kRight);  // of the body that touches first, at its first pose
   CHECK_FALSE(lost.lateral);
   CHECK_FALSE(lost.height);
 }

@@ -70,7 +70,8 @@ TEST_CASE("the side is seen from the model's box at the pose") {
   CHECK(side({100, 48, 0}, ahead) == Side::kRight);
   CHECK(side({100, 50, 2}, ahead) == Side::kAbove);
   CHECK(side({100, 50, -2}, ahead) == Side::kBelow);
-  CHECK(side({103, 52, 0}, ahead) == Side::kFront);
+  CHECK(side({103, 50.5, 0}, ahead) == Side::kFront);
+  CHECK(side({103, 52, 0}, ahead) == Side::kLeft);  // beside the way, however far ahead
   CHECK(side({97, 50, 0}, ahead) == Side::kBehind);
   CHECK(side({100, 50.9, 0.5}, ahead) == Side::kLeft);  // inside: the nearest side
   const Pose turned = rotation({0, 0, 1}, std::acos(-1) / 2, {100, 50, 0});

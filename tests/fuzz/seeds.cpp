@@ -273,6 +273,29 @@ void write_journal_seeds(Seeds seeds) {
   }
 }
 
+/// A first byte of 0, 1 or 2: any value, a vehicle, a campaign. The campaigns' files are there.
+void write_json_seeds(Seeds seeds) {
+  const std::string value(1, '\0'), vehicle = "\1", campaign = "\2";
+  seeds.add(value + R"({"a": [1, -2.5e3, "\u00e4\\\"", true, null, {"b": {}}], "c": [[[]]]})");
+  seeds.add(value + R"({"a": 1, "a": 2})");
+  seeds.add(value + std::string(65, '[') + std::string(65, ']'));
+  seeds.add(vehicle + R"({"bodies": [{"name": "tractor", "model": "a.ply", "at": "10cm"},)"
+                      R"({"name": "wagon", "model": "b.obj", "model_unit": "mm",)"
+                      R"("pivots": [10, "-10 m"]},)"
+                      R"({"name": "own", "model": "c.xyz", "trajectory": "path.txt"}]})");
+  seeds.add(campaign +
+            R"({"name": "a", "environments": {"e": "."}, "vehicles": {"v": {"model": ".",)"
+            R"("as": "solid", "unit": "mm", "spacing": 0.1, "above": "1cm", "vertices": true,)"
+            R"("forward": "-x", "up": "+z"}}, "routes": {"r": {"trajectory": ".",)"
+            R"("environment": "e", "angles": ["deg", "ned"], "lever_arm": [0, 1, 2],)"
+            R"("chainage_start": 5}}, "radii": [0.1, "25cm"],)"
+            R"("query": {"first_pose": true, "clearance": 0.3, "ignore_classes": [2, 7],)"
+            R"("ignore_boxes": [[0, 0, 0, 1, 1, 1]], "tolerance": 0.01, "precision": "float"},)"
+            R"("classes": [0.1, 0.3], "outputs": {"conflicts": ["csv", "bcf"], "report": true,)"
+            R"("gap": 0.3, "min_points": 5}, "limits": {"memory": "1G", "threads": 2,)"
+            R"("shard_seconds": 60, "gpus": [0]}, "slurm": ["--partition=long"]})");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -294,4 +317,5 @@ int main(int argc, char** argv) {
   write_store_seeds({folder, "store"}, {folder, "store_values"});
   write_result_seeds({folder, "result"});
   write_journal_seeds({folder, "journal"});
+  write_json_seeds({folder, "json"});
 }

@@ -41,6 +41,21 @@ check_document() {
   done
 }
 
+# The program among a document's C++ blocks, built with the CMake file that library.md shows, and
+# run on the scene. $2: what it is to print.
+run_program_of() {
+  local folder=$scratch/programs/${1##*/} printed
+  mkdir -p "$folder"
+  awk '/^```/ { out = /^```cmake/; next } out' "$source/docs/guide/library.md" \
+    >"$folder/CMakeLists.txt"
+  cp "$(grep -l 'int main' "$scratch/documents/${1##*/}"/*.cpp)" "$folder/passes.cpp"
+  cmake -S "$folder" -B "$folder/build" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+  cmake --build "$folder/build" >/dev/null
+  rm -f site.h5 out.h5
+  printed=$("$folder/build/passes") || [ $? = 1 ] || fail "the program of $1 fails"
+  [ "$printed" = "$2" ] || fail "the program of $1 prints '$printed', expected '$2'"
+}
+
 if [ "${3:-}" = --street ]; then
   if [ -z "${CLEARWAY_TEST_DATA:-}" ]; then
     echo "skipped: needs real scans; set CLEARWAY_TEST_DATA to their folder"
@@ -86,3 +101,8 @@ print(clearway.Result("result.h5").source().size)')
 fi
 cmp store.h5 site.h5
 cmp result.h5 out.h5
+ln -sf environment.las scan.las
+ln -sf model.ply car.ply
+ln -sf trajectory.txt path.txt
+run_program_of README.md "$expected points collide"
+run_program_of docs/guide/library.md "$expected of 50000 points collide"

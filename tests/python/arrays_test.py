@@ -34,6 +34,24 @@ class Arrays(SceneTest):
         self.assertEqual((query.model.dtype, query.poses.dtype), (np.float64, np.float64))
         np.testing.assert_array_equal(query.model, [[1, 2, 3]])
 
+    def test_every_type_of_real_numbers_is_taken(self):
+        expected = self.sources()
+        for kind in ("longdouble", "float64", ">f8", "<f8"):
+            np.testing.assert_array_equal(self.sources(model=self.model.astype(kind)), expected)
+            np.testing.assert_array_equal(self.sources(poses=self.poses.astype(kind)), expected)
+        for kind in ("float16", "float32", ">f4", "int8", ">i2", "int64", "uint64", "longdouble"):
+            query = clearway.Query(np.arange(6).reshape(2, 3).astype(kind), self.poses, 0.1)
+            self.assertEqual(query.model.dtype, np.float64)
+            np.testing.assert_array_equal(query.model, [[0, 1, 2], [3, 4, 5]])
+        for kind in (np.longdouble, np.float32, np.float16):
+            self.assertEqual(clearway.Query(self.model, self.poses, kind(0.25)).radius, 0.25)
+        self.assertEqual(clearway.Query(self.model, self.poses, np.array(0.25)).radius, 0.25)
+        box = clearway.Box(np.zeros(3, "longdouble"), np.ones(3, "float16"))
+        np.testing.assert_array_equal(box.hi, [1, 1, 1])
+        with self.assertRaisesRegex(clearway.InputError, "model: point 0: expected finite"):
+            with np.errstate(over="ignore"):
+                self.sources(model=np.full((1, 3), np.longdouble("1e4000")))
+
     def test_an_array_is_shared_until_the_search(self):
         model = self.model.copy()
         query = clearway.Query(model, self.poses, 0.25)
@@ -60,7 +78,7 @@ class Arrays(SceneTest):
                       np.full((2, 3), None)):
             with self.assertRaisesRegex(TypeError, "model: expected real numbers"):
                 query.model = model
-        with self.assertRaises(ValueError):
+        with self.assertRaisesRegex(clearway.UsageError, "model: is no array of numbers"):
             query.model = [[1, 2, 3], [4, 5]]
         with self.assertRaisesRegex(clearway.UsageError, "masked"):
             query.model = np.ma.masked_less(self.model, 0)
@@ -93,10 +111,85 @@ class Arrays(SceneTest):
     def test_a_misspelt_parameter(self):
         with self.assertRaises(AttributeError):
             self.query().raduis = 1
-        with self.assertRaises(TypeError):
+        with self.assertRaisesRegex(TypeError, "has no argument 'thread'; did you mean 'threads'"):
             self.search(thread=2)
-        with self.assertRaises(TypeError):
+        with self.assertRaisesRegex(TypeError, r"input_warnings\[0\]: expected a clearway.Message"):
             self.search(input_warnings=["mind the step"])
+
+
+class Arguments(SceneTest):
+    """What is wrong with an argument is said by its name, and never as a list of C++ types."""
+
+    def refused(self, kind, words, call, *args, **named):
+        with self.assertRaisesRegex(kind, words) as caught:
+            call(*args, **named)
+        self.assertNotIn("incompatible", str(caught.exception))
+
+    def test_numbers_out_of_range(self):
+        for radius in (-1, 0, np.nan, np.inf, -np.inf):
+            self.refused(clearway.UsageError, "radius: expected", clearway.Query, self.model,
+                         self.poses, radius)
+            self.refused(clearway.UsageError, "radius: expected", setattr, self.query(), "radius",
+                         radius)
+        for name in ("clearance", "profile", "tolerance"):
+            for value in (-0.1, np.nan, np.inf):
+                self.refused(clearway.UsageError, name + ": expected", self.query, **{name: value})
+        for name, values in (("threads", (-1, 2**40)), ("memory_bytes", (-1,)),
+                             ("device_memory_bytes", (-1,)), ("field_voxel", (-1, np.nan)),
+                             ("grid_cell", (np.inf,)), ("journal_interval_seconds", (-1,)),
+                             ("shard", ((-1, 2), (1, 2, 3))), ("gpus", ([-1],))):
+            for value in values:
+                self.refused(clearway.UsageError, name, self.search, **{name: value})
+        scan, store = self.folder / "scan.xyz", self.folder / "again.h5"
+        for name, value in (("scale", 0), ("scale", np.nan), ("regular_size", -1), ("threads", -1),
+                            ("cell_points", -1), ("memory_bytes", -1)):
+            self.refused(clearway.UsageError, name, clearway.convert, scan, store, **{name: value})
+        self.refused(clearway.UsageError, "unit", clearway.read_model, scan, unit=-1)
+        self.refused(clearway.UsageError, "above", clearway.read_model, scan, above=np.nan)
+        self.refused(clearway.UsageError, "environment_unit", clearway.read_trajectory, scan,
+                     environment_unit=0)
+        self.refused(clearway.UsageError, r"lever_arm\[1\]", clearway.read_trajectory, scan,
+                     lever_arm=(0, np.nan, 0))
+        self.refused(clearway.UsageError, "pivots", clearway.follow, "a", self.model, self.poses,
+                     pivots=(1, 2, 3))
+        self.refused(clearway.UsageError, r"ignore_classes\[0\]: expected 0 to 255", self.query,
+                     ignore_classes=[256])
+        self.refused(clearway.InputError, "hi: point 0", clearway.Box, (0, 0, 0), (1, 1, np.inf))
+        self.assertFalse((self.folder / "again.h5").exists())
+
+    def test_no_radius(self):
+        self.refused(clearway.UsageError, "radius", self.search,
+                     query=clearway.Query(self.model, self.poses))
+
+    def test_wrong_types(self):
+        store, query = clearway.Store(self.folder / "site.h5"), self.query()
+        for name, value in (("radius", "0.25"), ("radius", [0.25]), ("radius", 1j),
+                            ("radius", True), ("first_pose", "no"), ("clearance", None),
+                            ("ignore_boxes", [(0, 1)]), ("ignore_classes", "2"),
+                            ("bodies", [self.model])):
+            self.refused(TypeError, name, setattr, query, name, value)
+        for name, value in (("threads", "two"), ("threads", 2.5), ("engine", 1), ("gpus", 0),
+                            ("overwrite", "yes"), ("shard", 3), ("progress", 1), ("stop", True)):
+            self.refused(TypeError, name, clearway.search, store, query, "a.h5", **{name: value})
+        self.refused(TypeError, "store: expected a clearway.Store", clearway.search, "site.h5",
+                     query, "a.h5")
+        self.refused(TypeError, "query", clearway.search, store, self.model, "a.h5")
+        for path in (3, None, self.model):
+            self.refused(TypeError, "output: expected a path", clearway.search, store, query, path)
+            self.refused(TypeError, "path: expected a path", clearway.Store, path)
+        self.refused(TypeError, r"inputs\[1\]: expected a path", clearway.convert, ["a", 1], "b.h5")
+        self.refused(TypeError, "inputs: expected a list", clearway.convert, 1, "b.h5")
+        self.refused(TypeError, "columns: expected a list", clearway.convert, "a", "b.h5",
+                     columns="xyz")
+        self.refused(TypeError, "messages", clearway.read_model, "a.xyz", messages=print)
+        self.refused(TypeError, "missing a required argument: 'output'", clearway.search, store,
+                     query)
+        self.refused(TypeError, "too many", clearway.search, store, query, "a.h5", "sweep")
+        self.refused(TypeError, "too many", store.point_count, 1)
+
+    def test_whole_numbers_of_any_type(self):
+        self.search(threads=np.int64(2), memory_bytes=4e9)
+        self.search(threads=2.0, float_precision=np.bool_(False))
 
 
 class Errors(SceneTest):
@@ -109,9 +202,8 @@ class Errors(SceneTest):
 
     def test_usage(self):
         query = self.query()
-        query.radius = -1
-        with self.assertRaisesRegex(clearway.UsageError, "the radius has to be") as caught:
-            self.search(query=query)
+        with self.assertRaisesRegex(clearway.UsageError, "radius: expected") as caught:
+            query.radius = -1
         self.assertIsNone(caught.exception.remedy)
         store = clearway.Store(self.folder / "site.h5")
         (self.folder / "there.h5").write_text("mine")

@@ -13,7 +13,15 @@ class BodyTest(SceneTest):
     def test_bodies_are_searched_as_models(self):
         messages = []
         front = clearway.follow("front", self.model, self.poses, at=1, messages=messages)
-        self.assertEqual([m.code for m in messages], ["body-off-path"])
+        self.assertEqual([(m.code, m.severity) for m in messages], [("body-off-path", "note")])
+        last = len(self.poses) - 1
+        [end] = clearway.unsearched_stretches(self.poses, [front])
+        self.assertEqual((end.first_pose, end.last_pose, end.bodies), (24, last, [0]))
+        self.assertFalse(end.has_answer)
+        whole = clearway.Body("own", self.model, self.poses)
+        self.assertTrue(clearway.unsearched_stretches(self.poses, [front, whole])[0].has_answer)
+        self.assertEqual(clearway.unsearched_stretches(self.poses, [whole]), [])
+        self.assertIn("1 body without a pose", repr(end))
         np.testing.assert_array_equal(front.path_pose, range(25))
         np.testing.assert_allclose(front.poses[:, 0, 3], self.poses[:25, 0, 3] + 1)
         own = clearway.Body("own", self.model, self.poses)
@@ -66,7 +74,7 @@ class BodyTest(SceneTest):
         np.testing.assert_allclose(fin.model.points.max(axis=0), [1, 1, 0])
         self.assertEqual(len(fin.path_pose), 24)
         sampled = clearway.read_vehicle(str(file), self.poses, "points", spacing=0.1)[2]
-        self.assertGreater(len(sampled.model), 20)
+        self.assertGreater(len(sampled.model.points), 20)
         feet = clearway.read_vehicle(file, self.poses, environment_unit=clearway.METRES_PER_FOOT)
         self.assertEqual(len(feet[0].poses), 13)  # a metre is 3.28 of these units
 
@@ -95,9 +103,46 @@ class BodyTest(SceneTest):
         with self.assertRaisesRegex(clearway.InputError, "another vehicle"):
             clearway.find_conflicts(result, self.poses, bodies=bodies * 2)
 
+    def refused_everywhere(self, body, words):
+        """By the search, and by what reads its result. body: of too few poses."""
+        sound = clearway.Body(body.name, self.model, self.poses)
+        query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=[sound], first_pose=True)
+        self.search(query=query)
+        result = clearway.Result(self.folder / "out.h5")
+        store = clearway.Store(self.folder / "site.h5")
+        query.bodies = [body]
+        for call in (lambda: self.search(query=query),
+                     lambda: clearway.find_conflicts(result, self.poses, bodies=[body]),
+                     lambda: clearway.write_report(result, store, (), self.poses,
+                                                   self.folder / "none.html", bodies=[body])):
+            with self.assertRaisesRegex(clearway.UsageError, words):
+                call()
+        self.assertFalse((self.folder / "none.html").exists())
+
+    def test_poses_fewer_than_those_of_the_path(self):
+        few = clearway.Body("few", self.model, self.poses[:10])
+        self.refused_everywhere(few, r"bodies\[0\] \(few\): has 10 poses, and the path has 30 poses")
+        part = clearway.Body("part", self.model, self.poses[:10], range(10))  # as it says
+        self.search(query=clearway.Query(poses=self.poses, radius=RADIUS, bodies=[part]))
+
+    def test_a_body_placed_on_another_path(self):
+        shorter = clearway.follow("a", self.model, self.poses[:10])
+        self.refused_everywhere(shorter, r"bodies\[0\] \(a\): was placed on another path")
+        moved = self.poses + np.pad(np.full((3, 1), 0.1), ((0, 1), (3, 0)))
+        self.refused_everywhere(clearway.follow("a", self.model, moved), "another path")
+        read = clearway.read_vehicle(
+            self.write_vehicle([{"name": "a", "model": "model.xyz"}]), self.poses[:10])[0]
+        self.refused_everywhere(read, "another path")
+
     def test_bodies_are_refused(self):
         with self.assertRaises(clearway.UsageError):
             clearway.follow("a", self.model, self.poses, at=1, pivots=(1, -1))
+        with self.assertRaisesRegex(clearway.UsageError, "path_pose: expected 30 indices"):
+            clearway.Body("a", self.model, self.poses, range(29))
+        for wrong, kind in ((["1"] * 30, TypeError), ([0.5] * 30, TypeError),
+                            (range(-1, 29), clearway.UsageError), ("all", TypeError)):
+            with self.assertRaisesRegex(kind, "path_pose"):
+                clearway.Body("a", self.model, self.poses, wrong)
         body = clearway.Body("a", self.model, self.poses)
         with self.assertRaisesRegex(clearway.InputError, "another body has this name"):
             self.search(query=clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body, body]))

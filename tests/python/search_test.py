@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What the Python module finds, and what it gives back. search_test.py, with the module on the path."""
 
+import json
 import os
 import unittest
 from pathlib import Path
@@ -112,6 +113,9 @@ class FindsWhatBruteForceFinds(SceneTest):
         self.assertEqual(result.ignored().points, np.count_nonzero(inside))
         self.assertEqual(report.ignored.in_boxes, [np.count_nonzero(inside)])
         self.assertLessEqual(report.ignored_looked_at, report.ignored.points)
+        every = self.search("all.h5").colliding_points
+        self.assertEqual(report.ignored_colliding, every - report.colliding_points)
+        self.assertEqual(result.answer().ignored_colliding, report.ignored_colliding)
 
     def test_ignored_classes_of_a_store_without(self):
         self.assertEqual(clearway.Store(self.folder / "site.h5").class_points(), {})
@@ -166,6 +170,21 @@ class FindsWhatBruteForceFinds(SceneTest):
         self.assertEqual(len(result.clearance()), 0)  # asked for, and nothing is near: not None
         self.assertIn("out-of-reach", [w.code for w in report.warnings])
         self.assertIn("out-of-reach", repr(report))
+        for answer in (report, result.answer()):
+            self.assertEqual(answer.verdict, "undecided")
+            self.assertEqual(answer.reasons, ["question-in-doubt"])
+            self.assertEqual(answer.doubts, ["out-of-reach"])
+
+    def test_the_answer_of_a_file_is_that_of_the_search(self):
+        report = self.search(query=self.query(first_pose=True, clearance=0.5, profile=0.5))
+        answer = clearway.Result(self.folder / "out.h5").answer()
+        self.assertIsInstance(report, clearway.Answer)
+        self.assertEqual((answer.verdict, answer.reasons), ("conflict", []))
+        for name in ("colliding_points", "clearance_points", "profile_poses", "model_points",
+                     "poses", "shard", "ignored_colliding"):
+            self.assertEqual(getattr(answer, name), getattr(report, name), name)
+        for name in ("first_place", "least_clearance", "least_profile"):
+            self.assertEqual(getattr(answer, name).source, getattr(report, name).source, name)
 
     def test_arrays_outlive_their_result(self):
         self.search()
@@ -223,6 +242,18 @@ class FindsWhatBruteForceFinds(SceneTest):
             np.testing.assert_allclose(result.xyz()[of].mean(axis=0), conflict.centroid)
             np.testing.assert_array_equal(result.xyz()[of].min(axis=0), conflict.box.lo)
         self.assertEqual(sum(c.points for c in found.listed) + found.small_points, len(result))
+        self.assertEqual(sum(g.points for g in found.small), found.small_points)
+        self.assertTrue(found.has_last_poses)
+        for conflict in found.listed:
+            of = found.conflict_of == conflict.id
+            self.assertEqual(conflict.first_pose, result.first_pose()[of].min())
+            self.assertEqual(conflict.last_pose, result.last_pose()[of].max())
+            self.assertIsNone(conflict.shift_left)
+            self.assertIsNotNone(conflict.obstacle_chainage)
+        shifted = clearway.find_conflicts(result, self.poses, min_points=5, model=self.model)
+        for conflict in shifted.listed:
+            for shift in (conflict.shift_left, conflict.shift_right):
+                self.assertTrue(shift is None or 0 < shift <= 2)
         with self.assertRaises(clearway.InputError):
             clearway.find_conflicts(result, self.poses[1:])
 
@@ -235,6 +266,19 @@ class FindsWhatBruteForceFinds(SceneTest):
         page = (self.folder / "out.html").read_text()
         self.assertTrue("<title>&lt;Tunnel></title>" in page)
         self.assertEqual(summary.bytes, len(page.encode()))
+
+
+    def test_a_page_shows_what_the_search_warned_of(self):
+        report = self.search(query=self.far_query())
+        codes = [w.code for w in report.warnings]
+        self.assertIn("out-of-reach", codes)
+        for given in ([], report.warnings):
+            summary = clearway.write_report(
+                clearway.Result(self.folder / "out.h5"), clearway.Store(self.folder / "site.h5"),
+                self.model, self.far_query().poses, self.folder / "far.html", warnings=given,
+                overwrite=True)
+            told = [w["code"] for w in json.loads(summary.facts)["warnings"]]
+            self.assertEqual(sorted(told), sorted(codes))  # each once
 
 
 class Stores(SceneTest):

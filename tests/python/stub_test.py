@@ -47,10 +47,10 @@ def documented(function):
     return shown
 
 
-def taken(call):
+def taken(call, *args):
     """The same of what the compiled function takes, from its message about wrong arguments."""
     try:
-        call(not_a_parameter=1)
+        call.__wrapped__(*args, not_a_parameter=1)
     except TypeError as error:
         line = re.search(r"^ +1\. (.*)$", str(error), re.M)[1]
     line = re.sub(r" -> .*| at 0x[0-9a-f]+", "", line[line.index("("):])
@@ -111,10 +111,35 @@ class Stubs(unittest.TestCase):
                 self.assertEqual(documented(function), parameters(node))
                 self.assertEqual(taken(function), parameters(node))
 
-    def test_parameters_of_query(self):
-        init = next(n for n in self.classes["Query"].body if getattr(n, "name", "") == "__init__")
-        self.assertEqual([p[0] for p in taken(clearway.Query)],
-                         [p[0] for p in parameters(init, skip=1)])
+    def test_parameters_of_constructors(self):
+        for name, node in self.classes.items():
+            init = next((n for n in node.body if getattr(n, "name", "") == "__init__"), None)
+            if init is None or name == "PoseLabels":
+                continue
+            with self.subTest(name):
+                kind = getattr(clearway, name)
+                made = kind.__init__
+                named = [p[0] for p in parameters(init, skip=1)]
+                self.assertEqual([p[0] for p in documented(made)[1:]], named)
+                self.assertEqual([p[0] for p in taken(made, kind.__new__(kind))], named)
+
+    def test_every_member_is_documented_by_a_sentence(self):
+        for name in self.classes:
+            made = getattr(clearway, name, None)
+            if made is None:
+                continue
+            for member, value in vars(made).items():
+                if member.startswith("_") or not (callable(value) or isinstance(value, property)):
+                    continue
+                text = inspect.getdoc(value) or ""
+                self.assertGreaterEqual(len(text.split()), 3, f"{name}.{member}: {text}")
+                self.assertNotRegex(text, r"^(Of|Likewise|The same)\b", f"{name}.{member}")
+
+    def test_every_argument_is_checked(self):
+        from clearway import _arguments
+        for name, function in self.functions.items():
+            for parameter, *_ in parameters(function):
+                self.assertIn(parameter, _arguments._CHECKS, f"{name}: {parameter}")
 
     def test_every_function_is_documented(self):
         for name in self.functions:

@@ -58,10 +58,10 @@ class Line {
 
   /// Returns the number of hits.
   std::uint64_t run() {
-    const auto open = [&]() -> SearchJournal& {
+    const auto open = [&]() -> SearchJournal* {
       ++journals_opened;
       const std::string name = "journal " + std::to_string(journals_opened);
-      return journal_.emplace(folder_ / name, JournalIdentity{}, nullptr, *store, query, 1e9);
+      return &journal_.emplace(folder_ / name, JournalIdentity{}, nullptr, *store, query, 1e9);
     };
     NoProgress progress;
     report = {};

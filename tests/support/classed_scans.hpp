@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <random>
@@ -18,12 +19,15 @@ inline std::vector<std::uint8_t> random_classes(std::size_t count, unsigned most
   return classes;
 }
 
+/// offset: of the coordinates, metres; where it is not given, that of LasBytes.
 inline void write_classed(const std::filesystem::path& path, const std::vector<Quantum>& points,
-                          const std::vector<std::uint8_t>& classes, unsigned format = 6) {
+                          const std::vector<std::uint8_t>& classes, unsigned format = 6,
+                          std::array<double, 3> offset = LasBytes().offset) {
   LasBytes las;
   las.minor = 4;
   las.format = format;
   las.scale = {0.001, 0.001, 0.001};
+  las.offset = offset;
   las.points = points;
   las.bytes_of_class = classes;
   put_bytes(path, las.build());

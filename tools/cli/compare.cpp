@@ -5,9 +5,11 @@
 #include "cli/commands.hpp"
 #include "cli/comparison_text.hpp"
 #include "cli/conflicts/conflict_comparison.hpp"
+#include "cli/run_again.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
+#include "cli/verdict.hpp"
 #include "io/result/check/compare_results.hpp"
 
 namespace clearway::tool {
@@ -31,6 +33,8 @@ bool run_compare(CompareOptions& options) {
     return none_new;
   }
   const ResultReader a(options.a), b(options.b);
+  warn_of_doubts(a);
+  warn_of_doubts(b);
   const Comparison comparison = compare_results(a, b, options.show);
   print(options.json ? comparison_json(comparison, a.name(), b.name())
                      : comparison_text(comparison, a.name(), b.name()));
@@ -52,7 +56,7 @@ void add_compare(CLI::App& program, int& exit_code) {
   command->add_flag("--json", options->json, "Print one JSON object");
   CLI::Option* conflicts = command->add_flag(
       "--conflicts", options->conflicts,
-      "Say instead which conflicts are new, gone and the same; of any environments");
+      "Say instead which conflicts are new, worse, gone and the same; of any environments");
   add_conflict_comparison(*command, options->places, conflicts);
   command->footer(
       "Prints how many colliding points are only in A, only in B and in both. Where both "
@@ -61,12 +65,21 @@ void add_compare(CLI::App& program, int& exit_code) {
       "differs in the queries: model, trajectory, radius in metres.\n"
       "Exit code 0: the same points, first poses and clearances, even of different queries.\n"
       "Exit code 1: they differ.\n"
-      "With --conflicts, exit code 1 says that B has new ones. Conflicts are the same where their "
-      "boxes\n"
-      "overlap, grown by the gap. Each is matched once, the largest overlaps first.\n"
+      "With --conflicts, exit code 1 says that B has new conflicts, worse ones, new groups that "
+      "are\n"
+      "too small to be listed, or answers another question. Conflicts are the same where their\n"
+      "boxes overlap, grown by the gap. Each is matched once, the largest overlaps first. What\n"
+      "is left is the same where each of its points is within the gap of points that A has.\n"
       "Exit code 3: a file is not a result, or the results are about different environments.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");
-  command->callback([options, &exit_code] { exit_code = run_compare(*options) ? 0 : 1; });
+  command->callback([options, command, &exit_code] {
+    const ConflictComparison& places = options->places;
+    const bool one_path = places.trajectory_b.empty();
+    advising_to_run_again(*command,
+                          {{options->a, places.trajectory},
+                           {options->b, one_path ? places.trajectory : places.trajectory_b}},
+                          [&] { exit_code = run_compare(*options) ? 0 : 1; });
+  });
 }
 
 }  // namespace clearway::tool

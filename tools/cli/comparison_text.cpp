@@ -18,6 +18,8 @@ const char* kind_text(PointDifference::Kind kind) {
       return "only in b";
     case PointDifference::Kind::kFirstPose:
       return "first pose";
+    case PointDifference::Kind::kLastPose:
+      return "last pose";
     case PointDifference::Kind::kCoordinates:
       return "coordinates";
   }
@@ -36,11 +38,16 @@ std::string point_text(const PointDifference& point) {
     text += "  pose " + std::to_string(*point.first_pose_a) + " / " +
             std::to_string(*point.first_pose_b);
   }
+  if (point.kind == PointDifference::Kind::kLastPose) {
+    text +=
+        "  pose " + std::to_string(*point.last_pose_a) + " / " + std::to_string(*point.last_pose_b);
+  }
   return text + "\n";
 }
 
 std::uint64_t all_differences(const Comparison& c) {
-  return c.only_in_a + c.only_in_b + c.differing_coordinates + c.differing_first_poses.value_or(0);
+  return c.only_in_a + c.only_in_b + c.differing_coordinates + c.differing_first_poses.value_or(0) +
+         c.differing_last_poses.value_or(0);
 }
 
 nlohmann::ordered_json point_json(const PointDifference& point) {
@@ -49,6 +56,8 @@ nlohmann::ordered_json point_json(const PointDifference& point) {
                              {"xyz", {point.xyz.x, point.xyz.y, point.xyz.z}}};
   if (point.first_pose_a) out["first_pose_a"] = *point.first_pose_a;
   if (point.first_pose_b) out["first_pose_b"] = *point.first_pose_b;
+  if (point.last_pose_a) out["last_pose_a"] = *point.last_pose_a;
+  if (point.last_pose_b) out["last_pose_b"] = *point.last_pose_b;
   return out;
 }
 
@@ -62,6 +71,9 @@ std::string comparison_text(const Comparison& c, const std::string& a, const std
                      "only in b: " + format_count(c.only_in_b) + "\n";
   if (c.differing_first_poses) {
     text += "differing first poses: " + format_count(*c.differing_first_poses) + "\n";
+  }
+  if (c.differing_last_poses) {
+    text += "differing last poses: " + format_count(*c.differing_last_poses) + "\n";
   }
   if (c.differing_coordinates > 0) {
     text += "differing coordinates: " + format_count(c.differing_coordinates) + "\n";
@@ -98,6 +110,7 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
                              {"differing_coordinates", c.differing_coordinates},
                              {"differing_first_poses", nullptr}};
   if (c.differing_first_poses) out["differing_first_poses"] = *c.differing_first_poses;
+  if (c.differing_last_poses) out["differing_last_poses"] = *c.differing_last_poses;
   out["clearances"] = nullptr;
   if (c.clearances) {
     out["clearances"] = {

@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
+#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
@@ -107,8 +108,9 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArgumen
 
 void log_report(const ConvertArguments& options, const ConvertReport& report) {
   if (report.was_finished) {
-    spdlog::info("{}: is the store of these inputs already; nothing to do",
-                 options.output.string());
+    spdlog::info("{}: is the store of these inputs already; nothing to do{}",
+                 options.output.string(),
+                 report.warnings.empty() ? "" : ". Its conversion gave the warnings above");
     return;
   }
   spdlog::info("{}: {} in {} of {}, {} ({:.2f} bytes a point)", options.output.string(),
@@ -158,29 +160,42 @@ void add_convert(CLI::App& program) {
       ->add_option("--scale", options->scale,
                    "Step of the stored integers in metres (default: that of the input, else the "
                    "finest power of ten from 1e-6 to 1e-3 that fits)")
+      ->group(title_of(OptionGroup::kStore))
       ->type_name("METRES")
       ->transform(positive_length());
   command->add_option("--cell-points", conversion.cell_points, "Points per cell, 64 to 1048576")
+      ->group(title_of(OptionGroup::kStore))
       ->type_name("N")
       ->capture_default_str();
   command
       ->add_option("--layout", options->layout,
                    "adaptive, or regular:SIZE for cubes of that size, for example regular:50cm")
+      ->group(title_of(OptionGroup::kStore))
       ->capture_default_str();
   add_memory_option(*command, conversion.memory_bytes);
   add_threads_option(*command, conversion.threads);
-  command->add_flag("--ignore-crs", conversion.ignore_crs,
-                    "Accept coordinates in degrees, and inputs in different units, as they are");
+  add_unit_option(*command, "--unit", conversion.unit,
+                  "Unit of the coordinates where the inputs name none: m, ft, ift or us-ft "
+                  "(default: not known, and taken for metres)")
+      ->group(title_of(OptionGroup::kUnits));
+  command
+      ->add_flag("--ignore-crs", conversion.ignore_crs,
+                 "Accept coordinates in degrees, and inputs in different units, as they are")
+      ->group(title_of(OptionGroup::kUnits));
   command
       ->add_option("--columns", conversion.columns,
                    "Columns of x, y and z in texts: numbers from 1, or names of the header")
+      ->group(title_of(OptionGroup::kInputs))
       ->type_name("X,Y,Z")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_flag("--skip-unreadable", conversion.skip_unreadable,
-                    "Leave out files that cannot be read, and list them; reads all once more");
-  command->add_flag("--strict", conversion.strict,
-                    "Refuse every warning with exit code 3, after all are told");
+  command
+      ->add_flag("--skip-unreadable", conversion.skip_unreadable,
+                 "Leave out files that cannot be read, and list them; reads all once more")
+      ->group(title_of(OptionGroup::kInputs));
+  command->add_flag(
+      "--strict", conversion.strict,
+      "Treat warnings as errors: all are shown, and no store is written (exit code 3)");
   CLI::Option* force =
       command->add_flag("--force", conversion.overwrite, "Overwrite an existing store");
   command

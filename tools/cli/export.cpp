@@ -8,6 +8,7 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
+#include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
@@ -151,15 +152,19 @@ void add_export(CLI::App& program) {
       ->type_name("PATH...");
   command
       ->add_option("--trajectory", options->trajectory,
-                   "Of the run: adds its times and names to a profile")
+                   "The trajectory of the run: adds its times and names to a profile")
       ->type_name("FILE");
   add_chainage_option(*command, options->lengths, options->chainage_start);
   add_trajectory_options(*command, options->trajectory_options, options->lengths);
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(kFooter);
-  command->callback(
-      [options] { run_stoppable(options->output, kStartsAgain, [&] { run_export(*options); }); });
+  command->callback([options, command] {
+    run_stoppable(options->output, kStartsAgain, [&] {
+      advising_to_run_again(*command, {{options->result, options->trajectory}},
+                            [&] { run_export(*options); });
+    });
+  });
 }
 
 }  // namespace clearway::tool

@@ -11,12 +11,13 @@
 #include "cli/ignored/ignored_options.hpp"
 #include "cli/support/sources_json.hpp"
 #include "cli/support/standard_output.hpp"
-#include "cli/verdict.hpp"
+#include "cli/support/warnings_json.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/inspect/file_kind.hpp"
 #include "io/inspect/inspect_points.hpp"
 #include "io/journal/journal.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 #include "io/store/class_names.hpp"
 #include "io/store/store_reader.hpp"
@@ -72,7 +73,8 @@ ordered_json describe(const StoreReader& store) {
           {"classes", classes_json(m)},
           {"points_hash", hash_text(m.points_hash)},
           {"fingerprint", hash_text(store.fingerprint())},
-          {"sources", sources_json(m)}};
+          {"sources", sources_json(m)},
+          {"warnings", warnings_json(store_warnings(m))}};
 }
 
 ordered_json describe(const ResultReader& result) {
@@ -88,6 +90,7 @@ ordered_json describe(const ResultReader& result) {
                            {"model_points", h.model_points},
                            {"model_triangles", h.model_triangles},
                            {"model_solids", h.model_solids},
+                           {"model_spacing", nullptr},
                            {"model_box", h.has_model_box() ? box_json(h.model_box) : nullptr},
                            {"poses", h.poses},
                            {"first_pose", h.first_pose},
@@ -101,16 +104,19 @@ ordered_json describe(const ResultReader& result) {
                            {"environment_hash", hash_text(h.environment_hash)},
                            {"model_hash", hash_text(h.model_hash)},
                            {"trajectory_hash", hash_text(h.trajectory_hash)}};
+  if (h.model_spacing.metres > 0) description["model_spacing"] = h.model_spacing.metres;
   if (!h.bodies.empty()) description["bodies"] = h.bodies;
+  const Answer answer = h.model_solids > 0 ? answer_of(result) : counted_answer(result);
+  description["verdict"] = name_of(answer.verdict());
+  if (!answer.doubts.empty()) description["doubts"] = answer.doubts;
   if (h.model_solids > 0) {
-    const Verdict verdict = verdict_of(result, {});
-    const std::optional<double> depth = greatest_depth(verdict);
-    description["points_inside"] = nullptr;
-    if (verdict.points_inside) description["points_inside"] = *verdict.points_inside;
+    const auto inside = answer.points_inside();
+    const auto depth = answer.greatest_depth();
+    description["points_inside"] = inside ? ordered_json(*inside) : ordered_json(nullptr);
     description["greatest_depth"] = depth ? ordered_json(*depth) : ordered_json(nullptr);
   }
   if (h.ignores_points()) {
-    description["ignored"] = ignored_json(h, h.ignored);
+    description["ignored"] = ignored_json(answer);
     if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);
   }
   if (h.tolerance > 0) {
@@ -129,6 +135,7 @@ ordered_json describe(const ResultReader& result) {
     }
     description["warnings"] = h.part->warnings.size();
   }
+  if (h.last_pose) description["last_pose"] = true;
   if (h.float_precision) description["precision"] = "float";
   if (h.has_poses_of_ways()) {
     description["first_pose_of"] =
@@ -248,6 +255,11 @@ std::string text_of(const ordered_json& description) {
         text += fmt::format("{:<{}}  {}{}: {}\n", "class", width, one["class"].get<unsigned>(),
                             name.empty() ? "" : " (" + name + ")",
                             counted(one["points"].get<std::uint64_t>(), "point"));
+      }
+    } else if (key == "warnings" && value.is_array()) {
+      for (const auto& one : value) {
+        text += fmt::format("{:<{}}  {}: {}\n", "warning", width, one["code"].get<std::string>(),
+                            one["message"].get<std::string>());
       }
     } else if (key == "sources") {
       for (const auto& source : value) {

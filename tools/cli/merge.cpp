@@ -20,7 +20,6 @@
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/result/result.hpp"
 #include "io/system/open_files.hpp"
 
 namespace clearway::tool {
@@ -42,7 +41,7 @@ nlohmann::ordered_json warnings_of(const MergeReport& report) {
 }
 
 nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& report,
-                               const Verdict& verdict, double seconds) {
+                               double seconds) {
   nlohmann::ordered_json out = program_json({{"output", options.output}});
   out["radius"] = report.parameters.radius;
   out["parts"] = report.parts;
@@ -52,26 +51,20 @@ nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& r
   out["poses"] = report.poses;
   out["colliding_points"] = report.colliding_points;
   out["clearance_points"] = report.clearance_points;
-  out["profile_poses"] = report.was_finished ? nlohmann::ordered_json(nullptr)
-                                             : nlohmann::ordered_json(report.profile_poses);
-  add_verdict(verdict, {}, out);
+  out["profile_poses"] = report.profile_poses;
+  add_answer(report, {}, out);
   out["warnings"] = warnings_of(report);
   out["seconds"] = seconds;
   return out;
 }
 
-/// Whether no point collides.
-bool run_merge(MergeCommand& options) {
+Verdict run_merge(MergeCommand& options) {
   const Stopwatch total;
   ConsoleProgress progress;
   watch_call(options.merge, progress);
   raise_open_files_limit(options.parts.size());
   const MergeReport report = merge(options.parts, options.output, options.merge);
-  const ResultReader result(options.output);
-  const ResultHeader& header = result.header();
-  const Verdict verdict =
-      report.was_finished ? verdict_of(result, {}) : verdict_of(report, header.float_precision);
-  const std::string sentence = verdict_text(verdict, {}, symbol_of_unit(report.length_unit),
+  const std::string sentence = verdict_text(report, {}, symbol_of_unit(report.length_unit),
                                             caveat_of(report.warnings.size()));
   spdlog::info("{}: {} {}; {}", options.output.string(),
                report.was_finished ? "is there already, of" : "merged",
@@ -79,11 +72,11 @@ bool run_merge(MergeCommand& options) {
                found_text(report.colliding_points, report.environment_points));
   if (options.json) {
     spdlog::info("{}", sentence);
-    print(text_of_json(json_of(options, report, verdict, total.seconds())));
+    print(text_of_json(json_of(options, report, total.seconds())));
   } else {
     print(sentence + "\n");
   }
-  return verdict.is_clear();
+  return report.verdict();
 }
 
 }  // namespace
@@ -105,9 +98,10 @@ void add_merge(CLI::App& program, int& exit_code) {
   command->add_flag("--resume", options->merge.resume, "Leave a result of the same parts as it is")
       ->excludes(force);
   command->add_flag("--strict", options->merge.strict,
-                    "Refuse to merge where the run of a part warned of anything (exit code 3)");
-  command->add_flag("--fail-on-collision", options->fail_on_collision,
-                    "Exit with code 1 where a point collides");
+                    "Treat warnings of the parts' runs as errors: nothing is merged (exit code 3)");
+  command->add_flag(
+      "--fail-on-collision", options->fail_on_collision,
+      "Exit with code 1 where a point collides, and 6 where the verdict is undecided");
   command->add_flag("--json", options->json, "Print one JSON object about the result");
   command->footer(
       "The result has the bytes of the run without --shard. It refuses parts of different runs,\n"
@@ -116,8 +110,8 @@ void add_merge(CLI::App& program, int& exit_code) {
       "Example: clearway merge part-*.h5 -o out.h5");
   command->callback([options, &exit_code] {
     run_stoppable(options->output, kStartsAgain, [&] {
-      const bool clear = run_merge(*options);
-      if (!clear && options->fail_on_collision) exit_code = kDiffers;
+      const Verdict verdict = run_merge(*options);
+      if (options->fail_on_collision) exit_code = exit_code_of(verdict);
     });
   });
 }

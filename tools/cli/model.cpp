@@ -18,6 +18,7 @@
 #include "cli/support/standard_output.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
+#include "io/formats/ply/ply_header.hpp"
 #include "io/formats/ply/ply_writer.hpp"
 #include "io/model/mesh_facts.hpp"
 #include "io/model/model_input.hpp"
@@ -41,16 +42,19 @@ ordered_json json_of(const Box& box) {
   return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
 }
 
-ordered_json describe_mesh(const TriangleMesh& mesh) {
-  const MeshFacts facts = facts_of(mesh);
-  return {{"triangles", mesh.triangles.size()},
+ordered_json describe_mesh(const ModelInput& input) {
+  const MeshFacts facts = facts_of(input.mesh);
+  const std::uint64_t drawn = input.remarks.segments + input.remarks.single_points;
+  return {{"triangles", input.mesh.triangles.size() - drawn},
+          {"segments", input.remarks.segments},
+          {"single_points", input.remarks.single_points},
           {"area", facts.area},
           {"watertight", facts.watertight()},
           {"edges", facts.edges},
           {"open_edges", facts.open_edges},
           {"crowded_edges", facts.crowded_edges},
           {"flipped_edges", facts.flipped_edges},
-          {"flat_triangles", facts.flat_triangles},
+          {"flat_triangles", facts.flat_triangles - drawn},
           {"parts", facts.parts}};
 }
 
@@ -67,7 +71,7 @@ ordered_json describe(const ModelInput& input) {
                    {"vertices", input.mesh.vertices.size()},
                    {"bounds", json_of(box)},
                    {"size", {box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z}}};
-  out.update(input.is_mesh() ? describe_mesh(input.mesh) : describe_points(input.mesh.vertices));
+  out.update(input.is_mesh() ? describe_mesh(input) : describe_points(input.mesh.vertices));
   return out;
 }
 
@@ -93,6 +97,8 @@ std::string facts_text(const ordered_json& facts) {
     if (facts["repeated_points"] > 0) line("repeated", count("repeated_points"));
   } else {
     line("triangles", count("triangles"));
+    if (facts["segments"] > 0) line("line segments", count("segments"));
+    if (facts["single_points"] > 0) line("single points", count("single_points"));
     if (facts["flat_triangles"] > 0) line("without area", count("flat_triangles"));
     line("area", fmt::format("{:.6g} m2", facts["area"].get<double>()));
     line("parts", count("parts"));
@@ -107,10 +113,14 @@ std::string facts_text(const ordered_json& facts) {
   return text;
 }
 
-void write_points(const std::vector<Vec3>& points, const std::filesystem::path& path) {
+void write_points(const ModelShape& model, const std::filesystem::path& path) {
   const File file = File::create(path);
-  PlyWriter writer(file, {.points = points.size()});
-  writer.write(points);
+  PlyOutput header{.points = model.points.size()};
+  if (model.spacing > 0) {
+    header.comment = std::string(kSpacingComment) + format_number(model.spacing);
+  }
+  PlyWriter writer(file, header);
+  writer.write(model.points);
   writer.finish();
 }
 
@@ -125,11 +135,11 @@ void run_model(const ModelCommand& options) {
   std::vector<Message> messages;
   const bool sampled = output || !input.is_mesh() || options.how.spacing > 0;
   if (sampled) {
-    const std::vector<Vec3> points = points_of(input, options.how, messages);
-    if (input.is_mesh()) facts["spacing"] = options.how.spacing;
-    facts["points"] = points.size();
+    const ModelShape model = points_of(input, options.how, messages);
+    if (model.spacing > 0) facts["spacing"] = model.spacing;
+    facts["points"] = model.points.size();
     if (output) {
-      write_points(points, output->partial());
+      write_points(model, output->partial());
       output->publish();
     }
   } else {
@@ -152,9 +162,10 @@ void add_model(CLI::App& program) {
       ->required();
   command->add_option("-o,--output", options->output, "The model's points in metres, a PLY file")
       ->type_name("FILE");
-  CLI::Option* spacing =
-      options->lengths.add(*command, "--spacing,--model-spacing", options->how.spacing,
-                           "Of a mesh: no place of its surface is farther than this from a point");
+  CLI::Option* spacing = options->lengths.add(
+      *command, "--spacing,--model-spacing", options->how.spacing,
+      "Spacing of the points on a mesh: no place of its surface is farther than this from "
+      "one");
   add_model_unit(*command, "--unit,--model-unit", options->how.unit);
   command
       ->add_flag("--vertices,--model-vertices", options->how.vertices_only,

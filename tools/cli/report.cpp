@@ -14,18 +14,17 @@
 #include "cli/commands.hpp"
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
+#include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
+#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/util/format.hpp"
-#include "core/util/message_log.hpp"
-#include "io/store/store_reader.hpp"
 #include "io/system/pending_file.hpp"
-#include "search/checks/query_warnings.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -36,6 +35,7 @@ struct ReportCommand : ConflictCommand {
   ReportOptions report;
   std::vector<ParsedLength> classes;
   bool json = false;
+  const CLI::App* command = nullptr;  ///< whose options these are
 };
 
 std::string now_in_utc() {
@@ -69,12 +69,8 @@ void note_left_out(ReportCommand& options, const std::vector<Message>& messages)
 void read_model_again(ReportCommand& options, const Result& result, Query& query) {
   std::vector<Message>& warnings = options.report.warnings;
   if (options.vehicle.empty()) {
-    ModelOptions how = with_spacing(options.model_options, result.parameters().radius);
-    how.as = model_kind_of(result);
-    ModelShape model = read_model_shape(options.model, how, &warnings);
-    query.model = std::move(model.points);
-    query.triangles = std::move(model.triangles);
-    query.solid_of = std::move(model.solid_of);
+    set_model(query, read_model_shape(options.model,
+                                      model_options_of(result, options.model_options), &warnings));
     options.report.model_triangles = query.triangles;
     options.report.model_solid_of = query.solid_of;
     return;
@@ -101,8 +97,13 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary, con
   const std::string conflicts = result.parameters().first_pose
                                     ? counted(summary.conflicts.listed.size(), "conflict")
                                     : "conflicts are not known, as the result has no first poses";
-  spdlog::info("{}: {}, {}, {}, {}", options.output.string(), summary.clear ? "clear" : "conflict",
+  spdlog::info("{}: {}, {}, {}, {}", options.output.string(), name_of(summary.verdict),
                counted(result.size(), "colliding point"), conflicts, format_size(summary.bytes));
+  if (!result.parameters().first_pose) {
+    spdlog::info(
+        "this command makes a result with conflicts:\n  {}",
+        run_again(result.reader(), *options.command, options.trajectory, Remedy::kAskForFirstPose));
+  }
   spdlog::info("open it in a browser: it is one file and needs no network");
 }
 
@@ -124,18 +125,15 @@ void run_report(ReportCommand& options) {
   const Result result(options.result);
   check_kind_of_model(result, options.model, options.vehicle);
   const Store store(options.environment);
-  const double unit = metres_of_unit(store.length_unit()).value_or(1);
-  options.lengths.convert(unit);
-  options.trajectory_options.environment_unit = unit;
-  options.model_options.environment_unit = unit;
+  if (auto warning = options.lengths.convert_for(store)) {
+    options.report.warnings.push_back(std::move(*warning));
+  }
+  set_environment_unit(store, options.trajectory_options, options.model_options);
   for (const ParsedLength& length : options.classes) {
-    options.report.classes.push_back(length.in_units_of(unit));
+    options.report.classes.push_back(length.in_units_of(store.metres_per_unit()));
   }
   options.report.conflicts = options.find;
   const Query query = read_query_again(options, result, store);
-  const MessageCallback quiet = nullptr;
-  MessageLog log(quiet, options.report.warnings);
-  warn_of_query(store.reader(), query, log);
   name_files(options);
   const ReportSummary summary =
       write_report(result, store, query.model, query.poses, options.output, options.report);
@@ -153,8 +151,7 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
   CLI::Option* model =
       command.add_option("--model", options.model, "The model that was moved")->type_name("FILE");
   add_vehicle_option(command, options.vehicle,
-                     "In the place of --model: the vehicle of several bodies that was moved",
-                     model);
+                     "Instead of --model: the vehicle of several bodies that was moved", model);
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();
@@ -165,6 +162,7 @@ void add_report_inputs(CLI::App& command, ReportCommand& options) {
 }
 
 void add_classes(CLI::App& command, ReportCommand& options) {
+  const GroupScope group(command, OptionGroup::kPage);
   command
       .add_option_function<std::vector<std::string>>(
           "--classes",
@@ -181,6 +179,7 @@ void add_classes(CLI::App& command, ReportCommand& options) {
 }
 
 void add_page_options(CLI::App& command, ReportOptions& options) {
+  const GroupScope group(command, OptionGroup::kPage);
   command.add_option("--title", options.title, "Title of the page (default: names of the files)")
       ->type_name("TEXT");
   command.add_option("--project", options.project, "Name of the project, in the head of the page")
@@ -195,7 +194,8 @@ void add_page_options(CLI::App& command, ReportOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{20'000'000}))
       ->capture_default_str();
-  command.add_flag("--force", options.overwrite, "Overwrite an existing page");
+  command.add_flag("--force", options.overwrite, "Overwrite an existing page")
+      ->group(title_of(OptionGroup::kFiles));
 }
 
 }  // namespace
@@ -215,8 +215,13 @@ void add_report(CLI::App& program) {
       "Ask the run for --first-pose, --clearance and --profile: the page shows all of them.\n"
       "Example: clearway report out.h5 --env site.h5 --model car.ply --trajectory path.txt -o "
       "report.html");
-  command->callback(
-      [options] { run_stoppable(options->output, kStartsAgain, [&] { run_report(*options); }); });
+  options->command = command;
+  command->callback([options] {
+    run_stoppable(options->output, kStartsAgain, [&] {
+      advising_to_run_again(*options->command, {{options->result, options->trajectory}},
+                            [&] { run_report(*options); });
+    });
+  });
 }
 
 }  // namespace clearway::tool

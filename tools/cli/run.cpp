@@ -3,9 +3,11 @@
 #include <stdlib.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "clearway/clearway.hpp"
 #include "cli/commands.hpp"
@@ -14,6 +16,7 @@
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/exit_code.hpp"
+#include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/support/signals.hpp"
@@ -23,6 +26,7 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
 #include "core/query/ignored_text.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/system/pending_file.hpp"
@@ -33,12 +37,6 @@ namespace {
 
 constexpr const char* kHowToResume =
     "the same command with --resume, without --force, continues from the finished work";
-
-/// What the result says, for people.
-struct Answer {
-  Verdict verdict;
-  PoseLabels labels;
-};
 
 /// Beside what the library reports.
 struct ProgramReport {
@@ -51,6 +49,7 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"inputs", program.inputs_seconds},
           {"context", search.context},
           {"context_wait", search.context_wait},
+          {"ignored", search.ignored},
           {"thin", search.thin},
           {"plan", search.plan},
           {"field", search.field},
@@ -97,7 +96,7 @@ nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
 
 /// Of a result that was there already no engine searched: what only a search knows is null.
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
-                               const Answer& answer, const ProgramReport& program) {
+                               const PathWords& path, const ProgramReport& program) {
   const bool searched = !report.was_finished;
   const bool vehicle = !options.vehicle.empty();
   nlohmann::ordered_json out =
@@ -118,7 +117,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["colliding_points"] = report.colliding_points;
   out["clearance_points"] = report.clearance_points;
   out["profile_poses"] = report.profile_poses;
-  add_verdict(answer.verdict, answer.labels, out);
+  add_answer(report, path, out);
   out["ignored"]["looked_at"] = known(searched, report.ignored_looked_at);
   out["shard_share"] = nullptr;
   if (report.shard_share) out["shard_share"] = *report.shard_share;
@@ -182,13 +181,6 @@ Store open_environment(const std::filesystem::path& path) {
   }
 }
 
-Verdict find_verdict(const SearchReport& report, const Query& query, const RunOptions& options) {
-  if (report.was_finished) {
-    return verdict_of(ResultReader(options.output, Parts::kAccepted), query.poses);
-  }
-  return verdict_of(report, query, options.search);
-}
-
 /// Without --json the result itself is the answer: that nobody reads the sentence is no failure.
 void print_verdict(const std::string& sentence) {
   try {
@@ -213,8 +205,23 @@ void refuse_judging_part(const RunOptions& options) {
       "--fail-on-collision tells it of all parts");
 }
 
-/// Whether no point collides.
-bool run(RunOptions& options) {
+/// How much of the path the answer is about, where that is not all of it: bodies on pivots have no
+/// pose at its ends. unit: of lengths, "m".
+std::string searched_text(const SearchedLength& searched, const std::string& unit) {
+  if (!(searched.whole < searched.path)) return "";
+  const std::string part =
+      searched.part > 0 ? fmt::format(", some bodies on {:.2f} {} more", searched.part, unit) : "";
+  return fmt::format("; the vehicle was searched on {:.2f} of {:.2f} {} of the path{}",
+                     searched.whole, searched.path, unit, part);
+}
+
+void add_searched(const SearchedLength& searched, nlohmann::ordered_json& out) {
+  out["path_length"] = searched.path;
+  out["searched_length"] = searched.whole;
+  out["partly_searched_length"] = searched.part;
+}
+
+Verdict run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
   ConsoleProgress progress;
@@ -226,6 +233,7 @@ bool run(RunOptions& options) {
   refuse_overwriting(options.output, inputs);
   if (!options.vehicle.empty()) check_vehicle_search(options.search);
   model_options_of(options);
+  options.search.model_is_cut = options.model_options.above.has_value();
   check_search(options.query, options.output, options.search);
   options.search.end_gpus = true;
   prepare_device(options.search);
@@ -234,30 +242,32 @@ bool run(RunOptions& options) {
   check_is_trajectory(options.trajectory);
   const Store store = open_environment(options.environment);
   if (!options.search.started) options.search.started = start_devices(options.search, &store);
-  if (const auto metres = metres_of_unit(store.length_unit())) {
-    options.lengths.convert(*metres);
-    options.model_options.environment_unit = *metres;
-    options.trajectory_options.environment_unit = *metres;
+  if (auto warning = options.lengths.convert_for(store)) {
+    options.search.input_warnings.push_back(std::move(*warning));
   }
-  Answer answer;
+  set_environment_unit(store, options.model_options, options.trajectory_options);
+  PathWords path;
   const Query query =
-      in_threads(options.search.threads, [&] { return read_query(options, store, answer.labels); });
+      in_threads(options.search.threads, [&] { return read_query(options, store, path.labels); });
+  path.chainage = chainage_of(query.poses);
   ProgramReport program{.inputs_seconds = total.seconds()};
   const SearchReport report = search(store, query, options.output, options.search);
   program.total_seconds = total.seconds();
   log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
-  answer.verdict = find_verdict(report, query, options);
-  const std::string sentence =
-      verdict_text(answer.verdict, answer.labels, symbol_of_unit(store.length_unit()),
-                   caveat_of(report.warnings.size()));
+  const std::string unit = symbol_of_unit(store.length_unit());
+  const SearchedLength searched = searched_length(query.poses, query.bodies);
+  const std::string sentence = verdict_text(
+      report, path, unit, searched_text(searched, unit) + caveat_of(report.warnings.size()));
   if (options.json) {
     spdlog::info("{}", sentence);
-    print(text_of_json(json_of(report, options, answer, program)));
+    nlohmann::ordered_json json = json_of(report, options, path, program);
+    add_searched(searched, json);
+    print(text_of_json(json));
   } else {
     print_verdict(sentence);
   }
-  return !answer.verdict.is_conflict();
+  return report.verdict();
 }
 
 }  // namespace
@@ -271,20 +281,24 @@ void add_run(CLI::App& program, int& exit_code) {
       "A point collides when its distance to the model at some pose is strictly below the radius.\n"
       "A mesh is searched as its surface, other models as their points. With --between-poses the "
       "way from each pose to the next counts too.\n"
+      "--between-poses and the engines kdtree and grid search points alone, and refuse a mesh\n"
+      "unless --model-as points, --model-spacing or --model-vertices asks for points of it.\n"
       "The first pose is the first one that touches the point. With --between-poses it is the "
       "pose\n"
       "from which the first way starts that touches the point. A way includes both its ends.\n"
-      "Prints one sentence: clear or conflict, the first place, and the least distance where\n"
-      "--clearance or --profile asks for it. With --fail-on-collision the exit code is 1 where a\n"
-      "point collides.\n"
+      "Prints one sentence: clear, conflict or undecided, the first place, and the least distance\n"
+      "where --clearance or --profile asks for it. It is undecided where no point collides, but a\n"
+      "warning says that none could: nothing was scanned near the path, for example. With\n"
+      "--fail-on-collision the exit code is 1 where a point collides, and 6 where it is "
+      "undecided.\n"
       "Engine, device, threads and memory do not change the result. With --tolerance the device\n"
       "and --field-voxel do.\n"
-      "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 -o "
-      "out.h5");
+      "Example: clearway run --env site.h5 --model car.ply --trajectory path.txt --radius 0.1 "
+      "--first-pose -o out.h5");
   command->callback([options, &exit_code] {
     run_stoppable(options->output, kHowToResume, [&] {
-      const bool no_conflict = run(*options);
-      if (!no_conflict && options->fail_on_collision) exit_code = kDiffers;
+      const Verdict verdict = run(*options);
+      if (options->fail_on_collision) exit_code = exit_code_of(verdict);
     });
   });
 }

@@ -7,15 +7,18 @@
 
 #include "clearway/error.hpp"
 #include "cli/ignored/ignored_options.hpp"
+#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "io/formats/text/text_number.hpp"
+#include "io/model/model_input.hpp"
 #include "search/check_query.hpp"
 
 namespace clearway::tool {
 namespace {
 
 void add_inputs(CLI::App& command, RunOptions& options) {
+  const GroupScope group(command, OptionGroup::kInputs);
   command.add_option("--env", options.environment, "The environment: a store of clearway convert")
       ->type_name("FILE")
       ->required();
@@ -26,8 +29,9 @@ void add_inputs(CLI::App& command, RunOptions& options) {
           ->type_name("FILE");
   command
       .add_option("--vehicle", options.vehicle,
-                  "In the place of --model: a JSON file of several bodies that follow the "
+                  "Instead of --model: a JSON file of several bodies that follow the "
                   "trajectory, each in its own way; engine sweep on the CPU")
+      ->group(title_of(OptionGroup::kModel))
       ->type_name("FILE")
       ->excludes(model);
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
@@ -44,28 +48,31 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       .add_option_function<std::string>(
           "--model-as",
           [&options](const std::string& name) {
-            options.model_as = name == "solid"     ? ModelAs::kSolid
-                               : name == "surface" ? ModelAs::kSurface
-                                                   : ModelAs::kPoints;
+            options.model_options.as = name == "solid"     ? ModelAs::kSolid
+                                       : name == "surface" ? ModelAs::kSurface
+                                       : name == "points"  ? ModelAs::kPoints
+                                                           : ModelAs::kAuto;
           },
           "surface: search the triangles of a mesh as they are. solid: and what its closed parts "
-          "enclose. points: search points on its surface. (Default: surface, for what engine sweep "
-          "searches at poses)")
+          "enclose. points: search points on its surface; the answer says how far they are apart. "
+          "auto: surface for a mesh, points for other files (default)")
+      ->group(title_of(OptionGroup::kModel))
       ->type_name("KIND")
-      ->check(CLI::IsMember({"surface", "solid", "points"}));
+      ->check(CLI::IsMember({"auto", "surface", "solid", "points"}));
   add_model_options(command, options.model_options, options.lengths);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
 void add_ignored(CLI::App& command, QueryParameters& query) {
+  const GroupScope group(command, OptionGroup::kIgnored);
   command
       .add_option_function<std::vector<std::string>>(
           "--ignore-class",
           [&query](const std::vector<std::string>& lists) {
             query.ignore_classes = parse_classes(lists);
           },
-          "Leave points of these classes out of the search, for example 2,7 or 3-5; of a store "
-          "with classes")
+          "Leave points of these classes out of the search, for example 2,7 or 3-5; the store "
+          "has to have classes")
       ->allow_extra_args(false)
       ->type_name("N,...");
   command
@@ -81,6 +88,7 @@ void add_ignored(CLI::App& command, QueryParameters& query) {
 }
 
 void add_query(CLI::App& command, RunOptions& options) {
+  const GroupScope group(command, OptionGroup::kAsked);
   command.add_flag("--first-pose", options.query.first_pose,
                    "Also report the first pose that touches each colliding point, counted from 0");
   options.lengths.add(
@@ -133,6 +141,7 @@ void add_device(CLI::App& command, SearchOptions& options) {
 }
 
 void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& lengths) {
+  const GroupScope group(command, OptionGroup::kSpeed);
   add_choice(
       command, "--engine", options.engine,
       {Engine::kAuto, Engine::kSweep, Engine::kGrid, Engine::kKdtree},
@@ -165,6 +174,7 @@ Shard parse_shard(const std::string& text) {
 }
 
 void add_shard(CLI::App& command, SearchOptions& options) {
+  const GroupScope group(command, OptionGroup::kFiles);
   command
       .add_option_function<std::string>(
           "--shard",
@@ -182,30 +192,17 @@ void add_shard(CLI::App& command, SearchOptions& options) {
       ->type_name("I/N");
 }
 
-/// Whether points were asked for, or what only points have.
-bool asks_for_points(const RunOptions& options) {
-  const SearchOptions& search = options.search;
-  return options.model_options.spacing > 0 || options.model_options.vertices_only ||
-         options.query.between_poses || search.engine == Engine::kGrid ||
-         search.engine == Engine::kKdtree || search.float_precision || search.grid_cell > 0;
-}
-
 }  // namespace
 
 ModelOptions model_options_of(const RunOptions& options) {
   ModelOptions how = options.model_options;
-  how.as = options.model_as.value_or(asks_for_points(options) ? ModelAs::kPoints
-                                                              : ModelAs::kSurfaceOfMesh);
+  check_model_options(how);
   if (how.as == ModelAs::kSolid) check_solid(options.query);
   if (how.as == ModelAs::kSurface || how.as == ModelAs::kSolid) {
-    if (how.spacing > 0 || how.vertices_only) {
-      throw UsageError(
-          "a surface is searched as it is: --model-spacing and --model-vertices are of points",
-          Remedy::kModelPoints);
-    }
     check_surface(options.query, options.search);
   }
-  return with_spacing(how, options.query.radius);
+  how.radius = options.query.radius;
+  return how;
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
@@ -225,13 +222,14 @@ void add_run_options(CLI::App& command, RunOptions& options) {
           "--journal-interval", options.search.journal_interval_seconds,
           "Seconds between two syncs of the journal to the disk; a system crash can cost that much "
           "work")
+      ->group(title_of(OptionGroup::kFiles))
       ->type_name("SECONDS")
       ->check(seconds_up_to(3600))
       ->capture_default_str();
   command.add_flag("--strict", options.search.strict,
-                   "Refuse to search where anything is warned of (exit code 3)");
+                   "Treat warnings as errors: nothing is searched (exit code 3)");
   command.add_flag("--fail-on-collision", options.fail_on_collision,
-                   "Exit with code 1 where a point collides");
+                   "Exit with code 1 where a point collides, and 6 where the verdict is undecided");
   command.add_flag("--json", options.json, "Print one JSON object about the run");
 }
 

@@ -20,15 +20,13 @@ struct RunOptions {
   QueryParameters query;
   SearchOptions search;
   ModelOptions model_options;
-  std::optional<ModelAs> model_as;
   TrajectoryOptions trajectory_options;
   LengthOptions lengths;
   bool fail_on_collision = false;
   bool json = false;
 };
 
-/// How the model of a run is read: a mesh as its surface, unless the command asks for points or for
-/// what only points can be asked about. Throws UsageError for options that contradict each other.
+/// How the model of a run is read. Throws UsageError for options that contradict each other.
 ModelOptions model_options_of(const RunOptions& options);
 
 /// `options` outlive the command.

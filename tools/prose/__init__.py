@@ -1,1 +1,1 @@
-"""What tools/check_prose.py knows of Markdown and of help texts."""
+"""What tools/check_prose.py knows of Markdown, of help texts, of codes and of terms."""

@@ -8,8 +8,6 @@ REFERENCE = re.compile(r"^ {0,3}\[[^\]]+\]:\s*<?(\S+?)>?(\s|$)")
 FENCE = re.compile(r"^\s*(```+|~~~+)\s*(\w*)")
 HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*#*$")
 LIST_ITEM = re.compile(r"^\s*([-*+]|\d+[.)])\s+")
-SENTENCE_END = re.compile(r"[.!?][\"')\]]*(?=\s+[\"'(\[]*[A-Z0-9`])")
-NO_END = re.compile(r"(\b(e\.g|i\.e|etc|vs|cf|Fig|No|St)|\b[A-Z])\.$")
 
 
 class Block:
@@ -64,29 +62,6 @@ def _block_of(number, line, in_list):
     if REFERENCE.match(line):
         return Block("reference", number, line)
     return Block("prose", number, LIST_ITEM.sub("", line).lstrip("> "))
-
-
-def plain(text):
-    """Prose without markup: a code span is one word, a link its text. Line breaks stay."""
-    text = CODE_SPAN.sub(lambda span: "`code`" + "\n" * span[2].count("\n"), text)
-    text = LINK.sub(lambda link: link[1], LINK.sub(lambda link: link[1], text))
-    return re.sub(r"<https?://[^>]*>", "`code`", text).replace("*", "")
-
-
-def sentences(text, line):
-    """Yields (line, sentence) of plain prose that starts in `line`."""
-    start = 0
-    for end in [match.end() for match in SENTENCE_END.finditer(text)] + [len(text)]:
-        if end < len(text) and NO_END.search(text[start:end]):
-            continue
-        lead = len(text[start:end]) - len(text[start:end].lstrip())
-        if text[start:end].strip():
-            yield line + text.count("\n", 0, start + lead), " ".join(text[start:end].split())
-        start = end
-
-
-def count_words(sentence):
-    return sum(1 for word in sentence.split() if re.search(r"\w", word))
 
 
 def link_targets(block):

@@ -5,13 +5,15 @@ import subprocess
 from pathlib import Path
 
 OPTION = re.compile(r"(?<![\w-])--[a-z][\w-]*")
-SECTION = re.compile(r"^(Positionals|Options|Subcommands):$")
+TITLE = re.compile(r"^([A-Z][a-z][\w ]*):$")
+NOT_OPTIONS = {"Positionals", "Subcommands"}  # sections; every other one is a group of options
 
 
 class Program:
     def __init__(self, path):
         self.name = Path(path).name
         self.options = {}  # of each command, named by its words: "clearway run"
+        self.subcommands = {}  # of each command: the names of those below it
         self.prose = []  # (where, text)
         self.entries = {}  # of each command: (section, name with its value, text)
         self.rest = {}  # of each command the lines outside the sections; an empty one for the usage
@@ -27,8 +29,10 @@ class Program:
         self._add_paragraphs(f"{command} --help", rest)
         entries = [(section, name.split()[0], text) for section, name, text in entries]
         self.prose += [(f"{command} --help, {name}", text) for _, name, text in entries]
-        self.options[command] = {option for section, name, _ in entries if section == "Options"
-                                 for option in OPTION.findall(name)}
+        self.options[command] = {option for section, name, _ in entries
+                                 if section not in NOT_OPTIONS for option in OPTION.findall(name)}
+        self.subcommands[command] = [name for section, name, _ in entries
+                                     if section == "Subcommands"]
         for section, name, _ in entries:
             if section == "Subcommands":
                 self._read(path, [*words, name])
@@ -37,8 +41,9 @@ class Program:
     def _split(lines):
         """The entries [section, name, text] of all sections, and the lines outside them."""
         section, entries, rest = "", [], []
-        for line in lines:
-            if title := SECTION.match(line):
+        for line, following in zip(lines, [*lines[1:], ""]):
+            title = TITLE.match(line)
+            if title and (title[1] in NOT_OPTIONS or following.startswith("  -")):
                 section = title[1]
             elif line.startswith("Usage:"):
                 rest.append("")

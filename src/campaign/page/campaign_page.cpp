@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <map>
 #include <utility>
 
+#include "campaign/outcome.hpp"
 #include "campaign/page/campaign_style.hpp"
 #include "campaign/page/page_cell.hpp"
 #include "campaign/task_list.hpp"
@@ -32,10 +34,6 @@ std::string html_text(const std::string& text) {
   return out;
 }
 
-std::size_t cells_of(const std::vector<TaskLook>& looks, CellKind kind) {
-  return static_cast<std::size_t>(std::ranges::count(looks, kind, kind_of));
-}
-
 /// The names that the tasks have, in the order of the first ones.
 template <typename Name>
 std::vector<std::string> names_in(const Plan& plan, const Name& name) {
@@ -50,7 +48,11 @@ std::vector<std::string> names_in(const Plan& plan, const Name& name) {
 class CampaignPage {
  public:
   CampaignPage(const Plan& plan, const std::vector<TaskLook>& looks, const std::string& date)
-      : plan_(plan), looks_(looks), date_(date), routes_(names_in(plan, &Task::route)) {
+      : plan_(plan),
+        looks_(looks),
+        date_(date),
+        counts_(looks),
+        routes_(names_in(plan, &Task::route)) {
     for (std::size_t i = 0; i < plan.tasks.size(); ++i) {
       const Task& task = plan.tasks[i];
       at_[{task.vehicle, task.route, task.radius}] = i;
@@ -63,6 +65,8 @@ class CampaignPage {
     summary();
     const auto radii = names_in(plan_, &Task::radius);
     for (const std::string& radius : radii) table(radius);
+    warnings();
+    ignored();
     failures();
     unfinished();
     text_ += "</main>\n<script type=\"application/json\" id=\"facts\">" + facts_text() +
@@ -83,39 +87,56 @@ class CampaignPage {
   }
 
   void summary() {
-    const std::size_t unknown =
-        cells_of(looks_, CellKind::kFailed) + cells_of(looks_, CellKind::kUnfinished);
-    text_ += "<section aria-label=\"Summary\">\n<p class=\"answer\">" + answer(unknown) +
+    text_ += "<section aria-label=\"Summary\">\n<p class=\"answer\">" + answer() +
              "</p>\n<ul class=\"legend\">\n";
-    for (const CellKind kind : kCellKinds) {
-      const CellLook& look = look_of(kind);
-      text_ += std::string("<li class=\"") + look.name + "\"><b>" +
-               format_count(cells_of(looks_, kind)) +
-               R"(</b> <span class="sign" aria-hidden="true">)" + look.sign + "</span> " +
-               look.words + "</li>\n";
+    for (const Outcome outcome : kOutcomes) {
+      const OutcomeWords& words = words_of(outcome);
+      text_ += std::string("<li class=\"") + words.name + "\"><b>" +
+               format_count(counts_.of(outcome)) +
+               R"(</b> <span class="sign" aria-hidden="true">)" + words.sign + "</span> " +
+               words.words + "</li>\n";
     }
     text_ +=
         "</ul>\n<p class='note'>A cell of the tables below gives the verdict and the least "
-        "distance "
-        "that is known. It links to the report of its run.</p>\n</section>\n";
+        "distance that is known. It links to the report of its run.</p>\n</section>\n";
   }
 
-  std::string answer(std::size_t unknown) const {
+  /// One sentence in which every run is counted once, and one on what the verdicts leave out.
+  std::string answer() const {
     const std::size_t all = looks_.size();
-    const std::size_t conflicts = cells_of(looks_, CellKind::kConflict);
-    const std::string of = " of " + format_count(all) + (all == 1 ? " run " : " runs ");
-    std::string text = conflicts > 0 ? format_count(conflicts) + of +
-                                           (conflicts == 1 ? "finds" : "find") + " a conflict."
-                       : unknown == 0 ? "No run finds a conflict."
-                                      : "No conflict so far.";
-    if (unknown > 0) {
-      text += " " + format_count(unknown) + of + (unknown == 1 ? "has" : "have") + " no result.";
+    std::vector<std::string> parts;
+    const auto add = [&](Outcome outcome, const char* one, const char* several) {
+      const std::size_t count = counts_.of(outcome);
+      if (count > 0) parts.push_back(format_count(count) + " " + (count == 1 ? one : several));
+    };
+    add(Outcome::kConflict, "finds a conflict", "find a conflict");
+    add(Outcome::kUndecided, "is undecided", "are undecided");
+    add(Outcome::kDoubtful, "is clear with warnings", "are clear with warnings");
+    add(Outcome::kClear, "is clear", "are clear");
+    add(Outcome::kFailed, "has failed", "have failed");
+    add(Outcome::kUnfinished, "is not done", "are not done");
+    std::string text = "Of " + counted(all, "run") + " ";
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
     }
-    const std::size_t doubtful = cells_of(looks_, CellKind::kDoubtful);
-    if (doubtful > 0)
-      text +=
-          " " + format_count(doubtful) + (doubtful == 1 ? " is" : " are") + " clear with warnings.";
+    text += ".";
+    if (const std::size_t runs = runs_that_ignore(); runs > 0) {
+      text += " In " + counted(runs, "run") + " points were left out of the search.";
+    }
     return text;
+  }
+
+  const ordered_json* facts_of(std::size_t index) const {
+    const TaskLook& look = looks_[index];
+    return look.status == TaskStatus::kDone ? &look.state->facts : nullptr;
+  }
+
+  std::size_t runs_that_ignore() const {
+    std::size_t runs = 0;
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      if (facts_of(i) != nullptr && !ignored_words(*facts_of(i)).empty()) ++runs;
+    }
+    return runs;
   }
 
   void table(const std::string& radius) {
@@ -149,7 +170,7 @@ class CampaignPage {
   void cell(std::size_t index) {
     const Task& task = plan_.tasks[index];
     const TaskLook& look = looks_[index];
-    const CellLook& kind = look_of(kind_of(look));
+    const OutcomeWords& kind = words_of(outcome_of(look));
     const std::string link = cell_link(task, look), distance = cell_distance(task, look);
     text_ += std::string("<td class=\"") + kind.name + "\" title=\"" +
              html_text(task.vehicle + " on " + task.route + ": " + cell_details(task, look)) +
@@ -158,29 +179,106 @@ class CampaignPage {
     text_ += std::string(R"(<span class="sign" aria-hidden="true">)") + kind.sign +
              R"(</span> <span class="word">)" + cell_word(look) + "</span>";
     if (!distance.empty()) text_ += "<br><b>" + distance + "</b>";
+    if (look.status == TaskStatus::kDone) text_ += cell_caveats(look.state->facts);
     text_ += link.empty() ? "</td>" : "</a></td>";
   }
 
-  void failures() {
-    if (cells_of(looks_, CellKind::kFailed) == 0) return;
-    text_ +=
-        "<section>\n<h2>Failed</h2>\n<table class=\"list\">\n<thead><tr><th scope=\"col\">task</th>"
-        "<th scope=\"col\">run</th><th scope=\"col\">what happened</th></tr></thead>\n<tbody>\n";
-    for (std::size_t i = 0; i < looks_.size(); ++i) {
-      const Task& task = plan_.tasks[i];
-      const TaskLook& look = looks_[i];
-      if (kind_of(look) != CellKind::kFailed) continue;
-      text_ += "<tr><td>" + std::to_string(task.number) + "</td><td><a href=\"" +
-               cell_link(task, look) + "\">" + html_text(task.name()) + "</a></td><td>" +
-               html_text(cell_details(task, look)) + "</td></tr>\n";
+  /// The numbers alone; the sections below the tables have the words.
+  static std::string cell_caveats(const ordered_json& facts) {
+    std::string text;
+    if (const std::size_t warnings = facts["warnings"].size(); warnings > 0) {
+      text = counted(warnings, "warning");
     }
-    text_ += "</tbody>\n</table>\n</section>\n";
+    if (!ignored_words(facts).empty()) {
+      const auto points = facts["ignored"]["points"].get<std::uint64_t>();
+      text += (text.empty() ? "" : ", ") + format_count(points) + " ignored";
+    }
+    if (!is_exact(facts)) text += (text.empty() ? "" : ", ") + std::string("not exact");
+    return text.empty() ? "" : "<small>" + text + "</small>";
+  }
+
+  /// "truck/north/0.1, ...", with links, the first ones of many.
+  std::string run_links(const std::vector<std::size_t>& runs) const {
+    constexpr std::size_t kMost = 12;
+    std::string text;
+    for (std::size_t i = 0; i < runs.size() && i < kMost; ++i) {
+      const Task& task = plan_.tasks[runs[i]];
+      text += (i == 0 ? "" : ", ") + ("<a href=\"" + cell_link(task, looks_[runs[i]]) + "\">") +
+              html_text(task.name()) + "</a>";
+    }
+    if (runs.size() > kMost) text += " and " + format_count(runs.size() - kMost) + " more";
+    return text;
+  }
+
+  void begin_list(const char* title, std::initializer_list<const char*> columns) {
+    text_ += std::string("<section>\n<h2>") + title +
+             "</h2>\n<div class=\"scroll\">\n<table class=\"list\">\n<thead><tr>";
+    for (const char* column : columns) {
+      text_ += std::string("<th scope=\"col\">") + column + "</th>";
+    }
+    text_ += "</tr></thead>\n<tbody>\n";
+  }
+  void add_row(std::initializer_list<std::string> cells) {
+    text_ += "<tr>";
+    for (const std::string& cell : cells) text_ += "<td>" + cell + "</td>";
+    text_ += "</tr>\n";
+  }
+  void end_list() { text_ += "</tbody>\n</table>\n</div>\n</section>\n"; }
+
+  /// Each cause once, with what the first run says of it.
+  void warnings() {
+    std::map<std::string, std::vector<std::size_t>> runs_of;
+    std::map<std::string, std::string> first_text;
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      if (facts_of(i) == nullptr) continue;
+      const ordered_json& codes = (*facts_of(i))["warnings"];
+      const ordered_json texts = facts_of(i)->value("warning_texts", ordered_json::array());
+      for (std::size_t k = 0; k < codes.size(); ++k) {
+        const auto code = codes[k].get<std::string>();
+        std::vector<std::size_t>& runs = runs_of[code];
+        if (runs.empty() && k < texts.size()) first_text[code] = texts[k].get<std::string>();
+        if (runs.empty() || runs.back() != i) runs.push_back(i);
+      }
+    }
+    if (runs_of.empty()) return;
+    begin_list("Warnings", {"runs", "warning", "what the first of them says", "in"});
+    for (const auto& [code, runs] : runs_of) {
+      add_row({format_count(runs.size()), html_text(code), html_text(first_text[code]),
+               run_links(runs)});
+    }
+    end_list();
+  }
+
+  void ignored() {
+    std::map<std::string, std::vector<std::size_t>> runs_of;
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      if (facts_of(i) == nullptr) continue;
+      const std::string words = ignored_words(*facts_of(i));
+      if (!words.empty()) runs_of[words].push_back(i);
+    }
+    if (runs_of.empty()) return;
+    begin_list("Left out of the search", {"runs", "points", "in"});
+    for (const auto& [words, runs] : runs_of) {
+      add_row({format_count(runs.size()), words, run_links(runs)});
+    }
+    end_list();
+  }
+
+  void failures() {
+    if (counts_.of(Outcome::kFailed) == 0) return;
+    begin_list("Failed", {"task", "run", "what happened"});
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      if (outcome_of(looks_[i]) != Outcome::kFailed) continue;
+      add_row({std::to_string(plan_.tasks[i].number), run_links({i}),
+               html_text(cell_details(plan_.tasks[i], looks_[i]))});
+    }
+    end_list();
   }
 
   void unfinished() {
     TaskList tasks;
     for (std::size_t i = 0; i < looks_.size(); ++i) {
-      if (kind_of(looks_[i]) == CellKind::kUnfinished) tasks.push_back(plan_.tasks[i].number);
+      if (outcome_of(looks_[i]) == Outcome::kUnfinished) tasks.push_back(plan_.tasks[i].number);
     }
     if (tasks.empty()) return;
     text_ += "<section>\n<h2>Not done</h2>\n<p>Tasks " + task_list_text(tasks) +
@@ -201,6 +299,7 @@ class CampaignPage {
   const Plan& plan_;
   const std::vector<TaskLook>& looks_;
   const std::string& date_;
+  const OutcomeCounts counts_;
   std::vector<std::string> routes_;
   std::map<std::array<std::string, 3>, std::size_t> at_;
   std::map<std::string, std::string> environment_of_;
@@ -209,29 +308,10 @@ class CampaignPage {
 
 }  // namespace
 
-RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks) {
-  RunLooks runs{{plan.name, {}}, {}};
-  std::optional<TaskLook> failed;  // of the shards before their run
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    if (plan.tasks[i].shard) {
-      if (looks[i].status == TaskStatus::kFailed && !failed) {
-        failed = looks[i];
-        failed->shard = plan.tasks[i].shard->number;
-      }
-      continue;
-    }
-    const bool done = looks[i].status == TaskStatus::kDone;
-    runs.plan.tasks.push_back(plan.tasks[i]);
-    runs.looks.push_back(failed && !done ? *failed : looks[i]);
-    failed.reset();
-  }
-  return runs;
-}
-
 ordered_json page_facts(const Plan& plan, const std::vector<TaskLook>& looks,
                         const std::string& date) {
   ordered_json out{{"campaign", plan.name}, {"date", date}, {"tasks", plan.tasks.size()}};
-  for (const CellKind kind : kCellKinds) out[look_of(kind).name] = cells_of(looks, kind);
+  out.update(OutcomeCounts(looks).json());
   out["runs"] = ordered_json::array();
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const Task& task = plan.tasks[i];
@@ -243,6 +323,7 @@ ordered_json page_facts(const Plan& plan, const std::vector<TaskLook>& looks,
                      {"radius", task.radius},
                      {"unit", task.unit},
                      {"status", name_of(look.status)},
+                     {"outcome", words_of(outcome_of(look)).name},
                      {"page", cell_link(task, look)}};
     if (look.status == TaskStatus::kDone) run.update(look.state->facts);
     if (look.status == TaskStatus::kFailed) {

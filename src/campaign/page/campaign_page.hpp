@@ -3,20 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "campaign/plan.hpp"
-#include "campaign/task_state.hpp"
+#include "campaign/outcome.hpp"
 
 namespace clearway::campaign {
 
-/// The tasks of a plan that are runs, not shards, and how they look: a run one of whose shards
-/// failed has failed.
-struct RunLooks {
-  Plan plan;
-  std::vector<TaskLook> looks;
-};
-RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks);
-
-/// Everything that the page says, as one JSON object. Of run_looks(), as page_text().
+/// Everything that the page says, as one JSON object. Takes what run_looks() gives, as
+/// page_text() does.
 nlohmann::ordered_json page_facts(const Plan& plan, const std::vector<TaskLook>& looks,
                                   const std::string& date);
 

@@ -24,6 +24,7 @@ h2 { font-size: 1.15rem; margin: 0 0 0.5rem; }
 .sign { display: inline-block; width: 1.1em; text-align: center; font-weight: 700; }
 .conflict { --back: #fbdccf; --front: #8a2404; --edge: #b4330a; }
 .doubtful { --back: #fff3cd; --front: #6b4700; --edge: #a16207; }
+.undecided { --back: #e9e3f8; --front: #4a2a8a; --edge: #7c5cc4; }
 .clear { --back: #e3f4ef; --front: #005645; --edge: #9fd3c4; }
 .failed { --back: #3f4652; --front: #fff; --edge: #111827; }
 .not_done { --back: #fff; --front: #4b5563; --edge: #9ca3af; }
@@ -43,13 +44,15 @@ table { border-collapse: separate; border-spacing: 3px; font-variant-numeric: ta
 .matrix td > a, .matrix td:not(:has(a)) { padding: 0.3rem 0.5rem; }
 .matrix td > a { display: block; color: inherit; text-decoration: none; }
 .matrix td > a:hover .word, .matrix td > a:focus .word { text-decoration: underline; }
+.matrix td small { padding-left: 1.7em; color: inherit; white-space: nowrap; }
 .matrix td b { font-weight: 600; padding-left: 1.4em; white-space: nowrap; }
 .list { border-spacing: 0; width: 100%; }
 .list th { text-align: left; background: #e5e9ef; padding: 0.2rem 0.5rem; }
 .list td { padding: 0.2rem 0.5rem; border-top: 1px solid #e5e7eb; vertical-align: top;
   overflow-wrap: anywhere; }
 .list td:first-child { width: 4rem; }
-.list td:nth-child(2) { width: 30%; }
+.list td:nth-child(2) { width: 22%; }
+.list a { color: var(--focus); }
 @page { size: A4 landscape; margin: 12mm; }
 @media print {
   :root { font-size: 8.5pt; }

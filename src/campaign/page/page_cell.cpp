@@ -27,63 +27,38 @@ std::string link_text(const std::string& path) {
   return link;
 }
 
-std::string warnings_text(const ordered_json& facts) {
-  std::string text;
-  for (const auto& code : facts["warnings"]) {
-    text += (text.empty() ? "; warned of " : ", ") + code.get<std::string>();
-  }
-  return text;
-}
-
 }  // namespace
 
-const CellLook& look_of(CellKind kind) {
-  static constexpr std::array<CellLook, 5> kLooks{
-      {{"conflict", "■", "conflict: a point is closer than the radius"},
-       {"doubtful", "△", "clear, but something was warned of: read the report"},
-       {"clear", "○", "clear: no point is closer than the radius"},
-       {"failed", "✕", "failed: nothing is known"},
-       {"not_done", "…", "not done yet: nothing is known"}}};
-  return kLooks.at(static_cast<std::size_t>(kind));
-}
-
-CellKind kind_of(const TaskLook& look) {
-  if (look.status == TaskStatus::kFailed) return CellKind::kFailed;
-  if (look.status != TaskStatus::kDone) return CellKind::kUnfinished;
-  const ordered_json& facts = look.state->facts;
-  if (facts["verdict"] != "clear") return CellKind::kConflict;
-  return facts["warnings"].empty() ? CellKind::kClear : CellKind::kDoubtful;
-}
-
 std::string cell_word(const TaskLook& look) {
-  switch (kind_of(look)) {
-    case CellKind::kConflict:
-      return "conflict";
-    case CellKind::kDoubtful:
+  const Outcome outcome = outcome_of(look);
+  switch (outcome) {
+    case Outcome::kDoubtful:
       return "clear?";
-    case CellKind::kClear:
-      return "clear";
-    case CellKind::kFailed:
+    case Outcome::kFailed:
       return "failed (" + std::to_string(look.state->exit_code) + ")";
-    default:
+    case Outcome::kUnfinished:
       return name_of(look.status);
+    default:
+      return words_of(outcome).word;
   }
 }
 
 std::string cell_distance(const Task& task, const TaskLook& look) {
-  if (look.status != TaskStatus::kDone) return "";
+  const Outcome outcome = outcome_of(look);
+  if (look.status != TaskStatus::kDone || outcome == Outcome::kUndecided) return "";
   const ordered_json& facts = look.state->facts;
   const ordered_json& least = facts["least"];
   if (!least.is_null()) {
     const auto distance = least["distance"].get<double>();
     const std::string length = format_brief(std::abs(distance)) + " " + task.unit;
-    return distance < 0 ? length + " deep inside" : length;
+    return length.starts_with("0 ") || distance >= 0 ? length : length + " deep inside";
   }
   const auto radius = task.question["radius"].get<double>();
   const double asked = std::max(
       {radius, task.question["clearance"].get<double>(), task.question["profile"].get<double>()});
-  const bool clear = facts["verdict"] == "clear";
-  return (clear ? "≥ " + format_number(asked) : "< " + format_number(radius)) + " " + task.unit;
+  return (outcome != Outcome::kConflict ? "≥ " + format_number(asked)
+                                        : "< " + format_number(radius)) +
+         " " + task.unit;
 }
 
 std::string cell_details(const Task& task, const TaskLook& look) {
@@ -93,13 +68,14 @@ std::string cell_details(const Task& task, const TaskLook& look) {
   }
   if (look.status != TaskStatus::kDone) return name_of(look.status);
   const ordered_json& facts = look.state->facts;
-  std::string text =
-      facts["verdict"].get<std::string>() + ", least distance " + cell_distance(task, look);
+  std::string text = words_of(outcome_of(look)).word;
+  const std::string distance = cell_distance(task, look), caveats = caveats_of(facts);
+  if (!distance.empty()) text += ", least distance " + distance;
   const auto points = facts["colliding_points"].get<std::uint64_t>();
   if (points > 0) {
-    text += ", " + format_count(points) + (points == 1 ? " colliding point" : " colliding points");
+    text += ", " + counted(points, "colliding point");
   }
-  return text + warnings_text(facts);
+  return text + (caveats.empty() ? "" : "; " + caveats);
 }
 
 std::string cell_link(const Task& task, const TaskLook& look) {

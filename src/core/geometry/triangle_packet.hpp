@@ -20,13 +20,16 @@ struct TrianglePacket {
   double foot[kMost];       ///< of the height, as a share of ab
   double per_ab[kMost];     ///< 1 / the squared length, which may be infinite
   double per_ac[kMost], per_bc[kMost], per_height[kMost];
-  double tilt[kMost];          ///< square metres, see from_hull()
+  double squared_edge[kMost];  ///< of the longest edge, and a little that keeps off underflow
   std::uint32_t index[kMost];  ///< of the triangle in the model's tree
   std::uint32_t count;
 
   /// Of the squares of a distance and of a triangle's longest edge: how much a plane across the way
   /// between both is off because the way is not quite the shortest.
   static constexpr double kTilt = 0x1p-21;
+
+  /// Products of lengths in from_hull() round by less than this share of the squared lengths.
+  static constexpr double kRounding = 32 * kUnitRoundoff;
 
   /// What is nearest of a triangle to a place.
   struct Nearest {
@@ -52,7 +55,7 @@ struct TrianglePacket {
     per_ac[i] = 1 / ac2;
     per_bc[i] = 1 / bc2;
     per_height[i] = 1 / rounded_dot(over, over);
-    tilt[i] = kTilt * greater_of(greater_of(ab2, ac2), bc2) + 1e-280;
+    squared_edge[i] = greater_of(greater_of(ab2, ac2), bc2) + 1e-260;
     index[i] = of;
   }
 
@@ -69,7 +72,7 @@ struct TrianglePacket {
     per_ac[i] = other.per_ac[from];
     per_bc[i] = other.per_bc[from];
     per_height[i] = other.per_height[from];
-    tilt[i] = other.tilt[from];
+    squared_edge[i] = other.squared_edge[from];
     index[i] = other.index[from];
   }
 
@@ -101,12 +104,29 @@ struct TrianglePacket {
   }
 
   /// At most the square of the distance from the triangle to every place of some hull, of which x
-  /// is one. along: at most 0, and at most the product of the way and any place of the hull as seen
-  /// from x, less its rounding. A plane across the way, where it starts, has the triangle behind
-  /// it.
-  CLEARWAY_HD double from_hull(std::uint32_t i, const Nearest& from_x, double along) const {
-    const double above = from_x.squared * (1 - kTilt) + along - tilt[i];
-    return above > 0 ? above / from_x.squared * above : 0;
+  /// is one. It is measured along `across`, which may be any direction; the bound is close where it
+  /// is the shortest way from the triangle to the hull. along: at most 0, and at most the product
+  /// of `across` and any place of the hull as seen from x, less its rounding
+  /// (docs/design/numerics.md, "Triangles", hulls).
+  CLEARWAY_IN_CLONE CLEARWAY_HD double from_hull(std::uint32_t i, const Vec3& x,
+                                                 double squared_from_x, const Vec3& across,
+                                                 double along) const {
+    const Vec3 from_a{x.x - a[0][i], x.y - a[1][i], x.z - a[2][i]};
+    const double to_b = across.x * ab[0][i] + across.y * ab[1][i] + across.z * ab[2][i];
+    const double to_c = across.x * ac[0][i] + across.y * ac[1][i] + across.z * ac[2][i];
+    const double later = to_b > to_c ? to_b : to_c;
+    const double farthest = later > 0 ? later : 0;
+    const double length = dot(across, across);
+    const double rounded = kRounding * (squared_from_x + squared_edge[i] + length);
+    const double above = dot(across, from_a) - farthest + along - rounded;
+    return above > 0 ? above / length * above : 0;
+  }
+
+  /// The same across the way from the triangle's nearest place to x itself. It costs less and is
+  /// less close, unless x is the nearest place of the hull. along: of that way.
+  CLEARWAY_HD double from_nearest_hull(std::uint32_t i, double squared_from_x, double along) const {
+    const double above = squared_from_x * (1 - kTilt) + along - kTilt * squared_edge[i];
+    return above > 0 ? above / squared_from_x * above : 0;
   }
 
   CLEARWAY_HD static double dot(const Vec3& a, const Vec3& b) {

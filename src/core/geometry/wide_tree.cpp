@@ -1,6 +1,7 @@
 #include "core/geometry/wide_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "core/geometry/point_box.hpp"
@@ -42,7 +43,68 @@ PointPacket packet_of(std::span<const Vec3> points, const Vec3* /*first*/) {
   return packet;
 }
 
+/// The area vectors of triangles, each turned to the side of the others' sum: which way a piece of
+/// a surface faces, whatever the order of its corners.
+struct Facing {
+  Vec3 sum{};
+  double area = 0;
+
+  void add(const Facing& other) {
+    const double side = rounded_dot(sum, other.sum) < 0 ? -1 : 1;
+    for (int k = 0; k < 3; ++k) sum[k] += side * other.sum[k];
+    area += other.area;
+  }
+};
+
+Facing facing_of(const Triangle& t) {
+  const Vec3 ab = difference(t.b, t.a), ac = difference(t.c, t.a);
+  const Vec3 sum{ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x};
+  return {sum, std::sqrt(squared_length(sum.x, sum.y, sum.z))};
+}
+
+Facing facing_of(std::span<const Triangle> triangles) {
+  Facing facing;
+  for (const Triangle& t : triangles) facing.add(facing_of(t));
+  return facing;
+}
+
+Facing facing_of(std::span<const Vec3> /*points*/) { return {}; }
+
+/// A slab says no more than the box of triangles that share no direction: their area vectors then
+/// add up to less than this share of their areas.
+constexpr double kLeastShared = 0.5;
+
 }  // namespace
+
+/// What a node's child holds.
+template <typename Element>
+struct WideTreeOf<Element>::Part {
+  std::span<const Element> elements;
+  Box box;
+  Facing facing;
+
+  explicit Part(std::span<const Element> of)
+      : elements(of), box(box_of(of)), facing(facing_of(of)) {}
+
+  /// next: the part behind this one.
+  void add(const Part& next) {
+    elements = {elements.data(), elements.size() + next.elements.size()};
+    facing.add(next.facing);
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], next.box.lo[k]);
+      box.hi[k] = std::max(box.hi[k], next.box.hi[k]);
+    }
+  }
+};
+
+CLEARWAY_SIMD_CLONES
+void WideBoxes::to_slabs_in_vectors(const Node& node, const Slabs& slabs, const HullTarget& from,
+                                    float* squared) {
+  const HullTarget hull = from;
+  float out[kWidth];
+  to_slabs_one_by_one(node, slabs, hull, out);
+  std::copy(out, out + kWidth, squared);
+}
 
 CLEARWAY_SIMD_CLONES
 void WideBoxes::to_boxes_in_vectors(const Node& node, const Target& from, float* squared) {
@@ -57,36 +119,67 @@ WideTreeOf<Element>::WideTreeOf(const ModelTreeOf<Element>& model) {
   int depth = 0;
   while ((std::uint64_t{PacketOf<Element>::kMost} << depth) < tree.size) ++depth;
   origin_ = centre_of(model.box());
-  std::vector<std::vector<Box>> boxes(1);
+  std::vector<std::vector<Part>> levels(1);
   for (std::uint32_t part = 0; part < std::uint32_t{1} << depth; ++part) {
     const std::span<const Element> of = part_of(elements, part, depth);
     packets_.push_back(packet_of(of, tree.elements));
-    boxes[0].push_back(box_of(of));
+    levels[0].emplace_back(of);
   }
-  while (boxes.back().size() > 1) {
-    std::vector<Box> above;
-    for (std::size_t i = 0; i < boxes.back().size(); ++i) {
-      const Box& box = boxes.back()[i];
-      if (i % kWidth == 0) above.push_back(box);
-      for (int k = 0; k < 3; ++k) {
-        above.back().lo[k] = std::min(above.back().lo[k], box.lo[k]);
-        above.back().hi[k] = std::max(above.back().hi[k], box.hi[k]);
-      }
+  while (levels.back().size() > 1) {
+    std::vector<Part> above;
+    for (std::size_t i = 0; i < levels.back().size(); ++i) {
+      const Part& part = levels.back()[i];
+      i % kWidth == 0 ? above.push_back(part) : above.back().add(part);
     }
-    boxes.push_back(std::move(above));
+    levels.push_back(std::move(above));
   }
-  for (std::size_t level = boxes.size(); level-- > 1;) add_level(boxes[level - 1]);
+  for (std::size_t level = levels.size(); level-- > 1;) add_level(levels[level - 1]);
 }
 
 template <typename Element>
-void WideTreeOf<Element>::add_level(const std::vector<Box>& children) {
+void WideTreeOf<Element>::add_level(const std::vector<Part>& children) {
   first_.push_back(static_cast<std::uint32_t>(nodes_.size()));
   for (std::size_t i = 0; i < children.size(); ++i) {
-    if (i % kWidth == 0) nodes_.emplace_back();
+    const std::size_t child = i % kWidth;
+    if (child == 0) nodes_.emplace_back();
     for (int k = 0; k < 3; ++k) {
-      nodes_.back().lo[k][i % kWidth] = WideBoxes::below(children[i].lo[k] - origin_[k]);
-      nodes_.back().hi[k][i % kWidth] = WideBoxes::above(children[i].hi[k] - origin_[k]);
+      nodes_.back().lo[k][child] = WideBoxes::below(children[i].box.lo[k] - origin_[k]);
+      nodes_.back().hi[k][child] = WideBoxes::above(children[i].box.hi[k] - origin_[k]);
     }
+    if constexpr (kIsTriangle<Element>) {
+      if (child == 0) slabs_.emplace_back();
+      add_slab(child, children[i]);
+    }
+  }
+}
+
+/// Across the mean direction of the triangles, where they share one.
+template <typename Element>
+void WideTreeOf<Element>::add_slab(std::size_t child, const Part& part) {
+  WideBoxes::Slabs& slabs = slabs_.back();
+  const Vec3& sum = part.facing.sum;
+  const double length = std::sqrt(squared_length(sum.x, sum.y, sum.z));
+  if (!(length > 0 && length >= kLeastShared * part.facing.area && length < kInfinity)) return;
+  for (int k = 0; k < 3; ++k) {
+    slabs.normal[k][child] = static_cast<float>(sum[k] / length * WideBoxes::kShorter);
+  }
+  if constexpr (kIsTriangle<Element>) {
+    double lo = kInfinity, hi = -kInfinity;
+    for (const Element& t : part.elements) {
+      for (const Vec3* corner : {&t.a, &t.b, &t.c}) {
+        double along = 0, size = 0;
+        for (int k = 0; k < 3; ++k) {
+          const double at = (*corner)[k] - origin_[k];
+          along += static_cast<double>(slabs.normal[k][child]) * at;
+          size += std::abs(at);
+        }
+        const double rounding = 16 * kUnitRoundoff * size;
+        lo = std::min(lo, along - rounding);
+        hi = std::max(hi, along + rounding);
+      }
+    }
+    slabs.lo[child] = WideBoxes::below(lo);
+    slabs.hi[child] = WideBoxes::above(hi);
   }
 }
 
@@ -94,6 +187,7 @@ template <typename Element>
 WideTreeRefOf<Element> WideTreeOf<Element>::ref() const {
   Ref ref{};
   ref.nodes = nodes_.data();
+  ref.slabs = slabs_.data();
   ref.packets = packets_.data();
   ref.origin = origin_;
   ref.node_count = static_cast<std::uint32_t>(nodes_.size());

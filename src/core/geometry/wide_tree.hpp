@@ -23,13 +23,18 @@ class WideTreeOf {
 
   std::uint64_t allocated_bytes() const {
     return nodes_.capacity() * sizeof(WideBoxes::Node) +
+           slabs_.capacity() * sizeof(WideBoxes::Slabs) +
            packets_.capacity() * sizeof(PacketOf<Element>);
   }
 
  private:
-  void add_level(const std::vector<Box>& children);
+  struct Part;
+
+  void add_level(const std::vector<Part>& children);
+  void add_slab(std::size_t child, const Part& part);
 
   std::vector<WideBoxes::Node> nodes_;
+  std::vector<WideBoxes::Slabs> slabs_;  ///< a node, of triangles
   std::vector<PacketOf<Element>> packets_;
   std::vector<std::uint32_t> first_;  ///< node of each level
   Vec3 origin_{};

@@ -24,7 +24,16 @@ struct PointPacket {
 template <typename Element>
 using PacketOf = std::conditional_t<kIsTriangle<Element>, TrianglePacket, PointPacket>;
 
-/// Eight boxes in floats, and the squared distances to them.
+/// Places whose distances to elements are asked for: all between three corners, and so within a
+/// box.
+struct PlaceHull {
+  Box box;
+  Vec3 corner[3];
+};
+
+/// Eight boxes in floats, and the squared distances to them. A box of triangles that face alike has
+/// a slab too: two planes that they lie between. Beside a surface that is not parallel to an axis a
+/// slab is far closer to it than the box (docs/design/numerics.md, "Clearance", slabs).
 struct WideBoxes {
   static constexpr std::uint32_t kWidth = 8;
 
@@ -33,9 +42,26 @@ struct WideBoxes {
     float lo[3][kWidth], hi[3][kWidth];
   };
 
+  /// The slabs of a node's children: relative to the origin, normal.x is from lo to hi for every
+  /// place x of a child, rounded outwards. A normal is no longer than 1, and 0 where there is no
+  /// slab.
+  struct Slabs {
+    float normal[3][kWidth];
+    float lo[kWidth], hi[kWidth];
+  };
+
   /// A box relative to the origin, rounded outwards.
   struct Target {
     float lo[3], hi[3];
+  };
+
+  /// A hull relative to the origin.
+  struct HullTarget {
+    Target box;
+    float corner[3][3];  ///< by corner
+    float way[3];        ///< from the first corner to the second one, no longer than 1
+    float along[3];      ///< the way's product with each corner
+    float rounding;      ///< metres, of a product of a corner and a direction
   };
 
   static constexpr float kLeastFloat = 0x1p-126F;  ///< that keeps all its digits
@@ -58,6 +84,29 @@ struct WideBoxes {
     return target;
   }
 
+  CLEARWAY_HD static HullTarget target(const PlaceHull& hull, const Vec3& origin) {
+    HullTarget target{};
+    target.box = WideBoxes::target(hull.box, origin);
+    for (int i = 0; i < 3; ++i) {
+      float size = 0;
+      for (int k = 0; k < 3; ++k) {
+        const auto at = static_cast<float>(hull.corner[i][k] - origin[k]);
+        target.corner[i][k] = at;
+        size += at < 0 ? -at : at;
+      }
+      const float rounding = size * 0x1p-19F + 4 * kLeastFloat;
+      // Also where it is no number: then no comparison dismisses.
+      if (!(rounding <= target.rounding)) target.rounding = rounding;
+    }
+    const Vec3 way = difference(hull.corner[1], hull.corner[0]);
+    const double length = std::sqrt(squared_length(way.x, way.y, way.z));
+    if (length > 1e-30 && length < 1e30) {
+      for (int k = 0; k < 3; ++k) target.way[k] = static_cast<float>(way[k] / length * kShorter);
+    }
+    for (int i = 0; i < 3; ++i) target.along[i] = product(target.way, target.corner[i]);
+    return target;
+  }
+
   CLEARWAY_HD static void to_boxes(const Node& node, const Target& from, float* squared) {
 #ifdef __CUDA_ARCH__
     to_boxes_one_by_one(node, from, squared);
@@ -68,8 +117,9 @@ struct WideBoxes {
 
   /// Squared distances, at most the true ones: a difference, a square and two sums round by 2^-24
   /// each, and by less than above() adds where a square is too small for that.
-  CLEARWAY_HD static void to_boxes_one_by_one(const Node& node, const Target& from,
-                                              float* squared) {
+  CLEARWAY_IN_CLONE CLEARWAY_HD static void to_boxes_one_by_one(const Node& node,
+                                                                const Target& from,
+                                                                float* squared) {
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       const float x = gap(node.lo[0][i], node.hi[0][i], from.lo[0], from.hi[0]);
       const float y = gap(node.lo[1][i], node.hi[1][i], from.lo[1], from.hi[1]);
@@ -82,7 +132,78 @@ struct WideBoxes {
   /// The same in vectors of the processor.
   static void to_boxes_in_vectors(const Node& node, const Target& from, float* squared);
 
-  CLEARWAY_HD static float gap(float lo, float hi, float from_lo, float from_hi) {
+  /// Squared distances, at most the true ones, by boxes and slabs.
+  CLEARWAY_HD static void to_slabs(const Node& node, const Slabs& slabs, const HullTarget& from,
+                                   float* squared) {
+#ifdef __CUDA_ARCH__
+    to_slabs_one_by_one(node, slabs, from, squared);
+#else
+    to_slabs_in_vectors(node, slabs, from, squared);
+#endif
+  }
+
+  CLEARWAY_IN_CLONE CLEARWAY_HD static void to_slabs_one_by_one(const Node& node,
+                                                                const Slabs& slabs,
+                                                                const HullTarget& from,
+                                                                float* squared) {
+    to_boxes_one_by_one(node, from.box, squared);
+    float by_slab[kWidth];
+    for (std::uint32_t i = 0; i < kWidth; ++i) by_slab[i] = to_slab(node, slabs, from, i);
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      squared[i] = by_slab[i] > squared[i] ? by_slab[i] : squared[i];
+    }
+  }
+
+  /// The same in vectors of the processor.
+  static void to_slabs_in_vectors(const Node& node, const Slabs& slabs, const HullTarget& from,
+                                  float* squared);
+
+  /// A child's part of a product, and how large it can be: over all places of its box.
+  struct Range {
+    float lo, hi, size;
+  };
+
+  CLEARWAY_IN_CLONE CLEARWAY_HD static Range range(float factor, float lo, float hi) {
+    const float one = factor * lo, other = factor * hi;
+    const float one_size = one < 0 ? -one : one, other_size = other < 0 ? -other : other;
+    return {one < other ? one : other, one < other ? other : one, one_size + other_size};
+  }
+
+  /// The slab is looked at across the way: the part of its normal along the way is taken out, for a
+  /// plane that the way is not quite parallel to comes near it somewhere in its extension.
+  CLEARWAY_IN_CLONE CLEARWAY_HD static float to_slab(const Node& node, const Slabs& slabs,
+                                                     const HullTarget& from, std::uint32_t i) {
+    const float x = slabs.normal[0][i], y = slabs.normal[1][i], z = slabs.normal[2][i];
+    const float tilt = x * from.way[0] + y * from.way[1] + z * from.way[2];
+    const Range of_x = range(from.way[0], node.lo[0][i], node.hi[0][i]);
+    const Range of_y = range(from.way[1], node.lo[1][i], node.hi[1][i]);
+    const Range of_z = range(from.way[2], node.lo[2][i], node.hi[2][i]);
+    const Range box = range(tilt, of_x.lo + of_y.lo + of_z.lo, of_x.hi + of_y.hi + of_z.hi);
+    const auto across = [&](const float(&corner)[3], float along) {
+      return x * corner[0] + y * corner[1] + z * corner[2] - tilt * along;
+    };
+    const float a = across(from.corner[0], from.along[0]);
+    const float b = across(from.corner[1], from.along[1]);
+    const float c = across(from.corner[2], from.along[2]);
+    const float low_ab = a < b ? a : b, high_ab = a < b ? b : a;
+    const float lo = low_ab < c ? low_ab : c, hi = high_ab < c ? c : high_ab;
+    const float tilt_size = tilt < 0 ? -tilt : tilt;
+    const float rounding =
+        from.rounding + tilt_size * (of_x.size + of_y.size + of_z.size) * 0x1p-20F;
+    const float beside = gap(slabs.lo[i] - box.hi, slabs.hi[i] - box.lo, lo, hi) - rounding;
+    const float beyond = beside > 0 ? beside : 0;
+    const float square = beyond * beyond * (1 - 0x1p-20F);
+    return square <= kMostFloat ? square : 0;
+  }
+
+  /// Shortens a unit vector of floats to a length of at most 1.
+  static constexpr double kShorter = 1 - 0x1p-20;
+
+  CLEARWAY_HD static float product(const float (&a)[3], const float (&b)[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+
+  CLEARWAY_IN_CLONE CLEARWAY_HD static float gap(float lo, float hi, float from_lo, float from_hi) {
     const float beyond = lo - from_hi, before = from_lo - hi;
     const float larger = beyond > before ? beyond : before;
     return larger > 0 ? larger : 0;
@@ -97,7 +218,11 @@ struct WideTreeRefOf : WideBoxes {
   static constexpr std::uint32_t kMostLevels = 10;  ///< 2^32 elements are 2^29 packets at most
   static constexpr std::uint32_t kMostOpen = kMostLevels * (kWidth - 1) + 2;
 
-  const Node* nodes;  ///< level after level, the root first
+  /// Of points the box of the places says all; triangles make use of their hull.
+  using Places = std::conditional_t<kIsTriangle<Element>, PlaceHull, Box>;
+
+  const Node* nodes;   ///< level after level, the root first
+  const Slabs* slabs;  ///< likewise; of triangles on the host only
   const Packet* packets;
   Vec3 origin;
   std::uint32_t node_count;
@@ -106,14 +231,14 @@ struct WideTreeRefOf : WideBoxes {
   std::uint32_t first[kMostLevels];  ///< node of a level
 
   /// Visits every element whose squared distance is at most within(), and perhaps others, nearer
-  /// boxes first, until visit(packet, number in it) is true; whether it was. box: no place that
+  /// boxes first, until visit(packet, number in it) is true; whether it was. places: none that
   /// distances are measured from is outside. to_elements(packet, out): a squared distance for each
   /// element of a packet. A comparison that is not possible visits.
   template <typename Within, typename ToElements, typename Visit>
-  CLEARWAY_HD bool any_nearest_first(const Box& box, Within within, ToElements to_elements,
+  CLEARWAY_HD bool any_nearest_first(const Places& places, Within within, ToElements to_elements,
                                      Visit visit) const {
     if (packet_count == 0) return false;
-    const Target from = target(box, origin);
+    const auto from = target_of(places);
     Open open[kMostOpen];
     std::uint32_t count = 0;
     open[count++] = {0, 0, 0};
@@ -131,7 +256,8 @@ struct WideTreeRefOf : WideBoxes {
         continue;
       }
       float squared[kWidth];
-      to_boxes(nodes[first[next.level] + next.index], from, squared);
+      const std::uint32_t node = first[next.level] + next.index;
+      to_children(node, from, squared);
       const std::uint32_t width = children(next.level);
       const std::uint32_t begin = count;
       for (std::uint32_t i = 0; i < width; ++i) {
@@ -150,6 +276,22 @@ struct WideTreeRefOf : WideBoxes {
     std::uint32_t index;  ///< within the level
     std::uint32_t level;
   };
+
+  // A lane of a GPU works through a node's children one by one. Slabs cost it more than they spare
+  // (measured), so there the boxes say all.
+#ifdef __CUDA_ARCH__
+  CLEARWAY_HD Target target_of(const Box& box) const { return target(box, origin); }
+  CLEARWAY_HD Target target_of(const PlaceHull& hull) const { return target(hull.box, origin); }
+#else
+  CLEARWAY_HD auto target_of(const Places& places) const { return target(places, origin); }
+#endif
+
+  CLEARWAY_HD void to_children(std::uint32_t node, const Target& from, float* squared) const {
+    to_boxes(nodes[node], from, squared);
+  }
+  CLEARWAY_HD void to_children(std::uint32_t node, const HullTarget& from, float* squared) const {
+    to_slabs(nodes[node], slabs[node], from, squared);
+  }
 
   /// Only the root may have fewer.
   CLEARWAY_HD std::uint32_t children(std::uint32_t level) const {

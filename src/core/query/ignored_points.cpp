@@ -96,8 +96,11 @@ void sort_ignored(QueryParameters& query) {
   keep_one(query.ignore_boxes);
 }
 
-IgnoredPoints::IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query)
-    : cloud_(cloud), any_(query.ignores_points()), by_class_(!query.ignore_classes.empty()) {
+IgnoredPoints::IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query, Search search)
+    : cloud_(cloud),
+      search_(search),
+      any_(query.ignores_points()),
+      by_class_(!query.ignore_classes.empty()) {
   for (const std::uint8_t value : query.ignore_classes) is_ignored_[value] = 1;
   for (const Box& box : query.ignore_boxes) {
     if (const auto quanta = quanta_in(cloud.quantisation(), box)) boxes_.push_back(*quanta);
@@ -133,6 +136,14 @@ void IgnoredPoints::set_all(std::uint32_t cell, std::span<std::uint64_t> searche
   std::fill_n(searched.begin(), whole, ~std::uint64_t{0});
   if (count % kBlockPoints != 0) {
     searched[whole] = ~std::uint64_t{0} >> (kBlockPoints - count % kBlockPoints);
+  }
+}
+
+void IgnoredPoints::invert(std::uint32_t cell, std::span<std::uint64_t> searched) const {
+  std::vector<std::uint64_t> all(searched.size());
+  set_all(cell, all);
+  for (std::size_t block = 0; block < searched.size(); ++block) {
+    searched[block] = all[block] & ~searched[block];
   }
 }
 

@@ -25,11 +25,20 @@ void sort_ignored(QueryParameters& query);
 /// Which points of a cloud a query leaves out of the search (docs/design/ignored.md).
 class IgnoredPoints {
  public:
+  /// What is to be searched: all points but the ignored ones, or the ignored ones alone.
+  enum class Search { kOthers, kIgnored };
+
   /// The cloud outlives it. Without classes, all points have class 0.
-  IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query);
+  IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query,
+                Search search = Search::kOthers);
 
   /// Whether the query leaves anything out.
   bool any() const { return any_; }
+
+  /// Whether none of the cell's points is to be searched, as far as boxes alone tell.
+  bool skips(std::uint32_t cell) const {
+    return search_ == Search::kOthers ? holds(cell) : !touches(cell);
+  }
 
   /// Whether a point of the cell may be ignored.
   bool touches(std::uint32_t cell) const;
@@ -39,7 +48,7 @@ class IgnoredPoints {
 
   /// searched: a word for each block of the cell; bit i is set where point i is to be searched.
   /// coordinates(): the cell's packed x, y and z, asked for where they are needed. Returns how many
-  /// points are ignored. Thread safe. Throws InputError where the cell is damaged.
+  /// points are not to be searched. Thread safe. Throws InputError where the cell is damaged.
   template <typename Coordinates>
   std::uint32_t mask(std::uint32_t cell, std::span<std::uint64_t> searched,
                      const Coordinates& coordinates) const {
@@ -56,6 +65,7 @@ class IgnoredPoints {
           leave_out_box(cell, box, coordinates(), searched);
       }
     }
+    if (search_ == Search::kIgnored) invert(cell, searched);
     return cloud_.cells()[cell].count - count(searched);
   }
 
@@ -71,12 +81,14 @@ class IgnoredPoints {
 
   static Place place_of(const QuantumBox& ignored, const QuantumBox& points);
   void set_all(std::uint32_t cell, std::span<std::uint64_t> searched) const;
+  void invert(std::uint32_t cell, std::span<std::uint64_t> searched) const;
   void leave_out_classes(std::uint32_t cell, std::span<std::uint64_t> searched) const;
   void leave_out_box(std::uint32_t cell, const QuantumBox& box,
                      const std::array<PackedChunk<std::int32_t>, 3>& coordinates,
                      std::span<std::uint64_t> searched) const;
 
   const PackedCloud& cloud_;
+  const Search search_;
   bool any_, by_class_;
   std::array<std::uint8_t, 256> is_ignored_{};  ///< 1 for an ignored class
   std::vector<QuantumBox> boxes_;

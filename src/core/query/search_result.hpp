@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/query/clearance_set.hpp"
 #include "core/query/hit_set.hpp"
+#include "core/query/last_poses.hpp"
 #include "core/query/profile_set.hpp"
 
 namespace clearway {
@@ -15,6 +17,7 @@ struct SearchResult {
   ProfileSet profile = {};  ///< without poses unless asked for
   /// Of the cells that were searched, those of a journal not included.
   std::uint64_t ignored_points = 0;
+  std::optional<LastPoses> last_poses = {};  ///< where first poses were asked for, once searched
 };
 
 }  // namespace clearway

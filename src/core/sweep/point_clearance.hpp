@@ -122,7 +122,7 @@ class PointClearance {
   /// How far from a curve, which is wrong by at most `error`, a model point can lie that is the
   /// nearest at one of its poses.
   CLEARWAY_HD double ball(double least, double error) const {
-    return ((reach_ + 2 * sweep_.rounding) / least + error) * kRoundedUp;
+    return sweep_.ball_around_curve(reach_, least, error);
   }
 
   /// One search of the model for all poses of a node; false where its curve is not close enough.
@@ -170,7 +170,7 @@ class PointClearance {
     ++statistics_.exact_tests;
     double squared = squared_ball(least, error);
     sweep_.wide.any_nearest_first(
-        curve.box(), [&] { return squared; },
+        curve.hull(), [&] { return squared; },
         [&](const TrianglePacket& packet, double(&out)[TrianglePacket::kMost]) {
           curve.to_triangles(packet, out);
         },
@@ -189,25 +189,13 @@ class PointClearance {
   CLEARWAY_HD void search_poses(const MotionNode& node, const TrianglePacket& packet,
                                 std::uint32_t i, const TriangleCurve& curve, double least,
                                 double error) {
-    constexpr std::uint32_t kMost = TriangleCurve::kMostPlaces;
     const StoredElement<Element>& t = sweep_.model.elements[packet.index[i]];
-    const double per_last = 1.0 / (node.count - 1);
-    const double guess = curve.place(packet, i) * (node.count - 1) + 0.5;
-    const auto nearest = static_cast<std::uint32_t>(guess);
-    offer(node.first + nearest, t);
-    const std::uint32_t length = node.count > kMost * kMost ? (node.count - 1) / kMost + 1 : kMost;
-    double from_part[kMost];
-    curve.from_parts(packet, i, length, per_last, from_part);
-    for (std::uint32_t part = 0; part < kMost && part * length < node.count; ++part) {
-      if (from_part[part] > squared_ball(least, error)) continue;
-      const std::uint32_t begin = part * length, left = node.count - begin;
-      double from_pose[kMost];
-      for (std::uint32_t k = 0; k < (length < left ? length : left); ++k) {
-        if (k % kMost == 0) curve.from_places(packet, i, begin + k, per_last, from_pose);
-        const bool is_open = !(from_pose[k % kMost] > squared_ball(least, error));
-        if (is_open && begin + k != nearest) offer(node.first + begin + k, t);
-      }
-    }
+    curve.any_place(
+        packet, i, node.count, [&] { return squared_ball(least, error); },
+        [&](std::uint32_t k) {
+          offer(node.first + k, t);
+          return false;
+        });
   }
 
   CLEARWAY_HD double squared_ball(double least, double error) const {

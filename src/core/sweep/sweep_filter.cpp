@@ -27,6 +27,23 @@ double rounding_of(const Query& query, const MotionTree& motion, const ModelFiel
 /// width sqrt(8 d x) open, so d x is kept below this many squared spacings (measured).
 constexpr double kOpenArea = 1;
 
+/// A triangle may be longer than what is asked for: a curve is of use where it is straight beside
+/// this share of the clearance, too.
+constexpr double kSpacingOfClearance = 0.25;
+
+template <typename Element>
+double spacing_of(const ModelTreeOf<Element>& model, double clearance) {
+  if (!kIsTriangle<Element> || !(clearance > 0)) return model.spacing();
+  return std::min(model.spacing(), kSpacingOfClearance * clearance);
+}
+
+/// A point of a block that took more tests than these grazes the model: its neighbours are searched
+/// in runs of poses (measured).
+constexpr std::uint64_t kGrazingTests = 128;
+
+/// An exact test takes as long as so many others.
+constexpr std::uint64_t kTestsOfExact = 4;
+
 }  // namespace
 
 template <typename Element>
@@ -45,13 +62,15 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
            .resolved_from = query.radius,
            .clearance = query.clearance,
            .profile = query.profile,
-           .open_area = kOpenArea * model.spacing() * model.spacing(),
+           .open_area =
+               kOpenArea * spacing_of(model, query.clearance) * spacing_of(model, query.clearance),
            .rounding = rounding_of(query, motion, field, cloud),
            .first_pose = query.first_pose,
-           .between_poses = query.between_poses} {
+           .between_poses = query.between_poses},
+      runs_(motion, model, ref_) {
   if (query.clearance > 0) {
     curves_ = MotionCurves(motion, model.box(), query.clearance * kRoundedUp + ref_.rounding,
-                           model.spacing(), threads);
+                           spacing_of(model, query.clearance), threads);
     ref_.motion.curves = curves_.data();
     wide_ = WideTreeOf<StoredElement<Element>>(model);
     ref_.wide = wide_.ref();
@@ -198,6 +217,57 @@ void SweepFilterOf<Element>::first_pose_below(const Vec3& e, std::uint32_t index
     ++statistics.exact_tests;
     if (ref_.collides_at(e, node)) best = node.first;
   }
+}
+
+template <typename Element>
+bool SweepFilterOf<Element>::join_runs(const SweepStatistics& of_point,
+                                       std::span<const std::uint32_t> nodes,
+                                       std::vector<std::uint32_t>& runs) const {
+  const std::uint64_t tests = of_point.point_tests + kTestsOfExact * of_point.exact_tests;
+  if (tests <= kGrazingTests || !runs_.prepare()) return false;
+  runs.assign(nodes.begin(), nodes.end());
+  runs_.join(runs);
+  return true;
+}
+
+template <typename Element>
+bool SweepFilterOf<Element>::touches_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
+                                          SweepStatistics& statistics) const {
+  using Answer = typename HitRuns<Element>::Answer;
+  ++statistics.points_tested;
+  for (const std::uint32_t index : nodes) {
+    const MotionNode& node = motion_.nodes()[index];
+    double squared_lower = 0;
+    const Verdict verdict = test(e, node, statistics, squared_lower);
+    if (verdict == Verdict::kHitAtMid) return true;
+    if (verdict == Verdict::kDismissed) continue;
+    std::uint32_t end = HitSet::kNever;
+    const Answer answer =
+        runs_.is_run(index) ? runs_.search(e, index, true, end, statistics) : Answer::kUnknown;
+    if (answer == Answer::kHit) return true;
+    if (answer == Answer::kUnknown && touches_below(e, index, statistics)) return true;
+  }
+  return false;
+}
+
+template <typename Element>
+std::uint32_t SweepFilterOf<Element>::first_pose_of_runs(const Vec3& e,
+                                                         std::span<const std::uint32_t> nodes,
+                                                         SweepStatistics& statistics) const {
+  using Answer = typename HitRuns<Element>::Answer;
+  ++statistics.points_tested;
+  std::uint32_t best = HitSet::kNever;
+  for (const std::uint32_t index : nodes) {
+    const MotionNode& node = motion_.nodes()[index];
+    if (node.first >= best) break;
+    const Verdict verdict = ref_.look(e, node, statistics);
+    if (verdict == Verdict::kDismissed) continue;
+    if (verdict == Verdict::kHitAtMid) best = std::min(best, node.mid);
+    const Answer answer =
+        runs_.is_run(index) ? runs_.search(e, index, false, best, statistics) : Answer::kUnknown;
+    if (answer == Answer::kUnknown) first_pose_below(e, index, best, statistics);
+  }
+  return best;
 }
 
 template class SweepFilterOf<Vec3>;

@@ -10,6 +10,7 @@
 #include "core/geometry/wide_tree.hpp"
 #include "core/page/pose_reach.hpp"
 #include "core/sweep/field/model_field.hpp"
+#include "core/sweep/hit_runs.hpp"
 #include "core/sweep/sweep_ref.hpp"
 #include "core/trajectory/motion_curves.hpp"
 #include "core/trajectory/motion_tree.hpp"
@@ -32,7 +33,7 @@ class SweepFilterOf final : public PoseReach {
   const MotionTree& motion() const override { return motion_; }
   const ModelTreeOf<StoredElement<Element>>& model() const { return model_; }
   std::uint64_t allocated_bytes() const {
-    return curves_.allocated_bytes() + wide_.allocated_bytes();
+    return curves_.allocated_bytes() + wide_.allocated_bytes() + runs_.most_bytes();
   }
 
   /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
@@ -55,6 +56,18 @@ class SweepFilterOf final : public PoseReach {
   /// poses: what narrow() left of all for a box around e.
   std::uint32_t first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
                            SweepStatistics& statistics) const;
+
+  /// Joins nodes that narrow() left for a block into runs of poses, where one of the block's points
+  /// took so many tests that its neighbours are better searched in runs. of_point: those tests.
+  /// False, and no runs, where they are few, or where runs cannot be searched, or not yet.
+  bool join_runs(const SweepStatistics& of_point, std::span<const std::uint32_t> nodes,
+                 std::vector<std::uint32_t>& runs) const;
+
+  /// As touches() and first_pose(), for nodes that join_runs() joined.
+  bool touches_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
+                    SweepStatistics& statistics) const;
+  std::uint32_t first_pose_of_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
+                                   SweepStatistics& statistics) const;
 
  private:
   struct Limits {
@@ -80,7 +93,8 @@ class SweepFilterOf final : public PoseReach {
   SweepRefOf<Element> ref_;
   MotionCurves curves_;                      ///< with a clearance
   WideTreeOf<StoredElement<Element>> wide_;  ///< likewise
-  SweepRefOf<Element> for_plan_;             ///< makes no bricks: cells are too large to need them
+  HitRuns<Element> runs_;
+  SweepRefOf<Element> for_plan_;  ///< makes no bricks: cells are too large to need them
 };
 
 using SweepFilter = SweepFilterOf<Vec3>;

@@ -27,6 +27,13 @@ struct SweepStatistics {
     points_tested += other.points_tested;
     resolved_tests += other.resolved_tests;
   }
+
+  /// What was added to an earlier one.
+  CLEARWAY_HD SweepStatistics since(const SweepStatistics& earlier) const {
+    return {node_tests - earlier.node_tests, point_tests - earlier.point_tests,
+            exact_tests - earlier.exact_tests, points_tested - earlier.points_tested,
+            resolved_tests - earlier.resolved_tests};
+  }
 };
 
 /// Environment points, known by their box.
@@ -96,6 +103,12 @@ struct SweepRefOf {
   /// nothing else is asked about it. With a tolerance the answer would depend on the box.
   CLEARWAY_HD bool accepts_boxes() const {
     return !first_pose && !(clearance > 0) && !(resolved_from < radius);
+  }
+
+  /// How far from a curve, which is wrong by at most `error` and whose poses shrink nothing by more
+  /// than `least`, an element of the model can lie that is within `reach` at one of its poses.
+  CLEARWAY_HD double ball_around_curve(double reach, double least, double error) const {
+    return ((reach + 2 * rounding) / least + error) * kRoundedUp;
   }
 
   using BoxClass = SweepBoxClass;

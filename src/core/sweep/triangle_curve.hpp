@@ -4,7 +4,7 @@
 
 #include "core/geometry/box.hpp"
 #include "core/geometry/sweep_bounds.hpp"
-#include "core/geometry/triangle_packet.hpp"
+#include "core/geometry/wide_tree_ref.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
 #include "core/util/macros.hpp"
 
@@ -30,7 +30,11 @@ class TriangleCurve {
     rounding_ = 32 * kUnitRoundoff * size;
   }
 
-  CLEARWAY_HD Box box() const { return MotionParabola::box(start_, way_, bend_); }
+  /// Of all its places.
+  CLEARWAY_HD PlaceHull hull() const {
+    return {MotionParabola::box(start_, way_, bend_),
+            {start_, beyond(start_, 1, way_), beyond(beyond(start_, 0.5, way_), 0.5, bend_)}};
+  }
 
   /// At most the squares of the distances to the triangles of a packet.
   CLEARWAY_HD void to_triangles(const TrianglePacket& packet,
@@ -61,6 +65,32 @@ class TriangleCurve {
 #endif
   }
 
+  /// Calls visit(k) for those of `count` places, number k at k / (count - 1), that may be within
+  /// the root of within() of the triangle, until it is true; whether it was. The likely nearest
+  /// comes first, whatever within() is.
+  template <typename Within, typename Visit>
+  CLEARWAY_HD bool any_place(const TrianglePacket& packet, std::uint32_t i, std::uint32_t count,
+                             Within within, Visit visit) const {
+    const double per_last = 1.0 / (count - 1);
+    const auto nearest = static_cast<std::uint32_t>(place(packet, i) * (count - 1) + 0.5);
+    if (visit(nearest)) return true;
+    constexpr std::uint32_t kMost = kMostPlaces;
+    const std::uint32_t length = count > kMost * kMost ? (count - 1) / kMost + 1 : kMost;
+    double from_part[kMost];
+    from_parts(packet, i, length, per_last, from_part);
+    for (std::uint32_t part = 0; part < kMost && part * length < count; ++part) {
+      if (from_part[part] > within()) continue;
+      const std::uint32_t begin = part * length, left = count - begin;
+      double from_pose[kMost];
+      for (std::uint32_t k = 0; k < (length < left ? length : left); ++k) {
+        if (k % kMost == 0) from_places(packet, i, begin + k, per_last, from_pose);
+        const bool is_open = !(from_pose[k % kMost] > within());
+        if (is_open && begin + k != nearest && visit(begin + k)) return true;
+      }
+    }
+    return false;
+  }
+
   /// The squares of the distances from a triangle to the places (first + k) per_last.
   CLEARWAY_HD void from_places(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
                                double per_last, double (&squared)[kMostPlaces]) const {
@@ -81,7 +111,14 @@ class TriangleCurve {
       const double t = place(packet, i);
       const Vec3 x = at(t);
       const TrianglePacket::Nearest from = packet.nearest(i, x);
-      squared[i] = packet.from_hull(i, from, along_hull(from.way, t));
+#ifdef __CUDA_ARCH__  // where the closer bound costs more than it spares (measured)
+      squared[i] = packet.from_nearest_hull(i, from.squared, along_hull(from.way, t));
+#else
+      // The way from the triangle to the place of the chord that is nearest to where it starts.
+      const double slope = TrianglePacket::dot(from.way, way_) * per_squared_way_;
+      const Vec3 across = beyond(from.way, TrianglePacket::clamped(t - slope) - t, way_);
+      squared[i] = packet.from_hull(i, x, from.squared, across, along_hull(across, t));
+#endif
     }
   }
 
@@ -100,11 +137,23 @@ class TriangleCurve {
       t[k] = (k * length + middle) * per_last;
     }
     for (std::uint32_t k = 0; k < kMostPlaces; ++k) {
-      const TrianglePacket::Nearest from = packet.nearest(i, at(t[k]));
+      const Vec3 x = at(t[k]);
+      const TrianglePacket::Nearest from = packet.nearest(i, x);
+#ifdef __CUDA_ARCH__
       const double bend = TrianglePacket::dot(from.way, bend_);
       const double slope = TrianglePacket::dot(from.way, way_) + (1 - 2 * t[k]) * bend;
       const double most = (slope < 0 ? -slope : slope) + half * (bend < 0 ? -bend : bend);
-      squared[k] = packet.from_hull(i, from, -half * most - rounding_);
+      squared[k] = packet.from_nearest_hull(i, from.squared, -half * most - rounding_);
+#else
+      const Vec3 tangent = beyond(way_, 1 - 2 * t[k], bend_);
+      const double back = -TrianglePacket::dot(from.way, tangent) * per_squared_way_;
+      const double from_low = back > -half ? back : -half;
+      const Vec3 across = beyond(from.way, from_low < half ? from_low : half, tangent);
+      const double slope = TrianglePacket::dot(across, tangent);
+      const double bend = TrianglePacket::dot(across, bend_);
+      const double most = (slope < 0 ? -slope : slope) + half * (bend < 0 ? -bend : bend);
+      squared[k] = packet.from_hull(i, x, from.squared, across, -half * most - rounding_);
+#endif
     }
   }
 
@@ -130,6 +179,10 @@ class TriangleCurve {
     const double rest = 1 - t;
     return {start_.x + t * (way_.x + rest * bend_.x), start_.y + t * (way_.y + rest * bend_.y),
             start_.z + t * (way_.z + rest * bend_.z)};
+  }
+
+  CLEARWAY_HD static Vec3 beyond(const Vec3& from, double share, const Vec3& way) {
+    return {from.x + share * way.x, from.y + share * way.y, from.z + share * way.z};
   }
 
   /// Of the chord.

@@ -1,6 +1,7 @@
 #include "core/trajectory/motion_curves.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -76,11 +77,15 @@ float rounded_up(double value) {
 
 }  // namespace
 
-MotionCurves::MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing,
-                           int threads)
-    : curves_(motion.nodes().size()) {
+MotionCurves::MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing)
+    : motion_(&motion),
+      model_(model),
+      reach_(reach),
+      spacing_(spacing),
+      curves_(motion.nodes().size()) {
   const std::span<const MotionNode> nodes = motion.nodes();
   const std::span<const Pose> poses = motion.poses();
+  const double most_motion = kMostMotion * 2 * half_diagonal(model);
   for (std::size_t at = nodes.size(); at-- > 0;) {
     const MotionNode& node = nodes[at];
     MotionCurve& curve = curves_[at];
@@ -92,28 +97,42 @@ MotionCurves::MotionCurves(const MotionTree& motion, const Box& model, double re
     const MotionCurve &earlier = curves_[at + 1], &later = curves_[node.later];
     const bool equal = earlier.is_one_place() && later.is_one_place() &&
                        poses[node.first] == poses[nodes[node.later].first];
-    curve.error = MotionCurve::kNone;
-    if (equal) curve.error = MotionCurve::kEqual;
+    const bool is_wide = node.delta > most_motion || node.delta > kMostGap * spacing * node.count;
+    curve.error = equal ? MotionCurve::kEqual : is_wide ? MotionCurve::kNone : kUnknown;
     curve.least = std::min(earlier.least, later.least);
   }
-  const double most_motion = kMostMotion * 2 * half_diagonal(model);
+}
+
+MotionCurves::MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing,
+                           int threads)
+    : MotionCurves(motion, model, reach, spacing) {
 #pragma omp parallel for schedule(dynamic, 64) num_threads(threads)
-  for (std::size_t at = 0; at < nodes.size(); ++at) {
-    const MotionNode& node = nodes[at];
-    MotionCurve& curve = curves_[at];
-    if (curve.is_one_place() || node.delta > most_motion) continue;
-    if (node.delta > kMostGap * spacing * node.count) continue;
-    const Region region = region_of(model, reach / static_cast<double>(curve.least) * kRoundedUp);
-    const MotionParabola parabola(node);
-    const double most_error = kMostError * spacing;
-    double error = 0;
-    for (std::uint32_t i = parabola.first + 1; i < parabola.last && error <= most_error; ++i) {
-      const double place = static_cast<double>(i - parabola.first) / (node.count - 1);
-      const double here = distance_from_curve(motion, parabola, place, poses[i], region);
-      if (!(here <= error)) error = here;
-    }
-    if (error <= most_error) curve.error = rounded_up(error);
+  for (std::size_t node = 0; node < curves_.size(); ++node) at(static_cast<std::uint32_t>(node));
+}
+
+/// Who comes second finds the same.
+MotionCurve MotionCurves::at(std::uint32_t node) const {
+  MotionCurve& curve = curves_[node];
+  const std::atomic_ref shared(curve.error);
+  float error = shared.load(std::memory_order_relaxed);
+  if (std::isnan(error)) {
+    error = error_of(motion_->nodes()[node], static_cast<double>(curve.least));
+    shared.store(error, std::memory_order_relaxed);
   }
+  return {error, curve.least};
+}
+
+float MotionCurves::error_of(const MotionNode& node, double least) const {
+  const Region region = region_of(model_, reach_ / least * kRoundedUp);
+  const MotionParabola parabola(node);
+  const double most_error = kMostError * spacing_;
+  double error = 0;
+  for (std::uint32_t i = parabola.first + 1; i < parabola.last && error <= most_error; ++i) {
+    const double place = static_cast<double>(i - parabola.first) / (node.count - 1);
+    const double here = distance_from_curve(*motion_, parabola, place, motion_->poses()[i], region);
+    if (!(here <= error)) error = here;
+  }
+  return error <= most_error ? rounded_up(error) : MotionCurve::kNone;
 }
 
 }  // namespace clearway

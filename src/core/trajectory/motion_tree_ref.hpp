@@ -100,18 +100,27 @@ struct MotionTreeRef {
   /// Replaces both halves of a smooth node by it, again and again; nodes in the order of the
   /// poses. How many are left.
   CLEARWAY_HD std::uint32_t join_smooth(std::uint32_t* list, std::uint32_t count) const {
+    return join(list, count, [&](std::uint32_t node) { return curves[node].is_smooth(); });
+  }
+
+  /// The same for nodes of any kind: is_whole(node) says of which.
+  template <typename IsWhole>
+  CLEARWAY_HD std::uint32_t join(std::uint32_t* list, std::uint32_t count, IsWhole is_whole) const {
     std::uint32_t left = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       list[left++] = list[i];
-      while (left > 1 && are_halves_of_smooth(list[left - 2], list[left - 1])) --list[--left - 1];
+      while (left > 1 && are_halves(list[left - 2], list[left - 1]) &&
+             is_whole(list[left - 2] - 1)) {
+        --list[--left - 1];
+      }
     }
     return left;
   }
 
  private:
-  /// Whether the halves are those of a smooth node, which is then earlier - 1.
-  CLEARWAY_HD bool are_halves_of_smooth(std::uint32_t earlier, std::uint32_t later) const {
-    return earlier > 0 && nodes[earlier - 1].later == later && curves[earlier - 1].is_smooth();
+  /// Whether they are those of one node, which is then earlier - 1.
+  CLEARWAY_HD bool are_halves(std::uint32_t earlier, std::uint32_t later) const {
+    return earlier > 0 && nodes[earlier - 1].later == later;
   }
 };
 

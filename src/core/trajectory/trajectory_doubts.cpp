@@ -42,23 +42,6 @@ double turn_of_path(std::span<const Pose> poses, double length) {
   return std::acos(std::min(1.0, least));
 }
 
-std::optional<Message> jump(const TrajectorySummary& summary, const std::string& name) {
-  constexpr double kTimesMedian = 100;
-  constexpr double kMetres = 10;
-  if (!(summary.largest_step > std::max(kMetres, kTimesMedian * summary.median_step))) {
-    return std::nullopt;
-  }
-  const auto from = summary.largest_step_pose;
-  return warning("trajectory-jump",
-                 name + ": from pose " + std::to_string(from) + " to " + std::to_string(from + 1) +
-                     " are " + number(summary.largest_step) +
-                     " m, while half of the steps are shorter than " + number(summary.median_step) +
-                     " m",
-                 {{"pose", static_cast<double>(from)},
-                  {"step", summary.largest_step},
-                  {"median_step", summary.median_step}});
-}
-
 std::optional<Message> missing_rotation(std::span<const Pose> poses, double path_turn,
                                         RotationSource source, const std::string& name) {
   constexpr double kPathTurn = 20 * kDegree;
@@ -244,7 +227,6 @@ std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource so
   if (doubts.empty() && path_turn > kTurnThatTells) {
     add(other_rotation(poses, summary.length, name));
   }
-  add(jump(summary, name));
   return doubts;
 }
 

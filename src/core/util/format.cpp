@@ -1,5 +1,6 @@
 #include "core/util/format.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -40,9 +41,20 @@ std::string format_number(double value) {
 }
 
 std::string format_brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  constexpr double kNoise = 1e-9;  // rounding errors of coordinates, in any unit of length
+  const double size = std::abs(value);
+  char text[40];
+  if (!std::isfinite(value) || size >= 1e16) {
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+  }
+  if (size < kNoise) return "0";
+  const int digits = std::max(0, 3 - static_cast<int>(std::floor(std::log10(size))));
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  std::string out = text;
+  if (digits > 0) out.erase(out.find_last_not_of('0') + 1);
+  if (out.ends_with('.')) out.pop_back();
+  return out;
 }
 
 }  // namespace clearway

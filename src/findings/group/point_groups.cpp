@@ -17,8 +17,7 @@ PointGroups number_groups(const CellGrid& grid, UnionFind& sets, std::uint64_t m
     } else if (points[cell] >= min_points) {
       out.of_cell[cell] = out.count++;
     } else {
-      out.of_cell[cell] = PointGroups::kSmall;
-      ++out.small_groups;
+      out.of_cell[cell] = PointGroups::kSmall | static_cast<std::uint32_t>(out.small_groups++);
       out.small_points += points[cell];
     }
   }

@@ -1,5 +1,6 @@
 #include "io/conflicts/conflict_summary.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -28,6 +29,24 @@ std::string warnings_json(const std::vector<Message>& warnings) {
 std::string names_json(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "" : ", ") + json_string(name);
+  return "[" + out + "]";
+}
+
+/// A file that lists millions of them helps nobody: the first ones, along the path.
+constexpr std::size_t kMostSmallGroups = 1000;
+
+std::string small_json(const std::vector<SmallGroup>& groups) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min(groups.size(), kMostSmallGroups); ++i) {
+    const SmallGroup& group = groups[i];
+    out += (i == 0 ? "" : ", ") + ("{\"points\": " + std::to_string(group.points)) +
+           ", \"source\": " + std::to_string(group.source) +
+           ", \"lo\": " + json_vector(group.box.lo) + ", \"hi\": " + json_vector(group.box.hi) +
+           ", \"first_pose\": " + std::to_string(group.first_pose) +
+           ", \"last_pose\": " + std::to_string(group.last_pose) +
+           ", \"chainage_from\": " + json_number(group.chainage_from) +
+           ", \"chainage_to\": " + json_number(group.chainage_to) + "}";
+  }
   return "[" + out + "]";
 }
 
@@ -79,6 +98,8 @@ std::string summary_json(const ConflictFile& file) {
   out.add_count("groups", conflicts.groups);
   out.add_count("small_groups", conflicts.small_groups);
   out.add_count("small_points", conflicts.small_points);
+  out.add("small", small_json(conflicts.small));
+  out.add("has_last_poses", conflicts.has_last_poses ? "true" : "false");
   out.add_length("longest_group", conflicts.longest_group);
   out.add_count("longest_group_points", conflicts.longest_group_points);
   out.add("warnings", warnings_json(file.warnings));

@@ -72,7 +72,12 @@ void write_geojson(const ConflictFile& conflicts, const File& file) {
         << feature_json(conflict, conflicts.header, "footprint", footprint_json(conflict.box));
     between = ",\n    ";
   }
-  out << (conflicts.conflicts.listed.empty() ? "]\n}\n" : "\n  ]\n}\n");
+  for (const Conflict& group : small_groups_instead(conflicts.conflicts)) {
+    out << between
+        << feature_json(group, conflicts.header, "small group", point_json(group.centroid));
+    between = ",\n    ";
+  }
+  out << (conflicts.conflicts.groups == 0 ? "]\n}\n" : "\n  ]\n}\n");
   out.flush();
 }
 

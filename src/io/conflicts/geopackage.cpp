@@ -44,6 +44,7 @@ struct Layer {
   const char* type;
   GeoShape shape;
   std::function<std::vector<Vec3>(const Conflict&)> points;
+  const std::vector<Conflict>& features;
 };
 
 std::vector<Vec3> ring_of(const Box& box) {
@@ -69,20 +70,30 @@ std::vector<Vec3> path_of(const Conflict& conflict, const std::vector<Pose>& pos
   return out;
 }
 
-std::vector<Layer> layers_of(const std::vector<Pose>& poses) {
-  return {{"conflicts", "centroids of the colliding points", "POINT", GeoShape::kPoint,
-           [](const Conflict& c) { return std::vector<Vec3>{c.centroid}; }},
-          {"footprints", "boxes of the colliding points, seen from above", "POLYGON",
-           GeoShape::kPolygon, [](const Conflict& c) { return ring_of(c.box); }},
-          {"stretches", "the path from the first pose to the last of each conflict", "LINESTRING",
-           GeoShape::kLine, [&poses](const Conflict& c) { return path_of(c, poses); }}};
+std::vector<Layer> layers_of(const ConflictFile& file, const std::vector<Conflict>& small) {
+  const std::vector<Pose>& poses = file.poses;
+  const std::vector<Conflict>& listed = file.conflicts.listed;
+  std::vector<Layer> layers{
+      {"conflicts", "centroids of the colliding points", "POINT", GeoShape::kPoint,
+       [](const Conflict& c) { return std::vector<Vec3>{c.centroid}; }, listed},
+      {"footprints", "boxes of the colliding points, seen from above", "POLYGON",
+       GeoShape::kPolygon, [](const Conflict& c) { return ring_of(c.box); }, listed},
+      {"stretches", "the path from the first pose to the last of each conflict", "LINESTRING",
+       GeoShape::kLine, [&poses](const Conflict& c) { return path_of(c, poses); }, listed}};
+  if (!small.empty()) {
+    layers.push_back({"small_groups", "groups of too few points to be listed", "POINT",
+                      GeoShape::kPoint,
+                      [](const Conflict& c) { return std::vector<Vec3>{c.centroid}; }, small});
+  }
+  return layers;
 }
 
 const char* sql_type(const FieldValue& value, std::string_view name) {
   if (std::holds_alternative<std::string_view>(value)) return "TEXT";
   if (std::holds_alternative<double>(value)) return "DOUBLE";
   const bool a_length = name == "least_distance" || name == "encroachment" || name == "lateral" ||
-                        name == "height" || name == "depth";
+                        name == "height" || name == "depth" || name == "obstacle_chainage" ||
+                        name == "shift_left" || name == "shift_right";
   return a_length ? "DOUBLE" : "INTEGER";
 }
 
@@ -143,7 +154,7 @@ void add_layer(sqlite::Database& database, const Layer& layer, const ConflictFil
                columns + ")");
   sqlite::Insert insert(database, "INSERT INTO " + table + " VALUES (" + places + ")");
   std::vector<Vec3> corners;
-  for (const Conflict& conflict : file.conflicts.listed) {
+  for (const Conflict& conflict : layer.features) {
     const std::vector<Vec3> points = layer.points(conflict);
     const Box box = box_of(points);
     corners.insert(corners.end(), {box.lo, box.hi});
@@ -164,7 +175,12 @@ void write_geopackage(const ConflictFile& conflicts, const std::filesystem::path
   database.run("BEGIN");
   database.run(kTables);
   const std::int32_t srs = add_systems(database, conflicts.header.crs_wkt);
-  for (const Layer& layer : layers_of(conflicts.poses)) {
+  std::vector<Conflict> small;
+  for (const SmallGroup& group : conflicts.conflicts.small) {
+    small.push_back(as_conflict(group));
+    small.back().id = static_cast<std::uint32_t>(small.size());
+  }
+  for (const Layer& layer : layers_of(conflicts, small)) {
     add_layer(database, layer, conflicts, srs);
   }
   database.run("COMMIT");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <future>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -154,6 +155,10 @@ class Conversion {
     CountedEnvironment counted =
         count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_);
     fill_metadata(environment, counted, others.get(hashes.finish()));
+    if (environment.unit() == LengthUnit::kUnknown && counted.points > 0) {
+      log_.note(
+          "the inputs name no unit of length, so metres are assumed; --unit names another one");
+    }
     report_.box = warn_of_inputs(environment, survey.boxes, report_.metadata, log_);
     const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
     const std::vector<TopNode> top = tree.top_nodes(options_.cell_points);
@@ -172,6 +177,7 @@ class Conversion {
     report_.temporary_bytes = distribution.temporary_bytes();
     warn_of_places(environment, places, counted.points, log_);
     if (options_.strict) refuse_warnings(report_.warnings);
+    report_.metadata.warnings = kept_warnings(report_.warnings);
     report_.distribute_seconds = watch_.lap();
     write_store(distribution, tree, top, lattice);
     return std::move(report_);
@@ -180,6 +186,7 @@ class Conversion {
  private:
   EnvironmentOptions environment_options() const {
     return {.scale = options_.scale,
+            .unit = options_.unit,
             .ignore_crs = options_.ignore_crs,
             .skip_unreadable = options_.skip_unreadable,
             .columns = options_.columns,
@@ -288,6 +295,30 @@ class Conversion {
 };
 
 }  // namespace
+
+std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
+  constexpr std::size_t kMost = 64, kMostTextBytes = 1000;
+  std::vector<Message> kept;
+  // The store's unit says that it is in feet.
+  std::ranges::remove_copy(warnings, std::back_inserter(kept), "feet", &Message::code);
+  const std::size_t all = kept.size();
+  kept.resize(std::min(all, kMost));
+  for (Message& warning : kept) {
+    if (warning.text.size() <= kMostTextBytes) continue;
+    std::size_t end = kMostTextBytes;
+    while (end > 0 && (warning.text[end] & 0xc0) == 0x80) --end;  // no cut within a letter
+    warning.text = warning.text.substr(0, end) + " ...";
+  }
+  if (all > kMost) {
+    const std::size_t more = all - kMost + 1;
+    kept.back() = {Message::Severity::kWarning,
+                   "more-warnings",
+                   "the conversion gave " + format_count(more) +
+                       " more warnings, which the store does not keep; convert again to see them",
+                   {{"warnings", static_cast<double>(more)}}};
+  }
+  return kept;
+}
 
 ConversionReport convert_scans(const ConversionOptions& options, Progress& progress) {
   check_options(options);

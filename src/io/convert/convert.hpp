@@ -18,6 +18,10 @@ struct ConversionOptions : ConvertOptions {
   std::filesystem::path output;
 };
 
+/// What a store keeps of the warnings of its conversion: at most 64, with texts of at most 1,000
+/// bytes, where the last one says how many more there were. Without "feet", which its unit says.
+std::vector<Message> kept_warnings(const std::vector<Message>& warnings);
+
 struct ConversionReport : ConvertReport {
   StoreMetadata metadata;
 };

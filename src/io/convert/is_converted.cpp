@@ -23,6 +23,11 @@ std::optional<StoreReader> store_at(const std::filesystem::path& path) {
   }
 }
 
+/// A unit is taken where the inputs name none; that of a "ft" may have been named by another input.
+bool has_wanted_unit(const FileUnit& wanted, LengthUnit found) {
+  return !wanted.is_known() || wanted.metres_in(metres_of(found)) == metres_of(found);
+}
+
 /// Whether these options would make such a store, as far as it tells with which it was made.
 bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
   const auto wanted = [&options](double scale) {
@@ -31,7 +36,8 @@ bool would_make(const ConversionOptions& options, const StoreMetadata& found) {
   return found.cell_points == options.cell_points &&
          found.layout == layout_name(options.regular_size) &&
          std::all_of(found.quantisation.scale, found.quantisation.scale + 3, wanted) &&
-         (!options.strict || found.point_count == found.input_points) &&
+         (!options.strict || found.point_count == found.input_points || !found.warnings.empty()) &&
+         has_wanted_unit(options.unit, found.unit) &&
          (options.ignore_crs ||
           (found.unit != LengthUnit::kDegrees && units_of_wkt(found.crs_wkt).trouble.empty()));
 }

@@ -7,23 +7,13 @@
 #include "clearway/result.hpp"
 #include "io/export/position_text.hpp"
 #include "io/export/row_sink.hpp"
+#include "io/formats/text/csv_cell.hpp"
 #include "io/formats/text/text_writer.hpp"
 #include "io/result/result_rows.hpp"
 #include "io/system/pending_file.hpp"
 
 namespace clearway {
 namespace {
-
-/// A field of CSV: in quotes where it needs them (RFC 4180).
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  std::string out = "\"";
-  for (const char c : field) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
-}
 
 class ProfileTable {
  public:
@@ -43,7 +33,7 @@ class ProfileTable {
     for (std::size_t i = 0; i < rows.size(); ++i, ++pose_) {
       out_ << pose_;
       if (!labels_.time.empty()) out_ << "," << labels_.time[pose_];
-      if (!labels_.name.empty()) out_ << "," << quoted(labels_.name[pose_]);
+      if (!labels_.name.empty()) out_ << "," << csv_cell(labels_.name[pose_]);
       out_ << "," << chainage_start_ + rows.chainage[i] << ",";
       if (rows.source[i] == Profile::kNoPoint) {
         out_ << ",,,,\n";

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/box.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
@@ -17,15 +18,20 @@
 
 namespace clearway {
 
-/// What a point cloud file says of itself before its points. Bounds in headers are not among it:
-/// they are never trusted.
+/// What a point cloud file says of itself before its points.
 struct CloudInfo {
   std::optional<Quantisation> quantisation;      ///< where points are stored as integers
   std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
-  std::string crs_wkt;                           ///< as found; empty where there is none
-  LengthUnit unit = LengthUnit::kUnknown;        ///< of the horizontal coordinates
+  /// Of the points, where the format declares one for all of them. It is compared with them, and
+  /// never trusted.
+  std::optional<Box> declared_box;
+  std::string crs_wkt;                     ///< as found; empty where there is none
+  LengthUnit unit = LengthUnit::kUnknown;  ///< of the horizontal coordinates
+  bool any_foot = false;         ///< the unit is a "ft", which does not say which foot it is
   std::string unit_trouble;      ///< why they cannot be taken as they are; empty where they can
+  std::string unit_doubt;        ///< what contradicts the unit; empty where nothing does
   std::uint64_t faces = 0;       ///< of a mesh, which are not read
+  double model_spacing = 0;      ///< as Query::model_spacing, where clearway model wrote the file
   bool text_table = false;       ///< whose columns can be chosen
   std::vector<Message> remarks;  ///< on the whole file; complete once read() has returned false
 };

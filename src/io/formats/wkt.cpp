@@ -139,6 +139,14 @@ CrsUnits crs_units(const StatedUnit& plane, const StatedUnit& heights) {
   if (!plane.other.empty()) return {plane.unit, "its unit is " + plane.other};
   const bool stated = heights.unit != LengthUnit::kUnknown || !heights.other.empty();
   const bool comparable = plane.unit != LengthUnit::kUnknown && plane.unit != LengthUnit::kDegrees;
+  if (stated && plane.unit == LengthUnit::kUnknown && heights.unit != LengthUnit::kMetre) {
+    return {plane.unit,
+            {},
+            "its heights are in " +
+                (heights.other.empty() ? to_string(heights.unit) : heights.other) +
+                ", and no unit of its other coordinates is named. They are taken for metres; "
+                "--unit names another unit"};
+  }
   if (!stated || !comparable || heights.unit == plane.unit) return {plane.unit, {}};
   return {plane.unit, "its heights are in " +
                           (heights.other.empty() ? to_string(heights.unit) : heights.other) +

@@ -21,6 +21,8 @@ struct CrsUnits {
   LengthUnit horizontal = LengthUnit::kUnknown;
   /// Why coordinates cannot be taken as they are, "its unit is 1000 m"; empty where they can.
   std::string trouble;
+  /// What the file says against `horizontal`, as a sentence without its end; empty: nothing.
+  std::string doubt = {};
 };
 
 /// Of a coordinate reference system in well-known text 1 or 2; unknown where the text does not say

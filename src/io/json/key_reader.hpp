@@ -1,7 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -12,21 +13,22 @@ namespace clearway {
 /// complaint throws InputError "FILE: KEY: what".
 class KeyReader {
  public:
-  /// The whole file. A key that stands twice in one object is refused, as a reader would take the
-  /// last one silently.
+  /// Reads the whole file. Refuses what parse_json() refuses.
   static KeyReader parse(const std::filesystem::path& file, const std::string& text);
 
   const std::string& key() const { return key_; }
-  const nlohmann::ordered_json& value() const { return value_; }
+  const nlohmann::ordered_json& value() const { return *value_; }
 
   /// Of an object. Refuses keys that are not among them.
   void allow(const std::vector<std::string>& known) const;
-  bool has(const std::string& name) const { return value_.is_object() && value_.contains(name); }
+  bool has(const std::string& name) const { return value().is_object() && value().contains(name); }
   /// Refuses an object that does not have it.
   KeyReader at(const std::string& name) const;
-  /// The values of an object, or of an array, in the order of the file; refuses what is neither.
+  /// The values of an object in the order of the file. Refuses what is no object, or an empty one.
   std::vector<KeyReader> members() const;
-  std::vector<KeyReader> elements() const;
+  /// The values of a list in the order of the file. Refuses what is no list, an empty list, and
+  /// one of more than `most` entries.
+  std::vector<KeyReader> elements(std::size_t most = std::numeric_limits<std::size_t>::max()) const;
   /// Last part of the key.
   const std::string& name() const { return name_; }
 
@@ -36,15 +38,20 @@ class KeyReader {
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
-  KeyReader(std::string file, std::string key, std::string name, nlohmann::ordered_json value)
+  using Document = std::shared_ptr<const nlohmann::ordered_json>;
+
+  KeyReader(std::string file, std::string key, std::string name, Document document,
+            const nlohmann::ordered_json& value)
       : file_(std::move(file)),
         key_(std::move(key)),
         name_(std::move(name)),
-        value_(std::move(value)) {}
+        document_(std::move(document)),
+        value_(&value) {}
   KeyReader below(const std::string& name, const nlohmann::ordered_json& value) const;
 
   std::string file_, key_, name_;
-  nlohmann::ordered_json value_;
+  Document document_;                    ///< the whole file, which all its readers share
+  const nlohmann::ordered_json* value_;  ///< in it
 };
 
 }  // namespace clearway

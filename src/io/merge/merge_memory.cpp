@@ -19,7 +19,7 @@ constexpr std::uint64_t kCacheBytes = std::uint64_t{1} << 20;
 constexpr std::size_t kLeastRows = 1 << 10;
 
 /// Bytes of a row of the widest table of points, and of a pose's row.
-constexpr std::uint64_t kPointBytes = 44, kPoseBytes = 56;
+constexpr std::uint64_t kPointBytes = 48, kPoseBytes = 56;
 
 std::uint64_t cached_bytes(std::uint64_t rows, std::initializer_list<std::uint64_t> value_bytes) {
   std::uint64_t bytes = 0;
@@ -31,7 +31,7 @@ std::uint64_t needed_bytes(const PartSet& set, std::size_t batch_rows) {
   std::uint64_t bytes = kFixedBytes + 4 * batch_rows * kPoseBytes;
   for (const ResultReader& part : set.parts()) {
     const std::uint64_t rows = std::max(part.collisions(), part.clearances());
-    bytes += kFileBytes + cached_bytes(part.collisions(), {8, 24, 4}) +
+    bytes += kFileBytes + cached_bytes(part.collisions(), {8, 24, 4, 4}) +
              cached_bytes(part.clearances(), {8, 24, 8, 4}) +
              cached_bytes(part.profile_rows(), {8, 8, 24, 8, 8}) +
              std::min<std::uint64_t>(batch_rows, rows) * kPointBytes;

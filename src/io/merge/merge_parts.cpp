@@ -51,20 +51,20 @@ void for_each_row(const PartSet& set, std::deque<Cursor>& cursors, Visit visit) 
 class PartMerge {
  public:
   PartMerge(const PartSet& set, const std::filesystem::path& path, std::size_t batch_rows,
-            Progress& progress)
+            Progress& progress, Answer& answer)
       : set_(set),
         batch_rows_(batch_rows),
         progress_(progress),
+        out_(answer),
         writer_(path, set.header(), set.collisions(), set.clearances()) {}
 
-  MergedResult run() {
+  void run() {
     progress_.begin("merge", set_.collisions() + set_.clearances(), "points");
     merge_collisions();
     if (set_.header().clearance > 0) merge_clearances();
     if (set_.header().profile > 0) merge_profile();
-    writer_.finish();
+    writer_.finish(set_.findings());
     progress_.end();
-    return out_;
   }
 
  private:
@@ -79,9 +79,10 @@ class PartMerge {
     auto all = cursors<RowCursor>();
     ResultRows rows;
     const auto flush = [&] {
-      writer_.append(rows.source, rows.xyz, rows.first_pose, rows.body);
+      writer_.append(rows.source, rows.xyz, rows.first_pose, rows.body, rows.last_pose);
       written(rows);
       rows.first_pose.clear();
+      rows.last_pose.clear();
     };
     for_each_row(set_, all, [&](const RowCursor& row) {
       rows.source.push_back(row.source());
@@ -93,6 +94,7 @@ class PartMerge {
         }
       }
       if (const auto body = row.body()) rows.body.push_back(*body);
+      if (set_.header().last_pose) rows.last_pose.push_back(*row.last_pose());
       if (rows.size() == kRows) flush();
     });
     flush();
@@ -183,15 +185,15 @@ class PartMerge {
   const PartSet& set_;
   const std::size_t batch_rows_;
   Progress& progress_;
-  MergedResult out_{};
+  Answer& out_;
   ResultWriter writer_;
 };
 
 }  // namespace
 
-MergedResult merge_parts(const PartSet& set, const std::filesystem::path& path,
-                         std::uint64_t memory_bytes, Progress& progress) {
-  return PartMerge(set, path, batch_rows_of(set, memory_bytes), progress).run();
+void merge_parts(const PartSet& set, const std::filesystem::path& path, std::uint64_t memory_bytes,
+                 Progress& progress, Answer& answer) {
+  PartMerge(set, path, batch_rows_of(set, memory_bytes), progress, answer).run();
 }
 
 }  // namespace clearway

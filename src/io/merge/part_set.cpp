@@ -5,6 +5,7 @@
 
 #include "clearway/error.hpp"
 #include "core/util/number_ranges.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/check/compare_results.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/open_files.hpp"
@@ -66,6 +67,7 @@ std::string difference_of(const ResultReader& part, const ResultReader& other) {
   }
   ResultHeader as_other = a;
   as_other.part = b.part;
+  as_other.last_pose = b.last_pose;
   if (as_other != b) return "answers another question than " + other.name();
   if (a.part->division != b.part->division) {
     return "divides the work otherwise than " + other.name() +
@@ -122,6 +124,12 @@ PartSet::PartSet(const std::vector<std::filesystem::path>& files) {
   refuse_missing(parts_);
   header_ = parts_.front().header();
   header_.part.reset();
+  for (const ResultReader& part : parts_) {
+    double& metres = header_.model_spacing.metres;
+    metres = std::max(metres, part.header().model_spacing.metres);
+  }
+  header_.last_pose =
+      std::ranges::all_of(parts_, [](const ResultReader& part) { return part.header().last_pose; });
 }
 
 std::vector<PartWarning> PartSet::warnings() const {
@@ -153,6 +161,36 @@ std::uint64_t PartSet::clearances() const {
   std::uint64_t rows = 0;
   for (const ResultReader& part : parts_) rows += part.clearances();
   return rows;
+}
+
+ResultFindings PartSet::findings() const {
+  std::vector<Message> warnings;
+  for (const ResultReader& part : parts_) {
+    const auto& told = part.header().part->warnings;
+    warnings.insert(warnings.end(), told.begin(), told.end());
+  }
+  ResultFindings out{.doubts = doubts_among(warnings)};
+  if (!header_.ignores_points()) return out;
+  const auto sum_of = [&](auto member) {
+    std::optional<std::uint64_t> sum = 0;
+    for (const ResultReader& part : parts_) {
+      const std::optional<std::uint64_t>& of_part = part.findings().*member;
+      if (!of_part) return std::optional<std::uint64_t>();
+      *sum += *of_part;
+    }
+    return sum;
+  };
+  out.ignored_colliding = sum_of(&ResultFindings::ignored_colliding);
+  out.ignored_colliding_high = sum_of(&ResultFindings::ignored_colliding_high);
+  return out;
+}
+
+Answer PartSet::answer() const {
+  Answer answer = answer_of(header_);
+  add_findings(findings(), answer);
+  answer.colliding_points = collisions();
+  answer.clearance_points = clearances();
+  return answer;
 }
 
 }  // namespace clearway

@@ -22,6 +22,11 @@ class PartSet {
   std::vector<PartWarning> warnings() const;
   std::uint64_t collisions() const;
   std::uint64_t clearances() const;
+  /// What the parts found beside their tables, together.
+  ResultFindings findings() const;
+  /// The answer of all parts, but for what only reading their rows tells: places, points inside and
+  /// poses of the profile.
+  Answer answer() const;
 
  private:
   std::vector<ResultReader> parts_;

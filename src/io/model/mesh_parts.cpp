@@ -197,7 +197,10 @@ std::string summary_of(const MeshParts& parts) {
                      " triangles are solid; " + format_count(parts.surface_triangles) +
                      " other triangles are surface, in " + format_count(parts.surface_parts) +
                      " open parts";
-  if (parts.flat > 0) text += "; " + format_count(parts.flat) + " have two equal corners";
+  if (parts.flat > 0) {
+    text += "; " + format_count(parts.flat) +
+            " of them have two equal corners, as line segments and single points have";
+  }
   if (parts.duplicates > 0) {
     text += "; " + format_count(parts.duplicates) + " that occur twice are left out";
   }

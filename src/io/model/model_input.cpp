@@ -7,9 +7,11 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/unit_factor.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/formats/mesh/mesh_reader.hpp"
 #include "io/formats/point_reader.hpp"
 #include "io/model/sample_mesh.hpp"
+#include "io/model/surface_of.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -53,31 +55,73 @@ void read_points(ModelInput& input) {
     append(batch, reader->info(), first, input.path.string(), input.mesh.vertices);
   }
   input.messages = reader->info().remarks;
-  input.declared_unit = metres_of(reader->info().unit);
+  input.sampled_spacing = reader->info().model_spacing;
+  const CloudInfo& info = reader->info();
+  const double metres = metres_of(info.unit);
+  input.declared_unit = info.any_foot ? FileUnit(metres) : FileUnit::exactly(metres);
   if (reader->info().faces > 0) {
     tell(input.messages, input,
          "its " + format_count(reader->info().faces) + " faces are left out");
   }
 }
 
+/// A file that draws single points alone is a model of these points, as a scan's file is.
+void take_single_points(ModelInput& input) {
+  const std::uint64_t drawn = input.remarks.single_points;
+  if (drawn == 0 || drawn != input.mesh.triangles.size()) return;
+  std::vector<Vec3> points;
+  std::vector<bool> is_drawn(input.mesh.vertices.size());
+  for (const auto& point : input.mesh.triangles) {
+    points.push_back(input.mesh.vertices[point[0]]);
+    is_drawn[point[0]] = true;
+  }
+  const auto loose = static_cast<std::uint64_t>(std::ranges::count(is_drawn, false));
+  if (loose > 0) input.messages.push_back(loose_vertices_warning(input, loose));
+  input.mesh = {std::move(points), {}};
+}
+
 /// Whether the file was read as a mesh; one without faces may be.
 bool read_as_mesh(ModelInput& input, bool with_faces) {
   File file = File::open_for_reading(input.path);
   const auto format = mesh_format_of(file, input.path);
-  if (!format || (format == MeshFormat::kPly && !with_faces)) return false;
+  if (!format) return false;
   MeshFile read = read_mesh(InputBuffer(std::move(file), InputBuffer::Access::kSeek), *format);
   if (format == MeshFormat::kPly && read.mesh.triangles.empty()) return false;
   input.mesh = std::move(read.mesh);
   input.remarks = std::move(read.remarks);
-  if (!with_faces) input.mesh.triangles.clear();
+  if (with_faces) {
+    take_single_points(input);
+  } else {
+    input.between_vertices = std::exchange(input.mesh.triangles, {});
+  }
   return true;
+}
+
+/// A model in the scan's coordinates lies elsewhere when the other foot was meant.
+void warn_of_two_feet(ModelInput& input, double unit, double environment_unit, double largest) {
+  if (!is_foot(unit) || !is_foot(environment_unit)) return;
+  const double moved = feet_apart(largest * environment_unit, unit, environment_unit);
+  if (!(moved > kFeetApart)) return;
+  tell(input.messages, input, two_feet_text("its coordinates", unit, environment_unit, moved),
+       {{"metres", moved}}, "two-feet");
 }
 
 /// Into the environment's unit, where the file's is known.
 void scale(ModelInput& input, const ModelOptions& options) {
-  const double unit = options.unit > 0 ? options.unit : input.declared_unit;
-  if (unit == 0 || unit == options.environment_unit) return;
+  const FileUnit named = options.unit.is_known() ? options.unit : input.declared_unit;
+  const double unit = named.metres_in(options.environment_unit);
+  if (unit == 0) return;
+  if (unit == options.environment_unit) {
+    if (is_foot(unit)) {
+      tell(input.messages, input,
+           "its coordinates are in " + units_text(unit) +
+               ", as the environment is, and are taken as they are",
+           {{"metres", unit}});
+    }
+    return;
+  }
   const UnitFactor scaled(unit, options.environment_unit);
+  double largest = 0;
   for (Vec3& p : input.mesh.vertices) {
     const Vec3 place{scaled(p.x), scaled(p.y), scaled(p.z)};
     if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
@@ -86,9 +130,16 @@ void scale(ModelInput& input, const ModelOptions& options) {
                                       "coordinates");
     }
     p = place;
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
   input.remarks.largest_bend *= scaled.factor();
-  if (options.unit > 0) return;
+  input.sampled_spacing *= scaled.factor();
+  warn_of_two_feet(input, unit, options.environment_unit, largest);
+  if (options.environment_unit_is_assumed) {
+    tell(input.messages, input, unit_assumed_text("its coordinates", unit), {{"metres", unit}},
+         "unit-assumed");
+  }
+  if (options.unit.is_known()) return;
   tell(input.messages, input,
        "its unit is " + shown(unit) + " m, the environment's " + shown(options.environment_unit) +
            " m: its coordinates are converted",
@@ -102,10 +153,6 @@ void tell_remarks(ModelInput& input) {
     tell(input.messages, input,
          "the last line has no line break; make sure that the file is whole");
   }
-  if (remarks.not_faces > 0) {
-    tell(input.messages, input,
-         format_count(remarks.not_faces) + " lines and points are not read: they are no surface");
-  }
   if (remarks.crossing > 0) {
     tell(input.messages, input,
          format_count(remarks.crossing) + " faces have an outline that crosses itself, the first " +
@@ -114,38 +161,26 @@ void tell_remarks(ModelInput& input) {
   }
 }
 
-std::uint64_t unused_vertices(const TriangleMesh& mesh) {
-  std::vector<bool> used(mesh.vertices.size());
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t corner : triangle) used[corner] = true;
-  }
-  std::uint64_t unused = 0;
-  for (const bool one : used) unused += one ? 0 : 1;
-  return unused;
-}
-
-std::vector<Vec3> sampled(const ModelInput& input, double spacing, std::vector<Message>& messages) {
+ModelShape sampled(const ModelInput& input, const ModelOptions& options,
+                   std::vector<Message>& messages) {
+  const double spacing = options.spacing > 0 ? options.spacing : default_spacing(options.radius);
   if (spacing == 0) {
     refuse(input.path.string(),
-           "a mesh of " + counted(input.mesh.triangles.size(), "triangle") +
-               "; expected a spacing for the points of its surface",
+           "a mesh of " + contents_of(input) + "; expected a spacing for the points of its surface",
            Remedy::kModelSpacing, 0);
   }
-  std::vector<Vec3> points = sample_mesh(input.mesh, spacing, input.path.string());
-  const std::uint64_t unused = unused_vertices(input.mesh);
-  if (unused > 0) {
-    tell(messages, input,
-         format_count(unused) + " vertices belong to no face, and are left out of the model");
-  }
+  const TriangleMesh surface = kept_surface(input, options, messages);
+  ModelShape shape{.points = sample_mesh(surface, spacing, input.path.string()), .triangles = {}};
+  shape.spacing = spacing;
   tell_bend(input, spacing, "the spacing", messages);
   tell(messages, input,
-       "a mesh of " + counted(input.mesh.triangles.size(), "triangle") + ", sampled to " +
-           format_count(points.size()) + " points; no place of its surface is farther than " +
-           format_number(spacing) + " m from one",
-       {{"triangles", static_cast<double>(input.mesh.triangles.size())},
-        {"points", static_cast<double>(points.size())},
+       "a mesh of " + contents_of(input) + ", sampled to " + format_count(shape.points.size()) +
+           " points; no place of its surface is farther than " + format_number(spacing) +
+           " m from one",
+       {{"triangles", static_cast<double>(surface.triangles.size())},
+        {"points", static_cast<double>(shape.points.size())},
         {"spacing", spacing}});
-  return points;
+  return shape;
 }
 
 void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& points,
@@ -170,6 +205,35 @@ void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& p
        {{"left_out", static_cast<double>(left_out)}, {"above", above}});
 }
 
+/// All vertices of a mesh, or all points of another file.
+ModelShape vertices_of(const ModelInput& input, const ModelOptions& options,
+                       std::vector<Message>& messages) {
+  ModelShape shape{.points = input.mesh.vertices, .triangles = {}};
+  shape.spacing = input.sampled_spacing;
+  if (shape.spacing > 0) {
+    if (options.above) {
+      throw UsageError(input.path.string() +
+                       ": samples of a mesh, whose spacing would not hold beside a cut; cut the "
+                       "mesh at the height first, and sample it then");
+    }
+    tell(messages, input,
+         "samples of a mesh; no place of its surface is farther than " +
+             format_number(shape.spacing) + " m from one",
+         {{"spacing", shape.spacing}});
+  }
+  if (!input.between_vertices.empty()) {
+    shape.spacing =
+        distance_to_vertices({input.mesh.vertices, input.between_vertices}, options.above);
+    tell(messages, input,
+         "the model is the vertices of a mesh, " + format_count(input.mesh.vertices.size()) +
+             ", and its faces are left out; places of its surface are up to " +
+             format_brief(shape.spacing) + " m from the nearest vertex",
+         {{"spacing", shape.spacing}});
+  }
+  if (options.above) leave_out_below(input, *options.above, shape.points, messages);
+  return shape;
+}
+
 }  // namespace
 
 void tell_bend(const ModelInput& input, double allowed, const std::string& of_what,
@@ -184,9 +248,30 @@ void tell_bend(const ModelInput& input, double allowed, const std::string& of_wh
        {{"bend", bend}, {"spacing", allowed}}, "mesh-bent-faces");
 }
 
+std::string contents_of(const ModelInput& input) {
+  const auto& [segments, points] = std::pair(input.remarks.segments, input.remarks.single_points);
+  const std::uint64_t triangles = input.mesh.triangles.size() - segments - points;
+  std::string text = counted(triangles, "triangle");
+  if (segments > 0) text += (points > 0 ? ", " : " and ") + counted(segments, "line segment");
+  if (points > 0) text += " and " + counted(points, "single point");
+  return text;
+}
+
+Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) {
+  return {
+      Message::Severity::kWarning,
+      "loose-vertices",
+      input.path.string() + ": " + counted(vertices, "vertex", "vertices") +
+          (vertices == 1 ? " belongs" : " belong") +
+          " to no face, line or point of the file, and " + (vertices == 1 ? "is" : "are") +
+          " not part of the model. If they stand for a thing, such as a mast, the answer leaves "
+          "it out: join them by lines in the program that made the file",
+      {{"vertices", static_cast<double>(vertices)}}};
+}
+
 ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options) {
-  if (!(options.unit >= 0) || !(options.environment_unit > 0)) {
-    throw UsageError(path.string() + ": units of " + shown(options.unit) + " m and " +
+  if (!(options.unit.metres() >= 0) || !(options.environment_unit > 0)) {
+    throw UsageError(path.string() + ": units of " + shown(options.unit.metres()) + " m and " +
                      shown(options.environment_unit) + " m; expected numbers above 0");
   }
   const bool with_faces = !options.vertices_only;
@@ -199,22 +284,35 @@ ModelInput read_model_input(const std::filesystem::path& path, const ModelOption
   }
   scale(input, options);
   tell_remarks(input);
-  if (mesh && !input.is_mesh()) {
+  if (mesh && !input.is_mesh() && input.between_vertices.empty()) {
     tell(input.messages, input,
-         std::string(with_faces ? "has no faces: " : "faces are left out: ") +
-             "the model is its vertices, " + format_count(input.mesh.vertices.size()));
+         input.remarks.single_points > 0 ? "draws single points alone: the model is these, " +
+                                               format_count(input.mesh.vertices.size())
+                                         : "has no faces: the model is its vertices, " +
+                                               format_count(input.mesh.vertices.size()));
   }
   return input;
 }
 
-std::vector<Vec3> points_of(const ModelInput& input, const ModelOptions& options,
-                            std::vector<Message>& messages) {
+void check_model_options(const ModelOptions& options) {
+  const bool surface = options.as == ModelAs::kSurface || options.as == ModelAs::kSolid;
+  if (!surface || !options.asks_for_points()) return;
+  throw UsageError(
+      "a surface is searched as it is: a spacing, and the vertices alone, are of points",
+      Remedy::kModelPoints);
+}
+
+ModelAs resolved_kind(const ModelInput& input, const ModelOptions& options) {
+  check_model_options(options);
+  if (options.as != ModelAs::kAuto) return options.as;
+  return input.is_mesh() && !options.asks_for_points() ? ModelAs::kSurface : ModelAs::kPoints;
+}
+
+ModelShape points_of(const ModelInput& input, const ModelOptions& options,
+                     std::vector<Message>& messages) {
   messages.insert(messages.end(), input.messages.begin(), input.messages.end());
-  const bool as_surface = input.is_mesh() && !options.vertices_only;
-  std::vector<Vec3> points =
-      as_surface ? sampled(input, options.spacing, messages) : input.mesh.vertices;
-  if (options.above) leave_out_below(input, *options.above, points, messages);
-  return points;
+  return input.is_mesh() ? sampled(input, options, messages)
+                         : vertices_of(input, options, messages);
 }
 
 }  // namespace clearway

@@ -29,27 +29,28 @@ ModelShape solids_of(const ModelInput& input, const ModelOptions& options,
 
 std::vector<Vec3> read_model(const std::filesystem::path& path, const ModelOptions& options,
                              std::vector<Message>* messages) {
-  const ModelInput input = read_model_input(path, options);
-  std::vector<Message> told;
-  std::vector<Vec3> points = points_of(input, options, told);
-  if (messages) messages->insert(messages->end(), told.begin(), told.end());
-  return points;
+  ModelOptions how = options;
+  how.as = ModelAs::kPoints;
+  return read_model_shape(path, how, messages).points;
 }
 
 ModelShape read_model_shape(const std::filesystem::path& path, const ModelOptions& options,
                             std::vector<Message>* messages) {
+  check_model_options(options);
   const ModelInput input = read_model_input(path, options);
   std::vector<Message> told;
   ModelShape shape;
-  const bool as_surface =
-      options.as == ModelAs::kSurface || (options.as == ModelAs::kSurfaceOfMesh && input.is_mesh());
-  if (as_surface) {
-    TriangleMesh surface = surface_of(input, options, told);
-    shape = {std::move(surface.vertices), std::move(surface.triangles)};
-  } else if (options.as == ModelAs::kSolid) {
-    shape = solids_of(input, options, told);
-  } else {
-    shape.points = points_of(input, options, told);
+  switch (resolved_kind(input, options)) {
+    case ModelAs::kSolid:
+      shape = solids_of(input, options, told);
+      break;
+    case ModelAs::kSurface: {
+      TriangleMesh surface = surface_of(input, options, told);
+      shape = {std::move(surface.vertices), std::move(surface.triangles)};
+      break;
+    }
+    default:
+      shape = points_of(input, options, told);
   }
   if (messages) messages->insert(messages->end(), told.begin(), told.end());
   return shape;

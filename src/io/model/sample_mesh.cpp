@@ -7,6 +7,7 @@
 #include "core/util/format.hpp"
 #include "io/formats/mesh/vertex_welder.hpp"
 #include "io/model/surface_cover.hpp"
+#include "io/model/triangle_frame.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -99,6 +100,22 @@ std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const st
   return cover.samples().take_points();
 }
 
+double distance_to_vertices(const TriangleMesh& mesh, std::optional<double> above) {
+  double farthest = 0;
+  for (const auto& triangle : mesh.triangles) {
+    const auto below = std::ranges::count_if(
+        triangle, [&](std::uint32_t i) { return above && mesh.vertices[i].z < *above; });
+    if (below == 3) continue;
+    const auto& [a, b, c] = triangle;
+    const TriangleFrame frame(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    const bool is_whole = below == 0;  // otherwise the nearest vertex may be left out
+    farthest = std::max(farthest, !is_whole          ? frame.length
+                                  : frame.height > 0 ? frame.corner_distance()
+                                                     : frame.length / 2);
+  }
+  return farthest;
+}
+
 double spacing_for(const TriangleMesh& mesh, double samples) {
   double area = 0, reach = 0;
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -113,7 +130,15 @@ double spacing_for(const TriangleMesh& mesh, double samples) {
   }
   // A lattice of equilateral triangles has 2 / (3 sqrt(3) h^2) points an area (Kershner 1939).
   const double of_area = std::sqrt(2 * area / (3 * std::sqrt(3.0) * samples));
-  return std::clamp(std::max(of_area, reach * 0x1p-27), 2 * kLeastSpacing, kLargestSpacing / 2);
+  double spacing =
+      std::clamp(std::max(of_area, reach * 0x1p-27), 2 * kLeastSpacing, kLargestSpacing / 2);
+  // Lines have no area. Triangles about as large as the spacing take up to fifteen times as many
+  // samples as their area does, and are none the worse for it.
+  constexpr double kMuchMore = 32;
+  while (spacing < kLargestSpacing / 2 && estimate(mesh, spacing) > kMuchMore * samples) {
+    spacing = std::min(2 * spacing, kLargestSpacing / 2);
+  }
+  return spacing;
 }
 
 }  // namespace clearway

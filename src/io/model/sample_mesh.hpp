@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ inline constexpr double kLeastSpacing = 1e-9, kLargestSpacing = 1e9;  // metres
 /// InputError, which begins with `name`, where more than kMostSamples are needed, and for a spacing
 /// too fine for the size of the coordinates. docs/design/model.md has the proof.
 std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const std::string& name);
+
+/// How far a place of the triangles can be from the nearest vertex of its own triangle, metres.
+/// above: of the places that are not below this height, from the vertices that are not.
+double distance_to_vertices(const TriangleMesh& mesh, std::optional<double> above);
 
 /// A spacing that gives about so many samples, beside the vertices, and is never refused.
 double spacing_for(const TriangleMesh& mesh, double samples);

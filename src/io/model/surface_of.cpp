@@ -44,7 +44,7 @@ class HeightCut {
     const std::uint32_t on_ab = place_of(a, b), on_ac = place_of(a, c);
     if (below == 2) return out_.triangles.push_back({a, on_ab, on_ac});
     out_.triangles.push_back({on_ab, b, c});
-    out_.triangles.push_back({on_ab, c, on_ac});
+    if (b != c) out_.triangles.push_back({on_ab, c, on_ac});  // otherwise it is a segment
   }
 
   std::uint32_t place_of(std::uint32_t one, std::uint32_t other) {
@@ -110,6 +110,19 @@ std::uint64_t remove_unused(TriangleMesh& mesh) {
 
 }  // namespace
 
+TriangleMesh kept_surface(const ModelInput& input, const ModelOptions& options,
+                          std::vector<Message>& messages) {
+  TriangleMesh mesh = input.mesh;
+  if (const std::uint64_t unused = remove_unused(mesh); unused > 0) {
+    messages.push_back(loose_vertices_warning(input, unused));
+  }
+  if (options.above) {
+    leave_out_below(input, *options.above, mesh, messages);
+    remove_unused(mesh);
+  }
+  return mesh;
+}
+
 TriangleMesh surface_of(const ModelInput& input, const ModelOptions& options,
                         std::vector<Message>& messages) {
   messages.insert(messages.end(), input.messages.begin(), input.messages.end());
@@ -117,26 +130,16 @@ TriangleMesh surface_of(const ModelInput& input, const ModelOptions& options,
     refuse(input.path.string(), "has no triangles; expected a mesh, whose surface is searched",
            Remedy::kModelPoints);
   }
-  TriangleMesh mesh = input.mesh;
-  const std::uint64_t unused = remove_unused(mesh);
-  const auto tell = [&](const std::string& text,
-                        std::vector<std::pair<std::string, double>> numbers = {}) {
-    messages.push_back(
-        {Message::Severity::kNote, "", input.path.string() + ": " + text, std::move(numbers)});
-  };
-  if (unused > 0) {
-    tell(format_count(unused) + " vertices belong to no face, and are left out of the model");
+  messages.push_back(
+      {Message::Severity::kNote,
+       "",
+       input.path.string() + ": a mesh of " + contents_of(input) + ", searched as it is",
+       {{"triangles", static_cast<double>(input.mesh.triangles.size())}}});
+  if (options.radius > 0) {
+    tell_bend(input, default_spacing(options.radius), "the spacing that points would have",
+              messages);
   }
-  tell("a mesh of " + counted(mesh.triangles.size(), "triangle") + ", searched as it is",
-       {{"triangles", static_cast<double>(mesh.triangles.size())}});
-  if (options.spacing > 0) {
-    tell_bend(input, options.spacing, "the spacing that points would have", messages);
-  }
-  if (options.above) {
-    leave_out_below(input, *options.above, mesh, messages);
-    remove_unused(mesh);
-  }
-  return mesh;
+  return kept_surface(input, options, messages);
 }
 
 }  // namespace clearway

@@ -156,7 +156,8 @@ class EncodedRows {
   std::uint64_t first_source_ = 0, last_source_ = 0;
 };
 
-using EncodedCollisions = EncodedRows<std::uint64_t, Vec3, std::uint32_t, std::uint32_t>;
+using EncodedCollisions =
+    EncodedRows<std::uint64_t, Vec3, std::uint32_t, std::uint32_t, std::uint32_t>;
 using EncodedClearances = EncodedRows<std::uint64_t, Vec3, double, std::uint32_t, std::uint32_t>;
 
 }  // namespace clearway

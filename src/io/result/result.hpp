@@ -31,12 +31,21 @@ struct ResultPart {
   std::string device = {};
   double field_voxel = 0, grid_cell = 0;
   std::vector<Message> warnings = {};  ///< of the run that wrote it
+  bool model_is_cut = false;           ///< as SearchOptions::model_is_cut
 
   /// Of the same work: how it was done, and what was warned of, are not compared.
   friend bool operator==(const ResultPart& a, const ResultPart& b) {
     return a.shard == b.shard && a.division == b.division && a.store == b.store &&
            a.length_unit == b.length_unit;
   }
+};
+
+/// The spacing of a model's points, as Query::model_spacing. It tells how far the answer may be
+/// from that of the surface, and is no part of the question, which the points alone are: any two
+/// are equal, so that results from before there was the attribute stay results of their questions.
+struct ModelSpacing {
+  double metres = 0;
+  friend bool operator==(const ModelSpacing&, const ModelSpacing&) { return true; }
 };
 
 /// What a result says of its query: a function of the source points, the model, the trajectory
@@ -64,6 +73,10 @@ struct ResultHeader : QueryParameters {
   IgnoredPointCounts ignored{};  ///< of ignore_classes and ignore_boxes, as sort_ignored() has them
   std::uint64_t classes_hash = 0;        ///< of all points; 0 where no class is ignored
   std::vector<std::string> bodies = {};  ///< names, of a query with several; else none
+  ModelSpacing model_spacing{};          ///< the greatest of all bodies
+  /// Whether each colliding point has a last pose too. Results of a search with first poses do;
+  /// those of older releases do not.
+  bool last_pose = false;
   /// Of the file. Version 2 has no model box, no profile and no coordinates of clearances. Version
   /// 4 ignores points, has bodies, or both.
   std::uint32_t version = 3;
@@ -77,6 +90,17 @@ struct ResultHeader : QueryParameters {
   bool has_model_box() const { return version >= 3; }
   bool has_clearance_xyz() const { return version >= 3; }
   friend bool operator==(const ResultHeader&, const ResultHeader&) = default;
+};
+
+/// What a search found out beside its tables. It is no part of the question, so results of the same
+/// question are not told apart by it.
+struct ResultFindings {
+  /// Codes of warnings that put the question in doubt, as doubts_among() has them. A file keeps
+  /// them where nothing collides, because only then do they change the verdict.
+  std::vector<std::string> doubts = {};
+  /// As Answer has them. A file has both where points are ignored, unless an earlier release wrote
+  /// it.
+  std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};
 };
 
 /// Writes the datasets that docs/design/result-format.md lists and the header asks for, to a file
@@ -95,9 +119,11 @@ class ResultWriter {
                std::uint64_t collisions, std::uint64_t clearances = 0);
   ~ResultWriter();
 
-  /// The next rows. first_pose: empty unless the header has it; body: of it, likewise.
+  /// The next rows. first_pose: empty unless the header has it; body, of the first pose, and
+  /// last_pose likewise.
   void append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
-              std::span<const std::uint32_t> first_pose, std::span<const std::uint32_t> body = {});
+              std::span<const std::uint32_t> first_pose, std::span<const std::uint32_t> body = {},
+              std::span<const std::uint32_t> last_pose = {});
   /// The next clearances; distance in metres. Only where the header asks for them. body: empty
   /// unless the header has bodies.
   void append_clearances(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
@@ -117,8 +143,9 @@ class ResultWriter {
   void write(EncodedCollisions& rows);
   void write(EncodedClearances& rows);
 
-  /// Closes the file. Throws std::logic_error unless as many rows as promised were appended.
-  void finish();
+  /// Writes the findings and closes the file. Throws std::logic_error unless as many rows as
+  /// promised were appended.
+  void finish(const ResultFindings& findings = {});
 
  private:
   struct State;
@@ -140,6 +167,7 @@ class ResultReader {
 
   const std::string& name() const;  ///< the file's, for messages
   const ResultHeader& header() const;
+  const ResultFindings& findings() const;
   std::uint64_t collisions() const;
   /// ColumnHashes of source, xyz and, where there are such, first_pose and body.
   std::uint64_t collisions_hash() const;
@@ -148,6 +176,10 @@ class ResultReader {
   void read_xyz(std::uint64_t first, std::span<Vec3> out) const;
   /// Below header().poses. Only where the header has first poses.
   void read_first_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
+  /// The same of header().last_pose.
+  void read_last_pose(std::uint64_t first, std::span<std::uint32_t> out) const;
+  /// XXH64 of the last poses; 0 without any.
+  std::uint64_t last_pose_hash() const;
   /// Below the number of bodies. Only where the header has_first_bodies().
   void read_first_body(std::uint64_t first, std::span<std::uint32_t> out) const;
   /// Those three; first_pose: empty unless the header has it. Adds the columns to their hashes.

@@ -40,6 +40,9 @@ class RowCursor : public ResultCursor<ResultRowStream, ResultRows> {
   std::optional<std::uint32_t> first_pose() const {
     return rows_.first_pose.empty() ? std::nullopt : std::optional(rows_.first_pose[at_]);
   }
+  std::optional<std::uint32_t> last_pose() const {
+    return rows_.last_pose.empty() ? std::nullopt : std::optional(rows_.last_pose[at_]);
+  }
   /// Of the first pose.
   std::optional<std::uint32_t> body() const {
     return rows_.body.empty() ? std::nullopt : std::optional(rows_.body[at_]);

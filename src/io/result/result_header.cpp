@@ -6,9 +6,9 @@
 
 #include "clearway/body.hpp"
 #include "clearway/error.hpp"
+#include "io/hdf5/kept_warnings.hpp"
 #include "io/result/as_numbers.hpp"
 #include "io/result/ignored_lists.hpp"
-#include "io/result/part_warnings.hpp"
 #include "io/result/result_names.hpp"
 #include "io/system/input_error.hpp"
 
@@ -55,6 +55,12 @@ void check_tolerance(const ResultHeader& header, const std::string& name) {
                    ", expected a length above 0 and below the radius");
 }
 
+void check_spacing(double spacing, const std::string& name) {
+  if (spacing > 0 && std::isfinite(spacing)) return;
+  throw InputError(name + ": attribute 'model_spacing' is " + std::to_string(spacing) +
+                   ", expected a finite length above 0");
+}
+
 /// Whether the file has the attribute, which has only this one value.
 bool has_value(const hdf5::Id& file, const char* attribute, const char* value,
                const std::string& name) {
@@ -90,20 +96,22 @@ std::string lines_of(const std::vector<std::string>& texts) {
   return lines;
 }
 
-/// Names of bodies, none of them empty.
-std::vector<std::string> read_bodies(const hdf5::Id& file, const std::string& name) {
-  const std::string lines = hdf5::read_text_attribute(file, names::kBodies, name);
-  std::vector<std::string> bodies;
+/// An attribute of texts, a line each: at least one, at most `most`, and none of them empty. what:
+/// for messages, "names".
+std::vector<std::string> read_lines(const hdf5::Id& file, const std::string& name,
+                                    const char* attribute, const char* what, std::size_t most) {
+  const std::string lines = hdf5::read_text_attribute(file, attribute, name);
+  std::vector<std::string> texts;
   for (std::size_t begin = 0; begin <= lines.size();) {
     const std::size_t end = std::min(lines.find('\n', begin), lines.size());
-    bodies.push_back(lines.substr(begin, end - begin));
-    if (bodies.back().empty() || bodies.size() > kMostBodies) {
-      refuse(name, "attribute 'bodies': expected 1 to " + std::to_string(kMostBodies) +
-                       " names, a line each");
+    texts.push_back(lines.substr(begin, end - begin));
+    if (texts.back().empty() || texts.size() > most) {
+      refuse(name, "attribute '" + std::string(attribute) + "': expected 1 to " +
+                       std::to_string(most) + " " + what + ", a line each");
     }
     begin = end + 1;
   }
-  return bodies;
+  return texts;
 }
 
 /// Of what is not exact, how it was computed.
@@ -127,6 +135,7 @@ ResultPart read_part(const hdf5::Id& file, const std::string& name, const Result
   }
   read_means(file, name, header, part);
   part.warnings = read_warnings(file, name);
+  part.model_is_cut = hdf5::has_attribute(file, names::kModelIsCut, name);
   return part;
 }
 
@@ -143,6 +152,7 @@ void write_part(const hdf5::Id& file, const ResultHeader& header) {
     hdf5::write_number(file, names::kGridCell, part.grid_cell);
   }
   write_warnings(file, part.warnings);
+  if (part.model_is_cut) hdf5::write_number(file, names::kModelIsCut, std::uint8_t{1});
 }
 
 /// Of version 4, which has bodies, ignores points, or both.
@@ -152,7 +162,7 @@ void read_more(const hdf5::Id& file, const std::string& name, ResultHeader& head
     if (!bodies) return;
     refuse(name, "has bodies, which version " + std::to_string(header.version) + " does not have");
   }
-  if (bodies) header.bodies = read_bodies(file, name);
+  if (bodies) header.bodies = read_lines(file, name, names::kBodies, "names", kMostBodies);
   if (!bodies || hdf5::has_attribute(file, names::kIgnoredPoints, name)) {
     read_ignored(file, name, header);
   }
@@ -194,6 +204,9 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   if (header.model_solids > 0) {
     hdf5::write_number(file, names::kModelSolids, header.model_solids);
   }
+  if (header.model_spacing.metres > 0) {
+    hdf5::write_number(file, names::kModelSpacing, header.model_spacing.metres);
+  }
   if (header.ignores_points()) write_ignored(file, header);
   if (!header.bodies.empty()) {
     hdf5::write_attribute(file, names::kBodies, lines_of(header.bodies));
@@ -223,11 +236,16 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
     check_tolerance(header, name);
   }
+  header.last_pose = header.first_pose && hdf5::has_attribute(file, names::kLastPoseHash, name);
   if (hdf5::has_attribute(file, names::kModelTriangles, name)) {
     header.model_triangles = hdf5::read_number<std::uint64_t>(file, names::kModelTriangles, name);
   }
   if (hdf5::has_attribute(file, names::kModelSolids, name)) {
     header.model_solids = hdf5::read_number<std::uint64_t>(file, names::kModelSolids, name);
+  }
+  if (hdf5::has_attribute(file, names::kModelSpacing, name)) {
+    header.model_spacing.metres = hdf5::read_number<double>(file, names::kModelSpacing, name);
+    check_spacing(header.model_spacing.metres, name);
   }
   header.float_precision = has_value(file, names::kPrecision, names::kFloat, name);
   header.ways_without_ends =
@@ -242,6 +260,41 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
     header.part = read_part(file, name, header);
   }
   return header;
+}
+
+void write_result_findings(const hdf5::Id& file, const ResultFindings& findings) {
+  if (!findings.doubts.empty()) {
+    hdf5::write_attribute(file, names::kDoubts, lines_of(findings.doubts));
+  }
+  if (findings.ignored_colliding) {
+    hdf5::write_number(file, names::kIgnoredColliding, *findings.ignored_colliding);
+  }
+  if (findings.ignored_colliding_high) {
+    hdf5::write_number(file, names::kIgnoredHigh, *findings.ignored_colliding_high);
+  }
+}
+
+ResultFindings read_result_findings(const hdf5::Id& file, const std::string& name,
+                                    const ResultHeader& header) {
+  constexpr std::size_t kMostDoubts = 100;
+  ResultFindings findings;
+  if (hdf5::has_attribute(file, names::kDoubts, name)) {
+    findings.doubts = read_lines(file, name, names::kDoubts, "codes of warnings", kMostDoubts);
+  }
+  const auto read_count = [&](const char* attribute, std::uint64_t most) {
+    std::optional<std::uint64_t> count;
+    if (!hdf5::has_attribute(file, attribute, name)) return count;
+    count = hdf5::read_number<std::uint64_t>(file, attribute, name);
+    if (*count > most) {
+      refuse(name, "attribute '" + std::string(attribute) + "' is " + std::to_string(*count) +
+                       ", expected at most " + std::to_string(most));
+    }
+    return count;
+  };
+  findings.ignored_colliding = read_count(names::kIgnoredColliding, header.ignored.points);
+  findings.ignored_colliding_high =
+      read_count(names::kIgnoredHigh, findings.ignored_colliding.value_or(0));
+  return findings;
 }
 
 }  // namespace clearway

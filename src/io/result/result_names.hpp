@@ -15,6 +15,7 @@ inline constexpr const char* kGroup = "collisions";
 inline constexpr const char* kSource = "source";
 inline constexpr const char* kXyz = "xyz";
 inline constexpr const char* kFirstPose = "first_pose";
+inline constexpr const char* kLastPose = "last_pose";  // only where kLastPoseHash is there
 
 inline constexpr const char* kBody = "body";  // in both groups, where kBodies is there
 
@@ -38,6 +39,7 @@ inline constexpr const char* kClosedWay = "closed way";
 inline constexpr const char* kBodies = "bodies";  // names, a line each; only where there are any
 inline constexpr const char* kModelTriangles = "model_triangles";  // only of a surface
 inline constexpr const char* kModelSolids = "model_solids";        // only with solids
+inline constexpr const char* kModelSpacing = "model_spacing";      // only of a sampled mesh
 
 inline constexpr const char* kShard = "shard";  // of parts only, with kDivision
 inline constexpr const char* kDivision = "division";
@@ -46,12 +48,6 @@ inline constexpr const char* kLengthUnit = "length_unit";
 inline constexpr const char* kDevice = "device";  // of parts that are not exact, with one of
 inline constexpr const char* kFieldVoxel = "field_voxel";
 inline constexpr const char* kGridCell = "grid_cell";
-inline constexpr const char* kWarningsGroup = "warnings";  // of parts only: a group each, from 0
-inline constexpr const char* kWarningCount = "count";
-inline constexpr const char* kCode = "code";
-inline constexpr const char* kMessage = "message";
-inline constexpr const char* kNumberNames = "names";  // a line each; only where there are numbers
-inline constexpr const char* kNumbers = "numbers";
 
 inline constexpr const char* kIgnoredPoints = "ignored_points";  // with what follows, in version 4
 inline constexpr const char* kIgnoredHash = "ignored_hash";      // of the group's datasets
@@ -62,7 +58,13 @@ inline constexpr const char* kClassPoints = "class_points";
 inline constexpr const char* kBoxes = "boxes";  // a row each: least x, y, z, greatest x, y, z
 inline constexpr const char* kBoxPoints = "box_points";
 
+inline constexpr const char* kDoubts = "doubts";  // codes, a line each; only where nothing collides
+inline constexpr const char* kIgnoredColliding = "ignored_colliding";  // where points are ignored
+inline constexpr const char* kIgnoredHigh = "ignored_colliding_high";  // likewise
+inline constexpr const char* kModelIsCut = "model_is_cut";             // of parts, only where it is
+
 inline constexpr const char* kCollisionsHash = "collisions_hash";
+inline constexpr const char* kLastPoseHash = "last_pose_hash";  // so that older readers go on
 inline constexpr const char* kClearanceHash = "clearance_hash";
 inline constexpr const char* kProfileHash = "profile_hash";
 

@@ -74,6 +74,7 @@ ResultReader& ResultReader::operator=(ResultReader&& other) noexcept {
 
 const std::string& ResultReader::name() const { return state_->name; }
 const ResultHeader& ResultReader::header() const { return state_->header; }
+const ResultFindings& ResultReader::findings() const { return state_->findings; }
 std::uint64_t ResultReader::collisions() const { return state_->source.rows(); }
 std::uint64_t ResultReader::collisions_hash() const { return state_->collisions_hash; }
 std::uint64_t ResultReader::clearances_hash() const { return state_->clearance_hash; }
@@ -121,6 +122,15 @@ void ResultReader::read_first_pose(std::uint64_t first, std::span<std::uint32_t>
   as_input(state_->name, [&] { state_->first_pose->read(first, out); });
   state_->checks(names::kGroup, first).poses(names::kFirstPose, out);
 }
+
+void ResultReader::read_last_pose(std::uint64_t first, std::span<std::uint32_t> out) const {
+  check_range(first, out.size(), collisions());
+  if (!state_->last_pose) throw std::logic_error("ResultReader: no last poses");
+  as_input(state_->name, [&] { state_->last_pose->read(first, out); });
+  state_->checks(names::kGroup, first).poses(names::kLastPose, out);
+}
+
+std::uint64_t ResultReader::last_pose_hash() const { return state_->last_pose_hash; }
 
 void ResultReader::read_first_body(std::uint64_t first, std::span<std::uint32_t> out) const {
   check_range(first, out.size(), collisions());

@@ -21,6 +21,7 @@ struct ResultReader::State {
       : name(path.string()),
         file(hdf5::open_file(path)),
         header(read_result_header(file, name)),
+        findings(read_result_findings(file, name, header)),
         collisions_hash(
             hdf5::read_number<std::uint64_t>(file, result_names::kCollisionsHash, name)),
         source(open<std::uint64_t>(result_names::kGroup, result_names::kSource, 0)),
@@ -28,11 +29,16 @@ struct ResultReader::State {
     if (header.first_pose) {
       first_pose.emplace(open<std::uint32_t>(result_names::kGroup, result_names::kFirstPose, 0));
     }
+    if (header.last_pose) {
+      last_pose_hash = hdf5::read_number<std::uint64_t>(file, result_names::kLastPoseHash, name);
+      last_pose.emplace(open<std::uint32_t>(result_names::kGroup, result_names::kLastPose, 0));
+    }
     if (header.has_first_bodies()) {
       body.emplace(open<std::uint32_t>(result_names::kGroup, result_names::kBody, 0));
     }
     check_equal(result_names::kGroup, source.rows(),
-                {xyz.rows(), rows_of(first_pose, source.rows()), rows_of(body, source.rows())});
+                {xyz.rows(), rows_of(first_pose, source.rows()), rows_of(body, source.rows()),
+                 rows_of(last_pose, source.rows())});
     if (header.clearance > 0) open_clearances();
     if (header.profile > 0) open_profile();
   }
@@ -122,10 +128,11 @@ struct ResultReader::State {
   std::string name;
   hdf5::Id file;
   ResultHeader header;
-  std::uint64_t collisions_hash, clearance_hash = 0, profile_hash = 0;
+  ResultFindings findings;
+  std::uint64_t collisions_hash, last_pose_hash = 0, clearance_hash = 0, profile_hash = 0;
   hdf5::Rows<std::uint64_t> source;
   hdf5::Rows<double> xyz;
-  std::optional<hdf5::Rows<std::uint32_t>> first_pose, body;
+  std::optional<hdf5::Rows<std::uint32_t>> first_pose, last_pose, body;
   std::optional<ClearanceDatasets> clearance;
   std::optional<ProfileDatasets> profile;
 };

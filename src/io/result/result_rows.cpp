@@ -28,6 +28,14 @@ void check_hash(const ResultReader& reader, const char* group, std::span<const X
                    ": its rows are damaged (their hash is not the one recorded)");
 }
 
+void check_order(const ResultReader& reader, std::uint64_t first, const ResultRows& rows) {
+  for (std::size_t i = 0; i < rows.last_pose.size(); ++i) {
+    if (rows.last_pose[i] >= rows.first_pose[i]) continue;
+    throw InputError(reader.name() + ": /collisions/last_pose, row " + std::to_string(first + i) +
+                     ": expected a pose that is not before the first one");
+  }
+}
+
 }  // namespace
 
 bool ResultRowStream::read(ResultRows& rows) {
@@ -38,18 +46,30 @@ bool ResultRowStream::read(ResultRows& rows) {
   rows.first_pose.resize(first_pose ? count : 0);
   const bool body = reader_.header().has_first_bodies();
   rows.body.resize(body ? count : 0);
+  const bool last_pose = reader_.header().last_pose;
+  rows.last_pose.resize(last_pose ? count : 0);
   if (count == 0) {
     check_hash(reader_, "collisions",
                std::span(columns_).first(body         ? 4
                                          : first_pose ? 3
                                                       : 2),
                reader_.collisions_hash());
+    if (last_pose && last_poses_.digest() != reader_.last_pose_hash()) {
+      throw InputError(reader_.name() +
+                       ": /collisions/last_pose: its rows are damaged (their hash is not the one "
+                       "recorded)");
+    }
     return false;
   }
   reader_.read_collisions(next_, rows.source, rows.xyz, rows.first_pose, columns_);
   if (body) {
     reader_.read_first_body(next_, rows.body);
     add(columns_[3], rows.body);
+  }
+  if (last_pose) {
+    reader_.read_last_pose(next_, rows.last_pose);
+    add(last_poses_, rows.last_pose);
+    check_order(reader_, next_, rows);
   }
   check_ascending(reader_, "/collisions/source", next_, last_source_, rows.source.front());
   last_source_ = rows.source.back();

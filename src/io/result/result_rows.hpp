@@ -10,12 +10,14 @@
 
 namespace clearway {
 
-/// Consecutive rows of a result. first_pose and body are empty where the result has none.
+/// Consecutive rows of a result. first_pose, body and last_pose are empty where the result has
+/// none.
 struct ResultRows {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<std::uint32_t> first_pose;
   std::vector<std::uint32_t> body = {};
+  std::vector<std::uint32_t> last_pose = {};
 
   std::size_t size() const { return source.size(); }
 };
@@ -62,6 +64,7 @@ class ResultRowStream {
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
   std::array<Xxh64Stream, 4> columns_;  ///< of the rows read
+  Xxh64Stream last_poses_;
 };
 
 /// The same for its clearances; no rows where it has none.

@@ -143,12 +143,19 @@ class ResultTable {
     });
   }
 
-  std::uint64_t hash() {
+  /// Of the first `columns`, or of all.
+  std::uint64_t hash(std::size_t columns = sizeof...(Values)) {
     ColumnHashes hashes;
+    std::size_t i = 0;
     each([&](auto& column) {
-      if (column) hashes.add_digest(column->digest());
+      if (i++ < columns && column) hashes.add_digest(column->digest());
     });
     return hashes.digest();
+  }
+
+  /// Of the last column, which must be written.
+  std::uint64_t hash_of_last() {
+    return std::get<sizeof...(Values) - 1>(columns_).value().digest();
   }
 
  private:

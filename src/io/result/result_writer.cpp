@@ -14,18 +14,28 @@ namespace {
 
 namespace names = result_names;
 
-using CollisionTable = ResultTable<std::uint64_t, Vec3, std::uint32_t, std::uint32_t>;
+using CollisionTable =
+    ResultTable<std::uint64_t, Vec3, std::uint32_t, std::uint32_t, std::uint32_t>;
+
+/// Of the collisions' hash: the last poses, which older releases did not write, have their own.
+constexpr std::size_t kHashedColumns = 4;
 using ClearanceTable = ResultTable<std::uint64_t, Vec3, double, std::uint32_t, std::uint32_t>;
 using ProfileTable = ResultTable<double, std::uint64_t, Vec3, double, double>;
 
 CollisionTable::Names collision_columns(const ResultHeader& header) {
   return {names::kSource, names::kXyz, header.first_pose ? names::kFirstPose : nullptr,
-          header.has_first_bodies() ? names::kBody : nullptr};
+          header.has_first_bodies() ? names::kBody : nullptr,
+          header.last_pose ? names::kLastPose : nullptr};
 }
 
 ClearanceTable::Names clearance_columns(const ResultHeader& header) {
   return {names::kSource, names::kXyz, names::kDistance, names::kPose,
           header.bodies.empty() ? nullptr : names::kBody};
+}
+
+ResultFindings without_doubts(ResultFindings findings) {
+  findings.doubts.clear();
+  return findings;
 }
 
 }  // namespace
@@ -34,8 +44,10 @@ struct ResultWriter::State {
   State(const std::filesystem::path& path, const ResultHeader& header, std::uint64_t rows,
         std::uint64_t clearance_rows)
       : name(path.string()),
+        is_empty(rows == 0),
         file(hdf5::create_file(path)),
         output(File::open_for_writing(path)),
+        has_last_pose(header.last_pose),
         collisions(std::in_place, file, names::kGroup, collision_columns(header), rows) {
     if (header.clearance > 0) {
       clearances.emplace(file, names::kClearanceGroup, clearance_columns(header), clearance_rows);
@@ -70,8 +82,10 @@ struct ResultWriter::State {
   }
 
   std::string name;
+  bool is_empty;  ///< nothing collides
   hdf5::Id file;
-  File output;               ///< the same file
+  File output;  ///< the same file
+  bool has_last_pose;
   std::uint64_t synced = 0;  ///< bytes of it that are on their way to the disk
   std::optional<CollisionTable> collisions;
   std::optional<ClearanceTable> clearances;
@@ -91,9 +105,10 @@ ResultWriter::~ResultWriter() {
 
 void ResultWriter::append(std::span<const std::uint64_t> source, std::span<const Vec3> xyz,
                           std::span<const std::uint32_t> first_pose,
-                          std::span<const std::uint32_t> body) {
+                          std::span<const std::uint32_t> body,
+                          std::span<const std::uint32_t> last_pose) {
   State& s = *state_;
-  hdf5::naming(s.name, [&] { s.collisions->append(source, xyz, first_pose, body); });
+  hdf5::naming(s.name, [&] { s.collisions->append(source, xyz, first_pose, body, last_pose); });
 }
 
 void ResultWriter::append_clearances(std::span<const std::uint64_t> source,
@@ -139,15 +154,19 @@ void ResultWriter::write(EncodedClearances& rows) {
   s.written();
 }
 
-void ResultWriter::finish() {
+void ResultWriter::finish(const ResultFindings& findings) {
   State& s = *state_;
   s.complete(s.collisions);
   s.complete(s.clearances);
   s.complete(s.profile);
   hdf5::naming(s.name, [&] {
-    hdf5::write_number(s.file, names::kCollisionsHash, s.collisions->hash());
+    hdf5::write_number(s.file, names::kCollisionsHash, s.collisions->hash(kHashedColumns));
+    if (s.has_last_pose) {
+      hdf5::write_number(s.file, names::kLastPoseHash, s.collisions->hash_of_last());
+    }
     if (s.clearances) hdf5::write_number(s.file, names::kClearanceHash, s.clearances->hash());
     if (s.profile) hdf5::write_number(s.file, names::kProfileHash, s.profile->hash());
+    write_result_findings(s.file, s.is_empty ? findings : without_doubts(findings));
     hdf5::write_number(s.file, "complete", std::uint8_t{1});
     s.collisions->write_held();
     if (s.clearances) s.clearances->write_held();

@@ -12,6 +12,7 @@
 #include "clearway/error.hpp"
 #include "core/cloud/kd_order.hpp"
 #include "io/hdf5/hdf5.hpp"
+#include "io/hdf5/kept_warnings.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -99,6 +100,9 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
     refuse(name, "attribute 'input_points' is " + std::to_string(metadata.input_points) +
                      ", expected at least the points stored, " +
                      std::to_string(metadata.point_count));
+  }
+  if (H5Lexists(file.get(), "warnings", H5P_DEFAULT) > 0) {
+    metadata.warnings = read_warnings(file, name);
   }
   metadata.sources = read_sources(file, name, hashes);
   metadata.source_points = read_source_points(file, name, metadata);

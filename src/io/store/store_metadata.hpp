@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "clearway/progress.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/formats/length_unit.hpp"
 
@@ -43,6 +45,7 @@ struct StoreMetadata {
   /// stores of 0.1.0.
   std::vector<std::uint64_t> source_points = {};
   std::optional<StoreClasses> classes = {};  ///< where any point has a class above 0
+  std::vector<Message> warnings = {};        ///< of the conversion, for people who use the store
 
   /// Of one of the sources, where that is known.
   std::optional<std::uint64_t> points_of_source(std::size_t source) const {
@@ -50,5 +53,15 @@ struct StoreMetadata {
     return sources.size() == 1 ? std::optional(input_points) : std::nullopt;
   }
 };
+
+/// Begins the codes of warnings that a store keeps, where another command repeats them.
+inline constexpr std::string_view kStorePrefix = "store-";
+
+/// The warnings of the conversion as other commands repeat them.
+inline std::vector<Message> store_warnings(const StoreMetadata& metadata) {
+  std::vector<Message> warnings = metadata.warnings;
+  for (Message& warning : warnings) warning.code.insert(0, kStorePrefix);
+  return warnings;
+}
 
 }  // namespace clearway

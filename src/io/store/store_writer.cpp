@@ -11,6 +11,7 @@
 #include "core/cloud/kd_order.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/hdf5/hdf5.hpp"
+#include "io/hdf5/kept_warnings.hpp"
 #include "io/store/class_index.hpp"
 #include "io/store/store_layout.hpp"
 #include "io/system/file.hpp"
@@ -54,6 +55,8 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hdf5::write_attribute(file, "layout", metadata.layout);
   hdf5::write_attribute(file, "length_unit", to_string(metadata.unit));
   hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
+
+  if (!metadata.warnings.empty()) write_warnings(file, metadata.warnings);
 
   std::vector<std::uint8_t> names;
   std::vector<std::uint64_t> bytes, contents;

@@ -39,8 +39,8 @@ void check_output_name(const fs::path& path, bool overwrite) {
 }
 
 [[noreturn]] void refuse_partial(const fs::path& path, const char* what) {
-  throw UsageError(path.string() + ": is in the place of this output's temporary file and " + what +
-                   "; move it away, or choose another output");
+  throw UsageError(path.string() + ": is where this output's temporary file has to be, and " +
+                   what + "; move it away, or choose another output");
 }
 
 /// A link, a pipe or a device would lead what is written elsewhere.

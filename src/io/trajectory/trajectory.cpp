@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/formats/input_buffer.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/system/file_ending.hpp"
 #include "io/system/input_error.hpp"
 #include "io/trajectory/geographic/sbet.hpp"
@@ -92,13 +93,31 @@ void refuse_useless(const std::filesystem::path& path, const TrajectoryOptions& 
   const bool own_unit = found.format == TrajectoryFormat::kSbet ||
                         found.format == TrajectoryFormat::kThreedtkPose ||
                         found.format == TrajectoryFormat::kThreedtkFrames;
-  if (options.metres_per_unit != 0 && own_unit) {
+  if (options.metres_per_unit.is_known() && own_unit) {
     throw UsageError(name + ": the format " + name_of(found.format) + " has a unit of its own");
   }
 }
 
-void convert_positions(const TrajectoryOptions& options, TrajectoryFile& found) {
+/// Where both feet meet, the position of the path depends on which foot was meant.
+void warn_of_two_feet(const std::filesystem::path& path, const TrajectoryOptions& options,
+                      TrajectoryFile& found) {
+  if (!is_foot(found.unit.metres()) || !is_foot(options.environment_unit)) return;
+  double largest = 0;
+  for (const Pose& pose : found.poses) {
+    for (const double metres : pose.translation) largest = std::max(largest, std::abs(metres));
+  }
+  const double moved = feet_apart(largest, found.unit.metres(), options.environment_unit);
+  if (!(moved > kFeetApart)) return;
+  found.warn("two-feet",
+             two_feet_text(path.string() + ": its positions", found.unit.metres(),
+                           options.environment_unit, moved),
+             {{"metres", moved}});
+}
+
+void convert_positions(const std::filesystem::path& path, const TrajectoryOptions& options,
+                       TrajectoryFile& found) {
   if (options.environment_unit == 1 || !found.in_metres) return;
+  warn_of_two_feet(path, options, found);
   for (Pose& pose : found.poses) {
     for (double& coordinate : pose.translation) coordinate /= options.environment_unit;
   }
@@ -173,7 +192,13 @@ TrajectoryFile read_without_doubts(const std::filesystem::path& path,
     read_file(path, options, found);
   }
   refuse_useless(path, options, found);
-  convert_positions(options, found);
+  if (options.environment_unit_is_assumed && found.in_metres && found.unit.is_known() &&
+      found.unit.metres() != 1) {
+    found.warn("unit-assumed",
+               unit_assumed_text(path.string() + ": its positions", found.unit.metres()),
+               {{"metres", found.unit.metres()}});
+  }
+  convert_positions(path, options, found);
   apply_lever_arm(path, options.lever_arm, found.poses);
   remark_times(path, found);
   return found;

@@ -19,7 +19,8 @@ struct TrajectoryFile {
   TrajectoryFormat format = TrajectoryFormat::kAuto;
   std::string crs;             ///< that latitudes and longitudes were turned into, or empty
   double metres_per_unit = 1;  ///< of the positions, 1 but for a CRS in another unit
-  bool in_metres = false;      ///< surely: a unit was declared, or the format has it
+  bool in_metres = false;      ///< surely, as a unit was declared or the format has one
+  FileUnit unit = {};  ///< of the positions in the file, where a header or an option names it
   RotationSource rotations = RotationSource::kMatrices;
   std::vector<Message> remarks;  ///< notes and warnings
 

@@ -42,12 +42,9 @@ class VehicleReader {
   Body read(const BodyEntry& entry) {
     Body body{.name = entry.name, .model = {}, .poses = {}, .path_pose = {}};
     ModelOptions how = options_.model;
-    if (entry.model_unit > 0) how.unit = entry.model_unit;
-    ModelShape model =
-        named(entry.at.at("model"), [&] { return read_model_shape(entry.model, how, warnings_); });
-    body.model = std::move(model.points);
-    body.triangles = std::move(model.triangles);
-    body.solid_of = std::move(model.solid_of);
+    if (entry.model_unit.is_known()) how.unit = entry.model_unit;
+    set_model(body, named(entry.at.at("model"),
+                          [&] { return read_model_shape(entry.model, how, warnings_); }));
     const auto* station = std::get_if<BodyStation>(&entry.mount);
     if (!entry.trajectory.empty()) {
       read_own(entry, body);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "clearway/body.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/formats/text/length_text.hpp"
 #include "io/system/file_text.hpp"
 
@@ -30,10 +31,10 @@ BodyMount pivots_of(const KeyReader& key, double environment_unit) {
   return pivots;
 }
 
-double unit_of(const KeyReader& key) {
+FileUnit unit_of(const KeyReader& key) {
   const std::string name = key.text();
-  if (const auto metres = metres_of_file_unit(name)) return *metres;
-  key.refuse("is \"" + name + "\", expected mm, cm, m, in or ft");
+  if (const auto unit = file_unit_of(name)) return *unit;
+  key.refuse("is \"" + name + "\", expected " + file_unit_list());
 }
 
 std::string name_of(const KeyReader& key, std::set<std::string>& names) {
@@ -64,12 +65,7 @@ std::vector<BodyEntry> read_vehicle_file(const std::filesystem::path& path,
                                          double environment_unit) {
   const KeyReader file = KeyReader::parse(path, text_of_file(path));
   file.allow({"bodies"});
-  const KeyReader list = file.at("bodies");
-  const std::vector<KeyReader> bodies = list.elements();
-  if (bodies.size() > kMostBodies) {
-    list.refuse("has " + std::to_string(bodies.size()) + " bodies, expected at most " +
-                std::to_string(kMostBodies));
-  }
+  const std::vector<KeyReader> bodies = file.at("bodies").elements(kMostBodies);
   std::vector<BodyEntry> entries;
   std::set<std::string> names;
   const std::filesystem::path folder = path.parent_path();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/file_unit.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "io/json/key_reader.hpp"
 
@@ -15,7 +16,7 @@ struct BodyEntry {
   KeyReader at;  ///< for complaints
   std::string name;
   std::filesystem::path model;
-  double model_unit = 0;             ///< metres; 0: as the command says
+  FileUnit model_unit = {};          ///< none: as the command says
   BodyMount mount = BodyStation{0};  ///< unless it has a trajectory
   std::filesystem::path trajectory;  ///< empty: it follows the path
 };

@@ -20,6 +20,7 @@ METRES_PER_MILLIMETRE: float
 METRES_PER_CENTIMETRE: float
 METRES_PER_INCH: float
 METRES_PER_FOOT: float
+METRES_PER_US_SURVEY_FOOT: float
 class Error(Exception):
     remedy: str | None
     amount: float
@@ -81,6 +82,8 @@ class Store:
     def crs_wkt(self) -> str: ...
     def class_points(self) -> dict[int, int]: ...
     def length_unit(self) -> str: ...
+    def metres_per_unit(self) -> float: ...
+    def warnings(self) -> list[Message]: ...
     path: Final[_Path]
 
 class ModelShape:
@@ -88,7 +91,10 @@ class ModelShape:
     triangles: Final[_Poses]
     solid_of: Final[_Poses]
     NO_SOLID: ClassVar[int]
-    def __init__(self, points: ArrayLike, triangles: ArrayLike = ...) -> None: ...
+    spacing: Final[float]
+    def __init__(
+        self, points: ArrayLike, triangles: ArrayLike = ..., spacing: float = 0.0,
+    ) -> None: ...
 class Body:
     name: Final[str]
     model: Final[_Doubles | ModelShape]
@@ -96,12 +102,21 @@ class Body:
     path_pose: Final[_Poses]
     def __init__(
         self, name: str, model: ArrayLike | ModelShape, poses: ArrayLike,
-        path_pose: Sequence[int] | None = None,
+        path_pose: ArrayLike | None = None,
     ) -> None: ...
 def follow(
     name: str, model: ArrayLike | ModelShape, path: ArrayLike, *, at: float | None = None,
     pivots: tuple[float, float] | None = None, messages: list[Message] | None = None,
 ) -> Body: ...
+
+class UnsearchedStretch:
+    first_pose: Final[int]
+    last_pose: Final[int]
+    chainage_from: Final[float]
+    chainage_to: Final[float]
+    bodies: Final[list[int]]
+    has_answer: Final[bool]
+def unsearched_stretches(path: ArrayLike, bodies: Sequence[Body]) -> list[UnsearchedStretch]: ...
 
 class Query:
     model: Any  # any array or a ModelShape is taken, and float64 or a ModelShape given
@@ -117,7 +132,7 @@ class Query:
     allow_non_rigid: bool
     bodies: list[Body]
     def __init__(
-        self, model: ArrayLike | ModelShape = ..., poses: ArrayLike = ..., radius: float = 0.0, *,
+        self, model: ArrayLike | ModelShape = ..., poses: ArrayLike = ..., radius: float | None = None, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
         profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
         ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
@@ -140,6 +155,7 @@ class SearchSeconds:
     total: Final[float]
     context: Final[float]
     context_wait: Final[float]
+    ignored: Final[float]
     thin: Final[float]
     field: Final[float]
     plan: Final[float]
@@ -162,29 +178,37 @@ class DeviceEstimate:
     cpu: Final[float]
     cuda: Final[float]
 
-class SearchReport:
-    was_finished: Final[bool]
+class Answer:
+    verdict: Final[Literal["clear", "conflict", "undecided", "unknown"]]
+    reasons: Final[list[str]]
+    doubts: Final[list[str]]
+    parameters: Final[QueryParameters]
     environment_points: Final[int]
     model_points: Final[int]
-    model_triangles: Final[int]
     poses: Final[int]
     model_solids: Final[int]
+    model_spacing: Final[float]
     colliding_points: Final[int]
     inside_points: Final[int]
     clearance_points: Final[int]
     profile_poses: Final[int]
     ignored: Final[IgnoredPointCounts]
-    ignored_looked_at: Final[int]
+    ignored_colliding: Final[int | None]
+    ignored_colliding_high: Final[int | None]
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
+    shard: Final[tuple[int, int] | None]
+class SearchReport(Answer):
+    was_finished: Final[bool]
+    model_triangles: Final[int]
+    ignored_looked_at: Final[int]
     warnings: Final[list[Message]]
     engine: Final[str]
     device: Final[str]
     device_name: Final[str]
     engine_estimate: Final[EngineEstimate | None]
     estimate: Final[DeviceEstimate | None]
-    shard: Final[tuple[int, int] | None]
     shard_share: Final[float | None]
     searches: Final[int]
     tolerance: Final[ToleranceReport | None]
@@ -205,23 +229,10 @@ class SearchReport:
 class PartWarning(Message):
     parts: Final[int]
 
-class MergeReport:
+class MergeReport(Answer):
     was_finished: Final[bool]
-    parameters: Final[QueryParameters]
     length_unit: Final[str]
     parts: Final[int]
-    environment_points: Final[int]
-    model_points: Final[int]
-    poses: Final[int]
-    model_solids: Final[int]
-    colliding_points: Final[int]
-    inside_points: Final[int]
-    clearance_points: Final[int]
-    profile_poses: Final[int]
-    ignored: Final[IgnoredPointCounts]
-    first_place: Final[FoundPlace | None]
-    least_clearance: Final[FoundPlace | None]
-    least_profile: Final[FoundPlace | None]
     warnings: Final[list[PartWarning]]
 
 class Clearances:
@@ -247,13 +258,16 @@ class Result:
     def environment_points(self) -> int: ...
     def ignored(self) -> IgnoredPointCounts: ...
     def poses(self) -> int: ...
+    def answer(self) -> Answer: ...
     def source(self) -> _Sources: ...
     def xyz(self) -> _Doubles: ...
     def first_pose(self) -> _Poses | None: ...
+    def last_pose(self) -> _Poses | None: ...
     def bodies(self) -> list[str]: ...
     def first_body(self) -> _Poses | None: ...
     def clearance(self) -> Clearances | None: ...
     def profile(self) -> Profile | None: ...
+    def model_spacing(self) -> float: ...
     def model_box(self) -> Box | None: ...
 class Conflict:
     id: Final[int]
@@ -266,6 +280,9 @@ class Conflict:
     last_pose: Final[int]
     chainage_from: Final[float]
     chainage_to: Final[float]
+    obstacle_chainage: Final[float | None]
+    shift_left: Final[float | None]
+    shift_right: Final[float | None]
     least_distance: Final[float | None]
     nearest_pose: Final[int | None]
     nearest_source: Final[int | None]
@@ -277,8 +294,18 @@ class Conflict:
     lateral: Final[float | None]
     height: Final[float | None]
     group: Final[int]
+class SmallGroup:
+    points: Final[int]
+    source: Final[int]
+    box: Final[Box]
+    first_pose: Final[int]
+    last_pose: Final[int]
+    chainage_from: Final[float]
+    chainage_to: Final[float]
 class Conflicts:
     listed: Final[list[Conflict]]
+    small: Final[list[SmallGroup]]
+    has_last_poses: Final[bool]
     conflict_of: Final[_Poses]
     colliding_points: Final[int]
     groups: Final[int]
@@ -290,40 +317,41 @@ class Conflicts:
     def __len__(self) -> int: ...
 class ReportSummary:
     clear: Final[bool]
+    verdict: Final[Literal["clear", "conflict", "undecided"]]
     bytes: Final[int]
     conflicts: Final[Conflicts]
     facts: Final[str]
 
 def read_model(
-    path: _AnyPath, *, spacing: float = 0.0, unit: float = 0.0, environment_unit: float = 1.0,
+    path: _AnyPath, *, spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str = 1.0,
     vertices_only: bool = False, above: float | None = None, messages: list[Message] | None = None,
 ) -> _Doubles: ...
 def read_model_shape(
-    path: _AnyPath, model_as: Literal["points", "surface", "solid"] = "surface", *, spacing: float = 0.0,
-    unit: float = 0.0, environment_unit: float = 1.0, vertices_only: bool = False,
+    path: _AnyPath, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *, spacing: float = 0.0,
+    unit: float | str = 0.0, environment_unit: float | str = 1.0, vertices_only: bool = False,
     above: float | None = None, messages: list[Message] | None = None,
 ) -> ModelShape: ...
 def read_trajectory(
     path: _AnyPath, *, format: str = "auto", allow_non_rigid: bool = False,
     angle_unit: Literal["declared", "deg", "rad"] = "declared",
     angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "",
-    default_crs: str = "", datum: str = "", metres_per_unit: float = 0.0,
-    environment_unit: float = 1.0, lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
+    default_crs: str = "", datum: str = "", metres_per_unit: float | str = 0.0,
+    environment_unit: float | str = 1.0, lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
     messages: list[Message] | None = None, labels: PoseLabels | None = None,
 ) -> _Doubles: ...
 def read_vehicle(
-    file: _AnyPath, poses: ArrayLike, model_as: Literal["points", "surface", "solid"] = "surface", *,
-    spacing: float = 0.0, unit: float = 0.0, environment_unit: float = 1.0,
+    file: _AnyPath, poses: ArrayLike, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *,
+    spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str = 1.0,
     vertices_only: bool = False, above: float | None = None, format: str = "auto",
     allow_non_rigid: bool = False, angle_unit: Literal["declared", "deg", "rad"] = "declared",
     angle_frame: Literal["declared", "ned", "enu"] = "declared", crs: str = "",
-    default_crs: str = "", datum: str = "", metres_per_unit: float = 0.0,
+    default_crs: str = "", datum: str = "", metres_per_unit: float | str = 0.0,
     lever_arm: Sequence[float] = (0.0, 0.0, 0.0), messages: list[Message] | None = None,
 ) -> list[Body]: ...
 def convert(
     inputs: _AnyPath | Iterable[_AnyPath], output: _AnyPath, *, scale: float | None = None,
     cell_points: int = 65536, regular_size: float | None = None, memory_bytes: int = 4294967296,
-    threads: int = 0, ignore_crs: bool = False, columns: Sequence[str] = (),
+    threads: int = 0, unit: float | str = 0.0, ignore_crs: bool = False, columns: Sequence[str] = (),
     skip_unreadable: bool = False, strict: bool = False, overwrite: bool = False,
     resume: bool = False, progress: _Progress | None = None, message: _Tell | None = None,
     stop: _Stop | None = None,
@@ -335,7 +363,7 @@ def search(
     memory_bytes: int = 4294967296, device_memory_bytes: int = 0, field_voxel: float = 0.0,
     grid_cell: float = 0.0, float_precision: bool = False, shard: tuple[int, int] | None = None,
     overwrite: bool = False, resume: bool = False, strict: bool = False, input_warnings: Iterable[Message] = (),
-    end_gpus: bool = False, journal_interval_seconds: float = 5.0,
+    model_is_cut: bool = False, end_gpus: bool = False, journal_interval_seconds: float = 5.0,
     progress: _Progress | None = None, message: _Tell | None = None, stop: _Stop | None = None,
 ) -> SearchReport: ...
 def merge(
@@ -347,8 +375,8 @@ def merge(
 def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,
     split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x", up: _Axis = "+z",
-    model_box: Box | None = None, bodies: Sequence[Body] = (), memory_bytes: int = 4294967296,
-    threads: int = 0, progress: _Progress | None = None, stop: _Stop | None = None,
+    model_box: Box | None = None, model: ArrayLike | ModelShape | None = None,
+    bodies: Sequence[Body] = (), memory_bytes: int = 4294967296, threads: int = 0, progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> Conflicts: ...
 def write_report(
     result: Result, store: Store, model: ArrayLike | ModelShape, poses: ArrayLike, output: _AnyPath, *,

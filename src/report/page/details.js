@@ -26,6 +26,7 @@ function conflictFacts(conflict) {
   const { query } = page.facts, words = classOf(conflict.least_distance);
   const rows = [
     ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideWords(conflict.side))}`],
+    conflict.obstacle_chainage !== null && ["Obstacle", `stands at chainage ${station(conflict.obstacle_chainage)}`],
     conflict.body !== undefined && ["Body", conflict.body],
     ["Place", coordinates(conflict.nearest_point ?? conflict.centroid)],
     offsetWords(conflict) && ["Offset", offsetWords(conflict)],
@@ -38,6 +39,12 @@ function conflictFacts(conflict) {
   }
   if (conflict.points_inside > 0) {
     rows.push(["Inside", `${count(conflict.points_inside)} of its points`]);
+  }
+  const shifts = [["left", conflict.shift_left], ["right", conflict.shift_right]]
+      .filter(([, shift]) => shift !== null)
+      .map(([side, shift]) => `${(Math.ceil(shift * 1000) / 1000).toFixed(3)} ${unitSymbol} to the ${side}`);
+  if (shifts.length > 0) {
+    rows.push(["Shift", `at least ${shifts.join(" or ")} frees its own points`]);
   }
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
             ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +

@@ -49,14 +49,14 @@ function drawPath(context, painter, unitSize) {
     }
     context.stroke();
   }
+  drawUnsearchedPath(context, painter, unitSize);
 }
 
 /** The numbers of conflicts, the worst ones first; those without room become dots. */
 function drawNumbers(context, painter, unitSize, places) {
   const worst = worstConflict();
   const order = [...conflictList()].sort((a, b) => (b === page.conflict) - (a === page.conflict) ||
-      (b === worst) - (a === worst) || (b.encroachment ?? 0) - (a.encroachment ?? 0) ||
-      b.points - a.points);
+      (b === worst) - (a === worst) || a.rank - b.rank);
   const taken = [], dots = [];
   for (const conflict of order) {
     const at = painter.project(placeOf(conflict));
@@ -215,7 +215,7 @@ function buildPlan() {
     button("All", fitPlan),
     make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, a number opens its conflict."));
   byId("plan-note").textContent = environmentNote() + (page.enclosed
-      ? " The scene is enclosed, so what lies above the vehicle is left out." : "");
+      ? " The scene is enclosed, so what lies above the vehicle is left out." : "") + unsearchedNote();
   watchPointer(canvas, panPlan, zoomPlan, (x, y) => pickNumber(plan.places, canvas, x, y));
   canvas.addEventListener("keydown", (event) => {
     const actions = { ArrowLeft: () => panPlan(0.1, 0), ArrowRight: () => panPlan(-0.1, 0),

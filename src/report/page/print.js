@@ -16,8 +16,7 @@ function printedTable() {
 }
 
 function printedCards() {
-  const worst = [...conflictList()].sort((a, b) => (b.encroachment ?? 0) - (a.encroachment ?? 0) ||
-      b.points - a.points).slice(0, kPrintedCards);
+  const worst = [...conflictList()].sort((a, b) => a.rank - b.rank).slice(0, kPrintedCards);
   const rest = conflictList().length - worst.length;
   return [make("h2", {}, rest > 0 ? `The ${worst.length} worst conflicts` : "The conflicts, one by one"),
           worst.map((conflict) => make("article", { class: "card" },

@@ -114,13 +114,14 @@ function profileCurve() {
           make("path", { d: line, class: "curve" })];
 }
 
-/** What a gap of the curve means. */
+/** What a gap of the curve means where the vehicle was searched. */
 function profileBeyond() {
   const { no_distance: none } = page.facts.page;
-  if (!page.poses.distance || !page.poses.distance.some((d) => d === none)) return [];
+  if (!page.poses.distance || !page.poses.distance.some((d, i) => d === none && isSearched(i))) return [];
   const far = shortLength(page.facts.query.profile);
+  const shaded = silentStretches().length > 0 ? " and no shading" : "";
   return make("text", { x: profile.left, y: profile.top - 8 },
-              `Where there is no curve, nothing is closer than ${far}.`);
+              `Where there is no curve${shaded}, nothing is closer than ${far}.`);
 }
 
 /** Conflicts as bars below the axis, numbered where there is room. */
@@ -177,10 +178,10 @@ function drawProfile() {
                                     "stroke-width": 2.5 }));
   const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, tabindex: 0,
                             role: "application", "aria-label": profileLabel() },
-    make("defs", {}, hatch),
+    make("defs", {}, hatch, unsearchedPatterns()),
     make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom,
                    class: "field" }),
-    profileAxes(), profileCurve(), profileSurface(), profileRequired(), profileBeyond(), profileConflicts(),
+    profileAxes(), profileUnsearched(), profileCurve(), profileSurface(), profileRequired(), profileBeyond(), profileConflicts(),
     make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
   if (!(query.profile > 0)) {
     svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong" },

@@ -1,8 +1,13 @@
 // Where the vehicle is on the profile, and what the profile says there.
 
 function profileValueWords(i) {
+  const left = unsearchedWords(i);
+  return distanceWords(i) + (left ? `${isSearched(i) && distanceWords(i) ? ", " : ": "}${left}` : "");
+}
+
+function distanceWords(i) {
   const d = distanceAt(i), { query } = page.facts;
-  if (d === undefined) return "";
+  if (d === undefined || !isSearched(i)) return "";
   if (d === null) return `: beyond ${shortLength(query.profile)}, nothing is closer`;
   const missing = query.radius - d;
   const distance = isInside(d) ? `${depthWords(d)} inside the vehicle` : metres(d);
@@ -62,6 +67,7 @@ function buildProfile() {
     least ? button(isInside(least.distance) ? "Deepest pose" : "Nearest pose", goToNearest) : "",
     make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, arrow keys step."));
   drawProfile();
+  byId("profile-unsearched").append(...unsearchedLegend());
   on("pose", moveProfileCursor);
   on("conflict", drawProfile);
   new ResizeObserver(() => {

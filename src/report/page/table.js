@@ -17,10 +17,13 @@ function tableColumns() {
   const lengths = (key) => (c) => c[key] === null ? "" : fixed(c[key], digits);
   const deep = list.some((c) => isInside(c.least_distance));
   const outside = (c) => isInside(c.least_distance) ? "inside" : lengths("least_distance")(c);
+  const shifted = list.some((c) => c.shift_left !== null || c.shift_right !== null);
   const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key])];
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
     ["Chainage", (c) => c.chainage_from, chainageCell],
+    list.some((c) => c.obstacle_chainage !== null) &&
+        ["Obstacle at", (c) => c.obstacle_chainage ?? c.chainage_from, stationCell],
     list.some((c) => c.body !== undefined) && ["Body", (c) => c.body ?? "", (c) => c.body ?? ""],
     ["Side", (c) => c.side, (c) => kSides[c.side]],
     list.some((c) => c.lateral !== null) && ["Lateral", ...offset("lateral")],
@@ -29,6 +32,8 @@ function tableColumns() {
     measured && ["Least distance", (c) => c.least_distance ?? Infinity, outside],
     deep && ["Depth", (c) => c.depth ?? 0, (c) => c.depth ? fixed(c.depth, digits) : ""],
     measured && ["Missing", (c) => c.encroachment ?? -1, lengths("encroachment")],
+    shifted && ["Shift left", (c) => c.shift_left ?? Infinity, shiftCell("shift_left")],
+    shifted && ["Shift right", (c) => c.shift_right ?? Infinity, shiftCell("shift_right")],
     ["Points", (c) => c.points, (c) => count(c.points)],
     deep && ["Inside", (c) => c.points_inside ?? 0, (c) => count(c.points_inside ?? 0)],
     ["Size", (c) => Math.max(...sizeOf(c)), (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × ")],
@@ -45,6 +50,11 @@ function chainageCell(conflict) {
   return from === to ? from : `${from} – ${to}`;
 }
 
+const stationCell = (c) => c.obstacle_chainage === null ? "" : c.obstacle_chainage.toFixed(2);
+
+/** Empty where no shift to that side that was tried frees the conflict. Never rounded down. */
+const shiftCell = (key) => (c) => c[key] === null ? "" : (Math.ceil(c[key] * 1000) / 1000).toFixed(3);
+
 function classCell(conflict) {
   const words = classOf(conflict.least_distance);
   return make("span", {}, make("span", { style: `color:${words.colour}`, class: "symbol" },
@@ -53,7 +63,8 @@ function classCell(conflict) {
 
 /** Column titles with the unit, where all of its numbers have one. */
 function titleWithUnit(title) {
-  const has = ["Chainage", "Lateral", "Height", "Least distance", "Depth", "Missing", "Size", "Place x, y, z"].includes(title);
+  const has = ["Chainage", "Obstacle at", "Lateral", "Height", "Least distance", "Depth", "Missing",
+               "Shift left", "Shift right", "Size", "Place x, y, z"].includes(title);
   return has ? `${title} (${unitSymbol})` : title;
 }
 
@@ -74,7 +85,7 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Chainage", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Pose"].includes(title);
+  const numbers = !["No.", "Chainage", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Pose"].includes(title);
   table.down = table.title === title ? !table.down : numbers;
   table.title = title;
   table.first = 0;

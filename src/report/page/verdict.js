@@ -1,11 +1,14 @@
+const kVerdictWords = { clear: "Clear", conflict: "Conflict", undecided: "Undecided" };
+
 function doubtSymbol() {
   return make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
               make("polygon", { points: "32,4 62,58 2,58", fill: "currentColor" }),
               make("path", { d: "M32 22 V41 M32 47 V52", stroke: "#fff", "stroke-width": 6 }));
 }
 
-function verdictSymbol(clear) {
-  return clear
+function verdictSymbol(verdict) {
+  if (verdict === "undecided") return doubtSymbol();
+  return verdict === "clear"
       ? make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
              make("circle", { cx: 32, cy: 32, r: 30, fill: "currentColor" }),
              make("path", { d: "M17 33 L28 44 L48 21", fill: "none", stroke: "#fff",
@@ -45,7 +48,12 @@ function conflictTiles() {
 }
 
 /** How bad the worst conflict is. */
-function worstTile({ points, encroachment: missing, least_distance: distance }) {
+function worstTile({ points, encroachment: listed, least_distance: nearest }) {
+  const { least_distance: least, query } = page.facts;
+  // The nearest point of all may belong to a group that is too small for the list.
+  const elsewhere = listed !== null && least && least.distance < nearest;
+  const distance = elsewhere ? least.distance : nearest;
+  const missing = elsewhere ? query.radius - least.distance : listed;
   if (missing === null) return tile(plural(points, "point"), "most in one conflict");
   if (isInside(distance)) return tile(metres(-distance), "deepest inside the vehicle");
   return tile(missingWords(missing, distance),
@@ -68,13 +76,20 @@ function clearTiles() {
   } else {
     tiles.push(tile("not known", "least distance, see below"));
   }
-  tiles.push(tile(station(inputs.trajectory.length), "path searched"));
+  const { length, searched_length: searched } = inputs.trajectory;
+  tiles.push(tile(station(searched), searched < length ? `of ${station(length)} of path searched`
+                                                       : "path searched"));
   return tiles;
 }
 
 /** " at 3 places", and how many more the table leaves out. */
-function placesText({ count: listed, small_groups: small }) {
-  if (listed === 0) return ` at ${plural(small, "place")}, too small for the list`;
+function placesText({ count: listed, small_groups: small, first_small: first }) {
+  if (listed === 0) {
+    return ` at ${plural(small, "place")}, too small for the list` + (first
+        ? `; ${small === 1 ? "it has" : "the first has"} ${plural(first.points, "point")} at ` +
+          `chainage ${station(first.chainage_from)}. --min-points 1 lists ${small === 1 ? "it" : "them"}`
+        : "");
+  }
   const more = small > 0 ? ` and at ${count(small)} more that are too small for the list` : "";
   return ` at ${plural(listed, "place")}${more}`;
 }
@@ -97,11 +112,26 @@ function insideText() {
   return ` ${plural(inside, "point")} ${inside === 1 ? "is" : "are"} inside it.`;
 }
 
+/** Of a mesh that was searched as points: how close its surface may come all the same. */
+function spacingSentence({ query: { radius }, inputs: { model: { spacing } } }) {
+  if (spacing === null) return "";
+  const closest = spacing < radius ? `come as close as ${shortLength(radius - spacing)}`
+                                   : "touch something";
+  return ` The vehicle was searched as points of a mesh. No place of its surface is farther than ` +
+         `${shortLength(spacing)} from one of them, so the surface may ${closest}.`;
+}
+
 function verdictSentences() {
   const { facts } = page, radius = shortLength(facts.query.radius), worst = worstConflict();
   if (facts.verdict === "clear") {
     return [`Every point of the environment keeps at least ${radius} from the vehicle, ` +
-            `at all ${plural(facts.inputs.trajectory.poses, "pose")}.`, leastSentence()];
+            (facts.unsearched.length > 0 ? "at all poses that it has."
+                 : `at all ${plural(facts.inputs.trajectory.poses, "pose")}.`) +
+            spacingSentence(facts), leastSentence()];
+  }
+  if (facts.verdict === "undecided") {
+    return [`No point was found closer than ${radius} to the vehicle, but the question is in ` +
+            `doubt (${facts.doubts.join(", ")}), so that is no answer.`, leastSentence()];
   }
   const where = facts.conflicts ? placesText(facts.conflicts) : "";
   const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}`;
@@ -119,16 +149,26 @@ function verdictSentences() {
   return [first, nearer ? `${worstText} ${leastSentence()}` : worstText];
 }
 
+/** Whether the vehicle touches points that the search ignored. */
+function collidingIgnored({ colliding }) {
+  if (colliding === null) return "The vehicle may touch them.";
+  if (colliding === 0) return "The vehicle touches none of them.";
+  return `${count(colliding)} of them would collide if they were searched.`;
+}
+
 function cautions() {
   const { facts } = page;
   const out = facts.warnings.map((w) => w.message[0].toUpperCase() + w.message.slice(1) + ".");
   const { conflicts, inputs, query } = facts;
+  for (const code of facts.doubts.filter((d) => !facts.warnings.some((w) => w.code === d))) {
+    out.push(`The run that made this result warned of ${code}, which puts its question in doubt.`);
+  }
   if (!query.exact) {
     out.push("The result is not exact: it was made with a tolerance or in single precision.");
   }
   if (facts.ignored !== null) {
     out.push(`The search ignored ${plural(facts.ignored.points, "point")} of the environment ` +
-             `(${facts.ignored.what}). The vehicle may touch them.`);
+             `(${facts.ignored.what}). ${collidingIgnored(facts.ignored)}`);
   }
   if (conflicts && inputs.trajectory.length > 0 && conflicts.longest_group > 5 &&
       conflicts.longest_group > 0.5 * inputs.trajectory.length) {
@@ -205,7 +245,7 @@ function ignoredText({ classes, boxes }) {
 
 /** What --model-above took from the model's file. */
 function leftOut({ above, left_out: left }) {
-  return `points of the model below z = ${shortLength(above)} in its own frame` +
+  return `points or triangles of the model below z = ${shortLength(above)} in its own frame` +
       (left > 0 ? `, ${count(left)} of them: ` : ": ");
 }
 
@@ -239,8 +279,9 @@ function legend() {
 }
 
 function buildVerdict() {
-  const { facts } = page, clear = facts.verdict === "clear";
+  const { facts } = page, clear = facts.verdict === "clear", conflict = facts.verdict === "conflict";
   const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
+  const searched = searchedSentence();
   const doubtful = clear && warned.length > 0;
   byId("made").textContent = `Made ${facts.date} by Clearway ${facts.clearway}`;
   byId("about").append(...["project", "client", "author"].filter((key) => facts[key]).map((key) =>
@@ -248,14 +289,15 @@ function buildVerdict() {
   byId("loading").remove();
   byId("verdict-body").append(
     make("div", { class: `banner ${doubtful ? "doubt" : facts.verdict}` },
-         doubtful ? doubtSymbol() : verdictSymbol(clear),
+         doubtful ? doubtSymbol() : verdictSymbol(facts.verdict),
          make("div", { class: "words" }, make("h2", { id: "verdict-word" },
-              doubtful ? "Clear, but doubtful" : clear ? "Clear" : "Conflict"),
+              doubtful ? "Clear, but doubtful" : kVerdictWords[facts.verdict]),
               make("p", {}, first), make("p", {}, second),
+              searched && make("p", { id: "searched" }, searched),
               warned.length > 0 &&
                   make("p", { class: "but" },
-                       `${clear ? "But see" : "See also"} ${plural(warned.length, "warning")} below.`)),
-         make("div", { class: "tiles" }, clear ? clearTiles() : conflictTiles())),
+                       `${conflict ? "See also" : clear ? "But see" : "See"} ${plural(warned.length, "warning")} below.`)),
+         make("div", { class: "tiles" }, conflict ? conflictTiles() : clearTiles())),
     warned.length > 0 ? make("ul", { class: "warnings", "aria-label": "Warnings" },
                              warned.map((text) => make("li", {}, text))) : "",
     make("div", { class: "columns" }, questionTable(),

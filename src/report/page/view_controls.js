@@ -93,6 +93,7 @@ function viewNote() {
   if (!view.scene) {
     text += "This browser has no WebGL2, so the view is drawn without it, and slowly. ";
   }
+  if (silentStretches().length > 0) text += "Where the vehicle has no pose, none is drawn. ";
   return text + environmentNote();
 }
 

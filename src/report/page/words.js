@@ -56,8 +56,9 @@ const after = (text) => text ? `, ${text}` : "";
 /** ", body NAME", where there are several. */
 const bodyWords = ({ body }) => body === undefined ? "" : `, body "${body}"`;
 
-/** Where along the path a conflict is nearest, or else where it begins. */
+/** Where along the path the obstacle stands. If that is not known, where it is nearest or begins. */
 function stationOf(conflict) {
+  if (conflict.obstacle_chainage !== null) return conflict.obstacle_chainage;
   return conflict.nearest_pose === null ? conflict.chainage_from
       : page.poses.chainage[shownPose(conflict.nearest_pose)];
 }

@@ -37,11 +37,7 @@ bool matters(const std::vector<BodyMessages>& bodies, const Message& message) {
 
 void tell(Message message, const std::string& who, MessageLog& log) {
   message.text = who + ": " + message.text;
-  if (message.severity == Message::Severity::kNote) {
-    log.note(std::move(message.text));
-  } else {
-    log.add(std::move(message));
-  }
+  log.add(std::move(message));
 }
 
 /// Once for all bodies from `first` on that are told the same.

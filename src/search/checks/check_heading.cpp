@@ -105,6 +105,19 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
            {{"share", shares[axis]}});
 }
 
+/// No mistake where the vehicle reverses, or its front lies along -x; otherwise its parts meet the
+/// scan on the wrong side.
+void tell_backwards(const Drive& drive, MessageLog& log) {
+  const double along = drive.forwards(0);
+  if (along > -kAlongAxis) return;
+  log.add(
+      {Message::Severity::kNote,
+       "drives-backwards",
+       "the model moves backwards, against its x axis: if it does not reverse, turn the poses or "
+       "the model by 180 degrees, because left and right are swapped",
+       {{"share", -along}}});
+}
+
 /// Whether the poses hardly turn the model: then it is no crane that slews on the spot.
 bool hardly_turns(const Question& question) {
   constexpr double kThirtyDegrees = 0.866;
@@ -154,6 +167,7 @@ void check_heading(const Question& question, MessageLog& log) {
   if (!drive.is_one()) return;
   if (warn_of_tilt(drive, log) || warn_of_rotations(drive, log)) return;
   warn_sideways(question, drive, log);
+  tell_backwards(drive, log);
 }
 
 }  // namespace clearway

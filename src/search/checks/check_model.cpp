@@ -128,6 +128,24 @@ void warn_of_scale(const Question& question, MessageLog& log) {
            {{"least", least}, {"most", most}});
 }
 
+/// Matrices that mirror are accepted only where poses need not be rigid.
+void warn_of_mirror(const Question& question, MessageLog& log) {
+  const auto mirrors = [](const Pose& pose) {
+    const auto& r = pose.rotation;
+    return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
+               r[2] * (r[3] * r[7] - r[4] * r[6]) <
+           0;
+  };
+  const auto count = std::ranges::count_if(question.query.poses, mirrors);
+  if (count == 0) return;
+  log.warn(
+      "mirrored-poses",
+      counted(static_cast<std::uint64_t>(count), "pose mirrors", "poses mirror") +
+          " the model, so that its left side meets what is on the right: two axes are swapped, "
+          "or one has the wrong sign",
+      {{"poses", static_cast<double>(count)}});
+}
+
 }  // namespace
 
 void check_model(const Question& question, MessageLog& log) {
@@ -135,6 +153,7 @@ void check_model(const Question& question, MessageLog& log) {
   warn_of_origin(question, log);
   warn_of_same(question, log);
   warn_of_scale(question, log);
+  warn_of_mirror(question, log);
 }
 
 }  // namespace clearway

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "core/util/message_log.hpp"
 #include "search/checks/facts/path_cover.hpp"
 #include "search/checks/question.hpp"
@@ -36,8 +39,21 @@ void check_model_spacing(const Question& question, MessageLog& log);
 /// The radius against model and scan: "radius-size", "fine-radius", "coarse-scan".
 void check_radius(const Question& question, MessageLog& log);
 
-/// What lies between two poses: "large-steps".
-void check_steps(const Question& question, MessageLog& log);
+/// What lies between two poses: "large-steps", and "trajectory-jump" for steps of which it does not
+/// warn. Of a vehicle's bodies, a jump of the path that they follow is told of once.
+class StepChecks {
+ public:
+  StepChecks() = default;
+  /// path: of a vehicle, whose bodies are checked next. Its jumps are left to check_path.
+  explicit StepChecks(const Question& path);
+
+  void check(const Question& question, MessageLog& log);
+  /// After all bodies: the jumps of the path where "large-steps" has not warned of any of them.
+  void check_path(const Question& path, MessageLog& log) const;
+
+ private:
+  std::vector<std::uint32_t> path_jumps_, told_;  ///< poses from which a step starts, ascending
+};
 
 /// The way that the model goes, against its own axes: "tilted", "rotations", "sideways",
 /// "flat-model", "scaled-poses", "tiny-path".

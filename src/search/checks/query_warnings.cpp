@@ -1,6 +1,7 @@
 #include "search/checks/query_warnings.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "io/model/sample_mesh.hpp"
 #include "search/checks/body_messages.hpp"
@@ -11,6 +12,9 @@ namespace clearway {
 namespace {
 
 void warn_of_unit(LengthUnit unit, MessageLog& log) {
+  if (unit == LengthUnit::kUnknown) {
+    log.note("the environment names no unit of length, so metres are assumed");
+  }
   if (unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot) {
     log.warn(
         "feet",
@@ -67,7 +71,8 @@ void check_model_itself(const Question& question, const Query& asked, ModelForm 
 }
 
 /// What can be said of one body. Whether that matters depends on the others.
-void warn_of_body(const StoreReader& store, const Body& body, const Query& query, MessageLog& log) {
+void warn_of_body(const StoreReader& store, const Body& body, const Query& query, StepChecks& steps,
+                  MessageLog& log) {
   if (body.poses.empty()) {
     log.warn("no-poses", "has no poses: it cannot collide");
     return;
@@ -85,12 +90,15 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   check_surroundings(question, cover, false, log);
   check_model_itself(question, own, form, log);
   check_radius(question, log);
-  check_steps(question, log);
+  steps.check(question, log);
   check_heading(question, log);
 }
 
-void warn_of_bodies(const StoreReader& store, const Query& query, MessageLog& log) {
+/// path: the vehicle's, with a model of one point.
+void warn_of_bodies(const StoreReader& store, const Question& path, const Query& query,
+                    MessageLog& log) {
   std::vector<BodyMessages> told;
+  StepChecks steps(path);
   for (const Body& body : query.bodies) {
     told.push_back({body.name, {}});
     const MessageCallback keep = [&](const Message& message) {
@@ -98,9 +106,10 @@ void warn_of_bodies(const StoreReader& store, const Query& query, MessageLog& lo
     };
     std::vector<Message> unused;
     MessageLog own(keep, unused);
-    warn_of_body(store, body, query, own);
+    warn_of_body(store, body, query, steps, own);
   }
   tell_of_bodies(told, log);
+  steps.check_path(path, log);
 }
 
 /// query: of points. asked: the same, before its surface was sampled.
@@ -120,9 +129,10 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
     log.note("the trajectory has one pose: the model is checked at that place alone");
   }
   if (!query.bodies.empty()) {
-    const Query path({Vec3{}}, query.poses, query);
-    warn_of_flat_scan(Question(store, unit, path), log);
-    warn_of_bodies(store, query, log);
+    const Query points({Vec3{}}, query.poses, query);
+    const Question path(store, unit, points);
+    warn_of_flat_scan(path, log);
+    warn_of_bodies(store, path, query, log);
     return;
   }
   const Question question(store, unit, query);
@@ -134,13 +144,14 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
   check_surroundings(question, cover, floats, log);
   check_model_itself(question, asked, view, log);
   check_radius(question, log);
-  check_steps(question, log);
+  StepChecks().check(question, log);
   check_heading(question, log);
 }
 
 }  // namespace
 
 void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
+  for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
   if (!query.is_surface()) return warn_of_points(store, query, query, ModelForm::kPoints, log);
   ModelForm view{};
   const Query points = sampled(query, view);

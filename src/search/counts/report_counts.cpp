@@ -1,24 +1,17 @@
 #include "search/counts/report_counts.hpp"
 
+#include <algorithm>
 #include <cmath>
 
-#include "io/result/result_rows.hpp"
+#include "io/result/answer.hpp"
 
 namespace clearway {
-namespace {
-
-/// distance: of a pose, or its square.
-void count_pose(double distance, SearchReport& report) {
-  if (!std::isinf(distance)) ++report.profile_poses;
-}
-
-}  // namespace
-
 void report_sizes(const StoreReader& store, const Query& query, SearchReport& report) {
   report.environment_points = store.point_count();
   report.model_points = query.model.size();
   report.model_triangles = query.triangles.size();
   report.model_solids = solid_count(query);
+  report.model_spacing = model_spacing(query);
   report.poses = query.poses.size();
   report.searches = report.poses * element_count(query);
   for (const Body& body : query.bodies) {
@@ -31,12 +24,12 @@ void report_sizes(const StoreReader& store, const Query& query, SearchReport& re
 
 void report_finished(const ResultReader& result, SearchReport& report) {
   report.was_finished = true;
-  report.colliding_points = result.collisions();
-  report.clearance_points = result.clearances();
-  ProfileRowStream profile(result);
-  for (ProfileRows rows; profile.read(rows);) {
-    for (const double distance : rows.distance) count_pose(distance, report);
-  }
+  const std::uint64_t environment_points = report.environment_points;  // a header counts NaN too
+  const double spacing = report.model_spacing;  // files of earlier releases do not have it
+  static_cast<Answer&>(report) = answer_of(result);
+  report.environment_points = environment_points;
+  report.model_spacing = std::max(report.model_spacing, spacing);
+  add_doubts(report.warnings, report);
 }
 
 void report_written(const WrittenResult& written, const ProfileSet& profile, SearchReport& report) {
@@ -47,7 +40,7 @@ void report_written(const WrittenResult& written, const ProfileSet& profile, Sea
   report.least_clearance = written.least_clearance;
   report.least_profile = written.least_profile;
   for (std::uint32_t pose = 0; pose < profile.poses(); ++pose) {
-    count_pose(profile.at(pose).squared, report);
+    if (!std::isinf(profile.at(pose).squared)) ++report.profile_poses;
   }
 }
 

@@ -18,6 +18,9 @@
 namespace clearway {
 namespace {
 
+/// With a smaller share of the points left, most of the scan is ignored, and not some of it.
+constexpr double kFewLeft = 0.01;
+
 /// Calls visit(cell, searched) for the cells in which `ignored` may leave out something; several
 /// threads at once. searched: room for the words of a cell.
 template <typename Visit>
@@ -134,6 +137,17 @@ void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
   warn_of_boxes(query, counts, log);
   if (query.ignores_points() && counts.points > 0 && counts.points == store.point_count()) {
     log.warn("all-ignored", "all points of the environment are ignored: nothing is searched");
+    return;
+  }
+  const std::uint64_t left = store.point_count() - counts.points;
+  if (query.ignores_points() &&
+      static_cast<double>(left) < kFewLeft * static_cast<double>(store.point_count())) {
+    log.warn(
+        "most-ignored",
+        format_count(counts.points) + " of " + format_count(store.point_count()) +
+            " points of the environment are ignored, so that only " + format_count(left) +
+            (left == 1 ? " is" : " are") + " searched. Ignore a class or a box that holds less",
+        {{"ignored", static_cast<double>(counts.points)}, {"left", static_cast<double>(left)}});
   }
 }
 

@@ -14,8 +14,8 @@ namespace clearway {
 IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters& query,
                                  int threads);
 
-/// Warns of what leaves nothing out: "absent-class", "empty-box"; and where that is
-/// all there is: "all-ignored".
+/// Warns of what leaves nothing out: "absent-class", "empty-box"; and where that is all there is,
+/// or nearly so: "all-ignored", "most-ignored".
 void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
                      const IgnoredPointCounts& counts, MessageLog& log);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "clearway/query.hpp"
@@ -17,6 +18,9 @@ class ShardCells {
   /// threads: at least 1. Throws ResourceError where the memory is too little.
   ShardCells(const StoreReader& store, const Query& query, const Shard& shard, int threads,
              std::uint64_t memory_bytes);
+
+  /// Of no part: any cells.
+  explicit ShardCells(std::vector<bool> cells) : own_(std::move(cells)) {}
 
   bool contains(std::uint32_t cell) const { return own_[cell]; }
   const ResultPart& part() const { return part_; }

@@ -36,7 +36,7 @@ struct Strip {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;
   std::vector<double> distance;
-  std::vector<std::uint32_t> pose, body;
+  std::vector<std::uint32_t> pose, body, last_pose;
 };
 
 }  // namespace
@@ -55,7 +55,10 @@ std::shared_ptr<CollisionPiece> encode_rows(const ResultWriter& writer, const Ro
     set_column(columns.xyz, strip, [&](const auto& row) { return xyz_of(quantisation, row.q); });
     if (first_pose) set_column(columns.pose, strip, pose_of);
     if (meaning.header.has_first_bodies()) set_column(columns.body, strip, body_of);
-    out->rows.add(columns.source, columns.xyz, columns.pose, columns.body);
+    if (meaning.header.last_pose) {
+      set_column(columns.last_pose, strip, [](const auto& row) { return row.last_pose; });
+    }
+    out->rows.add(columns.source, columns.xyz, columns.pose, columns.body, columns.last_pose);
   });
   out->rows.seal();
   if (first_pose) {

@@ -14,6 +14,7 @@ struct CollisionRow {
   std::uint64_t source;
   std::int32_t q[3];
   std::uint32_t first_pose;  ///< as BodyNumbers
+  std::uint32_t last_pose;
 };
 
 struct ClearanceRow {

@@ -9,7 +9,11 @@
 #include <tuple>
 #include <vector>
 
+#include "core/geometry/triangle_box.hpp"
+#include "support/random_triangles.hpp"
+
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -93,4 +97,76 @@ TEST_CASE("a wide tree without points visits none and one without bounds visits 
   CHECK(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, infinity).size() == 100);
   CHECK(visited_from(tree, {{9, 9, 9}, {9, 9, 9}}, std::nan("")).size() == 100);
   CHECK(visited_from(tree, {{1e30, 0, 0}, {1e30, 0, 0}}, 2e60).size() == 100);
+}
+
+TEST_CASE("a wide tree of triangles leaves out none within reach of a hull") {
+  Random random(11);
+  std::uint64_t missed = 0, visited = 0, in_reach = 0;
+  for (int scene = 0; scene < 60; ++scene) {
+    // A bent patch, as fine as it is long or of long strips, anywhere and of any size.
+    const double size = std::pow(10.0, uniform(random, -6, 4));
+    const Vec3 at = plus({}, scene % 3 == 0 ? 1e4 * size : size, random_direction(random));
+    const double length = scene % 2 == 0 ? size : 20 * size, bend = uniform(random, 0, 1);
+    const Vec3 u = random_direction(random), beside = random_direction(random);
+    const auto place = [&](double s, double t) {
+      const Vec3 on = plus(plus(at, s * length, u), t * size, beside);
+      return plus(on, bend * t * t * size, {0.3, -0.5, 0.8});
+    };
+    std::vector<Triangle> triangles;
+    const int steps = 14;
+    for (int i = 0; i < steps; ++i) {
+      for (int j = 0; j < steps; ++j) {
+        const double s = i / 14.0, t = j / 7.0 - 1, ds = 1 / 14.0, dt = 1 / 7.0;
+        triangles.emplace_back(place(s, t), place(s + ds, t), place(s, t + dt));
+        triangles.emplace_back(place(s + ds, t), place(s, t + dt), place(s + ds, t + dt));
+      }
+    }
+    const TriangleTree model(triangles);
+    const WideTreeOf<Triangle> tree(model);
+    for (int k = 0; k < 40; ++k) {
+      const double apart = size * std::pow(10.0, uniform(random, -2, 0.3));
+      const Vec3 start = plus(place(uniform(random, 0, 1), uniform(random, -1, 1)), apart,
+                              random_direction(random));
+      const Vec3 way = plus({}, k % 4 == 0 ? 0 : uniform(random, 0, 1) * length,
+                            k % 3 == 0 ? random_direction(random) : u);
+      const Vec3 bent = plus({}, 0.05 * length_of(way), random_direction(random));
+      const PlaceHull hull{{}, {start, plus(start, 1, way), plus(plus(start, 0.5, way), 1, bent)}};
+      PlaceHull boxed = hull;
+      boxed.box = {start, start};
+      for (const Vec3& corner : hull.corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+          boxed.box.lo[axis] = std::min(boxed.box.lo[axis], corner[axis]);
+          boxed.box.hi[axis] = std::max(boxed.box.hi[axis], corner[axis]);
+        }
+      }
+      const double reach = apart * uniform(random, 0.5, 1.5);
+      std::vector<bool> seen(triangles.size(), false);
+      tree.ref().any_nearest_first(
+          boxed, [&] { return reach * reach; },
+          [](const TrianglePacket&, double(&out)[TrianglePacket::kMost]) {
+            std::fill(std::begin(out), std::end(out), 0.0);
+          },
+          [&](const TrianglePacket& packet, std::uint32_t i) {
+            seen[packet.index[i]] = true;
+            ++visited;
+            return false;
+          });
+      for (int p = 0; p < 6; ++p) {
+        double share[3] = {uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1)};
+        const double sum = share[0] + share[1] + share[2];
+        Vec3 y{};
+        for (int c = 0; c < 3; ++c) y = plus(y, share[c] / sum, hull.corner[c]);
+        for (std::uint32_t i = 0; i < model.size(); ++i) {
+          const bool is_in_reach =
+              squared_distance(y, model.element(i)) < reach * reach * (1 - 1e-9);
+          in_reach += is_in_reach;
+          missed += is_in_reach && !seen[i];
+        }
+      }
+    }
+  }
+  CHECK(missed == 0);
+  CHECK(in_reach > 10000);
+  // Most triangles are left out, though their boxes overlap those of the hulls.
+  CHECK(visited < 60ULL * 40 * 392 / 4);
 }

@@ -151,12 +151,3 @@ TEST_CASE("a model that stands on its head is doubted") {
   });
   CHECK(doubts(turned) == "upside-down");
 }
-
-TEST_CASE("a jump is doubted, with the pose it starts from") {
-  auto poses = winding_road();
-  for (std::size_t i = 400; i < poses.size(); ++i) poses[i].translation[2] += 11;
-  CHECK(doubts(poses) == "trajectory-jump");
-  CHECK(doubts_about(poses, RotationSource::kMatrices, "a").at(0).numbers.at(0).second == 399);
-  for (std::size_t i = 400; i < poses.size(); ++i) poses[i].translation[2] -= 2;
-  CHECK(doubts(poses).empty());
-}

@@ -18,8 +18,9 @@ struct Scans {
   Scans() {
     fs::create_directory(folder / "scans");
     for (const std::string name : {"a", "b", "c", "d"}) {
-      write_las(folder / ("scans/" + name + ".las"),
-                std::vector<Quantum>(10, Quantum{name[0], 2, 3}));
+      std::vector<Quantum> points;
+      for (int i = 0; i < 10; ++i) points.push_back({name[0], 2, i});
+      write_las(folder / ("scans/" + name + ".las"), points);
     }
     options = conversion_of({folder / "scans"}, folder / "out.h5");
   }

@@ -111,9 +111,9 @@ TEST_CASE("a profile is exported as CSV, without values where there is no point"
 
 TEST_CASE("a profile is exported with times and names of its poses") {
   const Tables tables;
-  CHECK(tables.profile_text({{1e9 + 0.1, 2, 3.5}, {"a", "b, \"c\"", ""}}) ==
+  CHECK(tables.profile_text({{1e9 + 0.1, 2, 3.5}, {"=1+1", "b, \"c\"", "-3"}}) ==
         "pose,time,name,chainage,distance,source,x,y,z\n"
-        "0,1000000000.1,a,0,0.25,9,0.005,0.006,-0.007\n"
+        "0,1000000000.1,\"'=1+1\",0,0.25,9,0.005,0.006,-0.007\n"
         "1,2,\"b, \"\"c\"\"\",1.5,,,,,\n"
-        "2,3.5,,2.25,0.1,3,14.78,-0.002,0.003\n");
+        "2,3.5,-3,2.25,0.1,3,14.78,-0.002,0.003\n");
 }

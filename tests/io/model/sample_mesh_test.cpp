@@ -149,3 +149,11 @@ TEST_CASE("a spacing that asks for too many points is refused with one that does
   CHECK_THAT(refusal(millimetres, 0.5), Contains("too large for a spacing"));
   CHECK_THAT(refusal(unit_cube(), 1e-10), Contains("expected one from"));
 }
+
+TEST_CASE("lines alone have a spacing for about so many samples") {
+  const TriangleMesh line = {{{0, 0, 0}, {0, 0, 10}}, {{0, 1, 1}, {1, 1, 1}}};
+  const double spacing = spacing_for(line, 1000);
+  const std::size_t samples = sample_mesh(line, spacing, "mesh").size();
+  CHECK(samples > 100);
+  CHECK(samples <= 32'000);
+}

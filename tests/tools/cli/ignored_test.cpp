@@ -58,20 +58,25 @@ const std::string kPlantBox = "--ignore-box 6.9,0,-1,7.1,0.5,1 ";
 TEST_CASE("a verdict says what was ignored") {
   const Garden garden;
   CHECK_THAT(garden.run("-o a.h5").out, Contains("conflict: 40 points are closer"));
-  CHECK_THAT(garden.run(kPlant + "-o b.h5").out,
-             Contains("clear, with 40 points ignored (class 3): no other point is closer"));
+  CHECK_THAT(
+      garden.run(kPlant + "-o b.h5").out,
+      Contains("clear, with 40 points ignored (class 3), 40 of which would collide: no other "
+               "point is closer"));
   CHECK_THAT(garden.run(kPlantBox + "-o c.h5").out,
-             Contains("clear, with 40 points ignored (1 box): no other point is closer"));
+             Contains("clear, with 40 points ignored (1 box), 40 of which would collide: no other "
+                      "point is closer"));
   const Outcome both = garden.run("--ignore-class=2,6-7 --ignore-box=-1,0,-1,1,2,1 -o d.h5 --json");
   const json report = json::parse(both.out);
   CHECK(report["verdict"] == "conflict");
   CHECK(report["ignored"]["points"] == 2000);
+  CHECK(report["ignored"]["colliding"] == 0);
   CHECK(report["ignored"]["classes"][1] == json{{"class", 6}, {"points", 2000}});
   CHECK(report["ignored"]["boxes"][0]["points"] == 201);
   CHECK(report["ignored"]["looked_at"].get<std::uint64_t>() <= 2000);
   CHECK_THAT(report["warnings"].dump(), Contains("absent-class"));
   const json info = json::parse(garden.program("info d.h5 --json").out);
   CHECK(info["ignored"]["points"] == 2000);
+  CHECK(info["ignored"]["colliding"] == 0);
   CHECK(info["version"] == 4);
   CHECK_THAT(garden.program("info site.h5").out, Contains("6 (building): 2,000 points"));
   CHECK(garden.program("verify d.h5").exit_code == 0);
@@ -116,7 +121,48 @@ TEST_CASE("what leaves nothing out, and what leaves all out, is warned of") {
              Contains("no point has class 9") && Contains("has classes 3, 6"));
   CHECK_THAT(garden.run("--ignore-box 90,0,0,99,1,1 -o b.h5").err,
              Contains("no point is in the ignored box 90 0 0 to 99 1 1"));
-  CHECK_THAT(garden.run("--ignore-class 3,6 -o c.h5").err, Contains("all points"));
+  const Outcome all = garden.run("--ignore-class 3,6 -o c.h5 --fail-on-collision --json");
+  CHECK_THAT(all.err, Contains("all points"));
+  CHECK(all.exit_code == 6);
+  CHECK(json::parse(all.out)["verdict"] == "undecided");
+  CHECK(json::parse(all.out)["ignored"]["colliding"] == 40);
+}
+
+TEST_CASE("what ignoring points hides is warned of, and what is sound is not") {
+  Garden garden;
+  const auto warned = [&](const std::string& arguments, const std::string& store = "site.h5") {
+    return garden.run(arguments + "-o out.h5 --force", store);
+  };
+  const Outcome plant = warned(kPlant);
+  CHECK_THAT(plant.err, Contains("40 of the 40 points ignored (class 3) would collide, but only 0 "
+                                 "searched points do"));
+  CHECK_THAT(plant.out, Contains("but see the"));
+  CHECK_THAT(warned(kPlantBox).err, Contains("40 of the 40 points ignored (1 box)"));
+  CHECK_THAT(warned("--ignore-class 6 ").err, !Contains("would collide"));
+  CHECK_THAT(warned("--ignore-class 6 ").out,
+             Contains("2,000 points ignored (class 6), none of which would collide"));
+  const Outcome finished = garden.run(kPlant + "-o out.h5 --resume --json");
+  CHECK(finished.exit_code == 2);  // the result of another question
+  REQUIRE(warned(kPlant).exit_code == 0);
+  const json again = json::parse(garden.run(kPlant + "-o out.h5 --resume --json").out);
+  CHECK(again["was_finished"] == true);
+  CHECK(again["ignored"]["colliding"] == 40);
+  CHECK_THAT(again["warnings"].dump(), Contains("ignored-collide"));
+
+  // A lamp above the path, and a model that is a metre high.
+  put_bytes(garden.folder / "car.xyz", "0 0 0\n0 0 1\n");
+  for (std::int32_t i = 0; i < 5; ++i) garden.add({3000 + i, 0, 1000}, 14);
+  put_bytes(garden.folder / "all.las", garden.las.build());
+  REQUIRE(garden.program("convert all.las -o lamp.h5").exit_code == 0);
+  const Outcome lamp = warned("--ignore-class 14 --model-above -1 ", "lamp.h5");
+  CHECK_THAT(lamp.err, Contains("5 of the 5 points ignored (class 14) would collide more than 0.5 "
+                                "m above the model's lowest point"));
+  CHECK_THAT(lamp.err, !Contains("but only"));
+
+  // A class that nearly all points have leaves a few.
+  CHECK_THAT(garden.run("--ignore-class 3,6 -o few.h5", "lamp.h5").err,
+             Contains("2,040 of 2,045 points of the environment are ignored, so that only 5 are "
+                      "searched"));
 }
 
 TEST_CASE("parts and journals are of what was ignored") {
@@ -126,7 +172,8 @@ TEST_CASE("parts and journals are of what was ignored") {
   REQUIRE(garden.run(kPlantBox + "--shard 2/2 -o q2.h5").exit_code == 0);
   REQUIRE(garden.run(kPlant + "-o whole.h5").exit_code == 0);
   const Outcome merged = garden.program("merge p1.h5 p2.h5 -o m.h5");
-  CHECK_THAT(merged.out, Contains("clear, with 40 points ignored (class 3)"));
+  CHECK_THAT(merged.out, Contains("clear, with 40 points ignored (class 3), 40 of which would"));
+  CHECK_THAT(merged.err, Contains("would collide, but only 0 searched points do"));
   CHECK(garden.bytes("m.h5") == garden.bytes("whole.h5"));
   const Outcome other = garden.program("merge p1.h5 q2.h5 -o n.h5");
   CHECK(other.exit_code == 3);

@@ -140,12 +140,13 @@ TEST_CASE("a length may have a unit, which is read exactly") {
     const Outcome outcome =
         files.run("run --force --env " + files.path("site.h5") + " --model " +
                   files.path("model.xyz") + " --trajectory " + files.path("path.txt") +
-                  " --radius '" + text + "' -o " + files.path("r.h5"));
+                  " --radius " + text + " -o " + files.path("r.h5"));
     CAPTURE(text, outcome.err);
     REQUIRE(outcome.exit_code == 0);
     return ResultReader(files.folder / "r.h5").header().radius;
   };
-  for (const char* text : {"0.1", "10cm", "100mm", "0.1m", "0.0001km", "10 cm", "1e2mm"}) {
+  for (const char* text :
+       {"0.1", "10cm", "100mm", "0.1m", "0.0001km", "10 cm", "'10 cm'", "1e2mm"}) {
     CHECK(radius(text) == 0.1);
   }
   CHECK(radius("0.7cm") == 0.007);
@@ -156,7 +157,7 @@ TEST_CASE("a length may have a unit, which is read exactly") {
                                          "--clearance '" + std::string(text) + "' -o x.h5");
     CAPTURE(text);
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains("mm, cm, m, km, in or ft"));
+    CHECK_THAT(outcome.err, Contains("mm, cm, m, km, in, ft, ift or us-ft"));
   }
 }
 
@@ -170,7 +171,7 @@ TEST_CASE("feet are feet in a scan in feet") {
     const Outcome outcome =
         files.run("run --force --env " + files.path("feet.h5") + " --model " +
                   files.path("model.xyz") + " --trajectory " + files.path("path.txt") +
-                  " --radius '" + text + "' -o " + files.path("r.h5"));
+                  " --radius " + text + " -o " + files.path("r.h5"));
     CAPTURE(text, outcome.err);
     REQUIRE(outcome.exit_code == 0);
     return ResultReader(files.folder / "r.h5").header().radius;

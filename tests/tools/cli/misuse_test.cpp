@@ -188,7 +188,7 @@ TEST_CASE("what is in the place of a temporary file and is no file is refused an
          {site.search("--radius 0.1 -o " + site.path(name)),
           site.run("convert " + site.path("scan.xyz") + " -o " + site.path(name))}) {
       CHECK(outcome.exit_code == 2);
-      CHECK_THAT(outcome.err, Contains("in the place of this output's temporary file"));
+      CHECK_THAT(outcome.err, Contains("is where this output's temporary file has to be"));
     }
     CHECK_FALSE(std::filesystem::exists(site.folder / name));
   }
@@ -278,7 +278,7 @@ TEST_CASE("a resumed conversion does not call a damaged store done") {
     const Outcome refused = site.run(convert + " --resume");
     CHECK(refused.exit_code == 2);
     CHECK_THAT(refused.err, Contains("site.h5: cell 0: ") && Contains("is damaged") &&
-                                Contains("--force in the place of --resume overwrites it"));
+                                Contains("--force instead of --resume overwrites it"));
     CHECK((bytes_of(site.folder / "site.h5") == damaged));
   }
   CHECK(site.run(convert + " --force").exit_code == 0);

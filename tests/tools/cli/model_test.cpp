@@ -1,5 +1,6 @@
 #include "clearway/model.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -199,26 +200,160 @@ TEST_CASE("conflicts of a solid tell its depth") {
 
 TEST_CASE("what has no surface is refused and points are named") {
   const Meshes meshes;
-  const std::string surface = "--model-as surface --model-unit mm ";
   const auto refused = [&](const std::string& options, const char* words) {
-    check_refused(meshes.run("car.stl", "no.h5", surface + options), 2, words);
-    CHECK_THAT(meshes.run("car.stl", "no.h5", surface + options).err,
-               Contains("take --model-as points"));
+    for (const std::string kind : {"--model-as surface ", "--model-as solid ", ""}) {
+      INFO(kind << options);
+      const Outcome run = meshes.run("car.stl", "no.h5", kind + "--model-unit mm " + options);
+      check_refused(run, 2, words);
+      CHECK_THAT(run.err, Contains("--model-as points searches points of it"));
+    }
   };
-  refused("--engine kdtree", "engine kdtree needs a model of points");
-  refused("--engine grid", "engine grid needs a model of points");
-  refused("--between-poses", "motion between poses needs a model of points");
-  refused("--model-spacing 0.1", "a surface is searched as it is");
-  refused("--model-vertices", "a surface is searched as it is");
+  refused("--engine kdtree", "engine kdtree searches models of points");
+  refused("--engine grid --device cpu", "engine grid searches models of points");
+  refused("--engine grid --device cpu --precision float", "engine grid searches models of points");
+  refused("--engine grid --device cpu --grid-cell 1", "engine grid searches models of points");
+  refused("--between-poses", "motion between poses is searched for models of points");
+  for (const char* options : {"--model-spacing 0.1", "--model-vertices"}) {
+    check_refused(meshes.run("car.stl", "no.h5",
+                             "--model-as surface --model-unit mm " + std::string(options)),
+                  2, "a surface is searched as it is");
+  }
   put_bytes(meshes.work.folder / "car.xyz", "1 0 0\n0 1 0\n1 0 0\n");
   check_refused(meshes.run("car.xyz", "no.h5", "--model-as surface"), 3, "has no triangles");
-  // Without --model-as these are asked of points.
-  for (const char* options : {"--engine kdtree", "--engine grid --device cpu", "--between-poses"}) {
-    const Outcome run =
-        meshes.run("car.stl", "some.h5", "--force --model-unit mm --json " + std::string(options));
-    REQUIRE(run.exit_code == 0);
-    CHECK(json::parse(run.out)["model_as"] == "points");
+  // Points, asked for in any way, are searched by every engine.
+  for (const char* points : {"--model-as points", "--model-spacing 0.1", "--model-vertices"}) {
+    for (const char* options :
+         {"--engine kdtree", "--engine grid --device cpu", "--between-poses"}) {
+      const Outcome run =
+          meshes.run("car.stl", "some.h5",
+                     "--force --model-unit mm --json " + std::string(points) + " " + options);
+      INFO(points << " " << options);
+      REQUIRE(run.exit_code == 0);
+      CHECK(json::parse(run.out)["model_as"] == "points");
+      CHECK(json::parse(run.out)["model_spacing"] > 0);
+    }
   }
+}
+
+namespace {
+
+/// A plate of two triangles, and one point of the environment that is 0.099 m above it, where no
+/// sample of its surface is near.
+struct Plate {
+  Plate() {
+    put_bytes(work.folder / "plate.off",
+              "OFF\n4 2 0\n-3 -2 0\n3 -2 0\n3 2 0\n-3 2 0\n3 0 1 2\n3 0 2 3\n");
+    const auto samples = read_model(work.folder / "plate.off", {.spacing = 0.025});
+    Vec3 place{};
+    double farthest = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 tried{0.3 + 0.001 * i, 0.5, 0};
+      double nearest = 9;
+      for (const Vec3& s : samples) {
+        nearest = std::min(nearest, std::hypot(s.x - tried.x, s.y - tried.y));
+      }
+      if (nearest <= farthest) continue;
+      farthest = nearest;
+      place = tried;
+    }
+    REQUIRE(std::hypot(farthest, 0.099) > 0.1);
+    put_bytes(work.folder / "scan.xyz", std::to_string(place.x) + " 0.5 0.099\n");
+    put_bytes(work.folder / "path.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
+    REQUIRE(
+        work.run("convert " + work.path("scan.xyz") + " --scale 0.001 -o " + work.path("site.h5"))
+            .exit_code == 0);
+  }
+
+  Outcome run(const std::string& options, const std::string& output = "out.h5") const {
+    return work.run("run --env " + work.path("site.h5") + " --model " + work.path("plate.off") +
+                    " --trajectory " + work.path("path.txt") + " --radius 0.1 -o " +
+                    work.path(output) + " " + options);
+  }
+
+  Work work;
+};
+
+}  // namespace
+
+TEST_CASE("a plate that is hit between its samples is never silently clear") {
+  const Plate plate;
+  for (const char* options : {"--between-poses", "--engine kdtree", "--engine grid --device cpu"}) {
+    INFO(options);
+    check_refused(plate.run("--force " + std::string(options)), 2, "--model-as points");
+    const Outcome points = plate.run("--force --model-as points " + std::string(options));
+    REQUIRE(points.exit_code == 0);
+    CHECK_THAT(points.out, Contains("clear") &&
+                               Contains("no place of its surface is farther than 0.025 m") &&
+                               Contains("as close as 0.075 m"));
+    const Outcome again = plate.run("--resume --json --model-as points " + std::string(options));
+    REQUIRE(again.exit_code == 0);
+    CHECK(json::parse(again.out)["was_finished"] == true);
+    CHECK(json::parse(again.out)["model_spacing"] == 0.025);
+    CHECK_THAT(again.err, Contains("farther than 0.025 m"));
+    const json info = json::parse(plate.work.run("info --json " + plate.work.path("out.h5")).out);
+    CHECK(info["model_spacing"] == 0.025);
+  }
+  const Outcome coarse = plate.run("--force --model-vertices");
+  CHECK_THAT(coarse.out, Contains("clear") && Contains("may touch"));
+  const Outcome surface = plate.run("--force --json --fail-on-collision");
+  CHECK(surface.exit_code == 1);
+  CHECK(json::parse(surface.out)["verdict"] == "conflict");
+  CHECK(json::parse(surface.out)["model_spacing"].is_null());
+}
+
+TEST_CASE("the spacing of a sampled mesh goes with its points and its parts") {
+  const Plate plate;
+  const Work& work = plate.work;
+  REQUIRE(
+      work.run("model " + work.path("plate.off") + " --spacing 0.025 -o " + work.path("plate.ply"))
+          .exit_code == 0);
+  const Outcome run = work.run("run --env " + work.path("site.h5") + " --model " +
+                               work.path("plate.ply") + " --trajectory " + work.path("path.txt") +
+                               " --radius 0.1 -o " + work.path("points.h5"));
+  CHECK_THAT(run.out, Contains("farther than 0.025 m"));
+  REQUIRE(plate.run("--model-as points", "sampled.h5").exit_code == 0);
+  CHECK(work.bytes("points.h5") == work.bytes("sampled.h5"));
+  REQUIRE(plate.run("--model-as points --shard 1/2", "one.h5").exit_code == 0);
+  REQUIRE(plate.run("--model-as points --shard 2/2", "two.h5").exit_code == 0);
+  const Outcome merged = work.run("merge " + work.path("one.h5") + " " + work.path("two.h5") +
+                                  " -o " + work.path("merged.h5"));
+  CHECK_THAT(merged.out, Contains("clear") && Contains("farther than 0.025 m"));
+  CHECK(work.bytes("merged.h5") == work.bytes("sampled.h5"));
+  // The report samples as the run did, and says so.
+  REQUIRE(plate.run("--model-spacing 0.03 --first-pose", "three.h5").exit_code == 0);
+  const Outcome report =
+      work.run("report " + work.path("three.h5") + " --env " + work.path("site.h5") + " --model " +
+               work.path("plate.off") + " --trajectory " + work.path("path.txt") + " --json -o " +
+               work.path("page.html"));
+  REQUIRE(report.exit_code == 0);
+  CHECK(json::parse(report.out)["inputs"]["model"]["spacing"] == 0.03);
+}
+
+TEST_CASE("a mast that is drawn as a line, or as points, collides") {
+  const Plate plate;
+  const Work& work = plate.work;
+  const std::string start = "v -3 -2 -5\nv 3 -2 -5\nv 3 2 -5\n";
+  const auto verdict = [&](const std::string& mesh, const std::string& options) {
+    put_bytes(work.folder / "mast.obj", start + mesh);
+    const Outcome run = work.run("run --force --json --env " + work.path("site.h5") + " --model " +
+                                 work.path("mast.obj") + " --trajectory " + work.path("path.txt") +
+                                 " --radius 0.1 -o " + work.path("mast.h5") + " " + options);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return json::parse(run.out);
+  };
+  const std::string mast = "f 1 2 3\nv 0.35 0.5 -5\nv 0.35 0.5 5\n";
+  for (const std::string options : {"", "--model-as points", "--model-as points --between-poses",
+                                    "--clearance 0.2 --profile 0.2 --first-pose"}) {
+    INFO(options);
+    CHECK(verdict(mast + "l 4 5\n", options)["colliding_points"] == 1);
+  }
+  CHECK(verdict("l 1 2\nv 0.35 0.5 -5\nv 0.35 0.5 5\nl 4 5\n", "")["colliding_points"] == 1);
+  CHECK(verdict("v 0.35 0.5 0.1\np 4 1\n", "--between-poses")["colliding_points"] == 1);
+  const json loose = verdict(mast, "");
+  CHECK(loose["colliding_points"] == 0);
+  const auto& warnings = loose["warnings"];
+  CHECK(std::ranges::any_of(warnings, [](const json& w) { return w["code"] == "loose-vertices"; }));
 }
 
 TEST_CASE("the surface below a height is cut off") {

@@ -175,3 +175,21 @@ TEST_CASE("a model that is far too small, or that the poses scale, is warned of"
   CHECK_THAT(codes_of(outcome), Contains("scaled-poses") && !Contains("tilted"));
   CHECK_THAT(outcome.err, Contains("scale the model by 0.305"));
 }
+
+TEST_CASE("poses that mirror the model are warned of, and poses turned round are told") {
+  Asked mirrored;
+  mirrored.options = "--allow-non-rigid";
+  mirrored.turn([](double* r) {
+    for (int k = 0; k < 3; ++k) r[3 * k + 1] = -r[3 * k + 1];
+  });
+  CHECK_THAT(codes_of(mirrored.ask()), Contains("mirrored-poses") && !Contains("scaled-poses"));
+  CHECK_THAT(Asked().ask().err, !Contains("moves backwards"));
+  Asked round;
+  round.turn([](double* r) {
+    for (int k = 0; k < 3; ++k) {
+      r[3 * k] = -r[3 * k];
+      r[3 * k + 1] = -r[3 * k + 1];
+    }
+  });
+  CHECK_THAT(round.ask().err, Contains("the model moves backwards, against its x axis"));
+}

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "clearway/model.hpp"
 #include "io/formats/point_reader.hpp"
@@ -187,6 +188,99 @@ TEST_CASE("a radius in another unit, and gaps that let things through, are warne
           sparse(asked);
           asked.options = "--between-poses";
         }).empty());
+}
+
+namespace {
+
+/// Without the poses from `first` on and before `last`.
+std::vector<Pose> without(std::vector<Pose> poses, std::ptrdiff_t first, std::ptrdiff_t last) {
+  poses.erase(poses.begin() + first, poses.begin() + last);
+  return poses;
+}
+
+/// The lines of standard error that name a step.
+std::string said_of_steps(const Outcome& outcome) {
+  std::istringstream lines(outcome.err);
+  std::string found;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" step") != std::string::npos) found += line + "\n";
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("missing poses are warned of, once, at poses and between them") {
+  Asked asked;
+  asked.poses = without(asked.poses, 600, 1000);
+  const std::string code = codes_of(asked.ask());
+  CHECK(code == "trajectory-jump");
+  CHECK_THAT(asked.ask().err, Contains("from pose 599 to 600") && Contains("Nothing is searched"));
+  asked.options = "--between-poses";
+  const Outcome between = asked.ask();
+  CHECK(codes_of(between) == "large-steps");
+  CHECK_THAT(said_of_steps(between), Contains("at 1 of 1,599 steps") &&
+                                         Contains("after pose 599") &&
+                                         Contains("so poses may be missing there"));
+}
+
+TEST_CASE("poses that are missing on a straight path are warned of between poses too") {
+  Asked asked;
+  const Pose start = asked.poses[0];
+  asked.poses.clear();
+  for (int i = 0; i < 100; ++i) {
+    Pose pose = start;
+    for (int k = 0; k < 3; ++k) {
+      pose.translation[k] += (i < 50 ? 0.05 : 0.1) * i * start.rotation[3 * k];
+    }
+    asked.poses.push_back(pose);
+  }
+  asked.options = "--between-poses";
+  CHECK_THAT(codes_of(asked.ask()), Contains("trajectory-jump"));
+  CHECK_THAT(said_of_steps(asked.ask()),
+             Contains("the step from pose 49 to 50 is 2.55 m long, 34 times") &&
+                 Contains("searched on the straight way there"));
+}
+
+TEST_CASE("a turn in one step is warned of, at poses and between them") {
+  Asked asked;
+  // The model's place stays, and its heading jumps.
+  for (std::size_t i = 1200; i < asked.poses.size(); ++i) {
+    double* r = asked.poses[i].rotation;
+    for (int row = 0; row < 3; ++row) {
+      const double x = r[3 * row], y = r[3 * row + 1];
+      r[3 * row] = y;
+      r[3 * row + 1] = -x;
+    }
+  }
+  for (const std::string options : {"", "--between-poses"}) {
+    asked.options = options;
+    const Outcome outcome = asked.ask();
+    CHECK_THAT(codes_of(outcome), Contains("large-steps"));
+    CHECK_THAT(said_of_steps(outcome),
+               Contains("at 1 of 1,999 steps") && Contains("after pose 1199"));
+  }
+}
+
+TEST_CASE("between poses the curve's chord is judged by the radius") {
+  Asked asked;
+  asked.poses.clear();
+  for (int i = 0; i < 100; ++i) {
+    const double angle = 0.025 * i;
+    Pose pose{{std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1},
+              {20 * std::sin(angle), 20 - 20 * std::cos(angle), 0}};
+    asked.poses.push_back(pose);
+  }
+  asked.options = "--between-poses";
+  asked.radius = "0.001";
+  const Outcome fine = asked.ask();
+  CHECK_THAT(codes_of(fine), Contains("large-steps"));
+  CHECK_THAT(said_of_steps(fine), Contains("at 99 of 99 steps") && Contains("up to 0.00") &&
+                                      Contains("goes on by 0.5 m and turns by 1.43 degrees"));
+  asked.radius = "0.01";
+  CHECK_THAT(said_of_steps(asked.ask()), Contains("a tenth of the radius"));
+  asked.radius = "0.1";
+  CHECK(said_of_steps(asked.ask()).empty());
 }
 
 TEST_CASE("a scan that does not cover the whole path is warned of") {

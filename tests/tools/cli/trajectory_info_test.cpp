@@ -110,6 +110,26 @@ TEST_CASE("trajectory info compares with a scan and a model") {
   CHECK(files.info("path.csv --radius 1").exit_code == 2);
 }
 
+TEST_CASE("trajectory info tells a gap from steps that are all long") {
+  const Files files;
+  std::string gap;
+  for (int i = 0; i < 60; ++i) {
+    gap += "1 0 0 " + std::to_string(i < 30 ? i * 0.5 : 10 + i * 0.5) + " 0 1 0 0 0 0 1 0\n";
+  }
+  put_bytes(files.folder / "gap.txt", gap);
+  const auto plain = nlohmann::json::parse(files.info("gap.txt --json").out);
+  CHECK(codes_of(plain["warnings"]) == std::vector<std::string>{"trajectory-jump"});
+  const auto both =
+      nlohmann::json::parse(files.info("gap.txt --json --model model.xyz --radius 0.1").out);
+  CHECK(codes_of(both["warnings"]) ==
+        std::vector<std::string>{"trajectory-jump", "steps-above-radius"});
+  CHECK(both["steps_above_radius"] == 59);
+  CHECK(both["warnings"][1]["numbers"]["steps"] == 58);
+  const auto large =
+      nlohmann::json::parse(files.info("gap.txt --json --model model.xyz --radius 12").out);
+  CHECK(large["warnings"].empty());
+}
+
 TEST_CASE("trajectory info warns of other axes, and takes an empty file") {
   const Files files;
   std::string camera;

@@ -153,6 +153,35 @@ TEST_CASE("trajectory resample names poses that mirror the model by turns") {
   CHECK_THAT(outcome.err, Contains("mirror.txt: poses 0 and 1") && Contains("mirrors"));
 }
 
+TEST_CASE("resample, thin and follow warn of poses that are missing, as their output hides it") {
+  const Files files;
+  std::string gap, turn;
+  for (int i = 0; i < 60; ++i) {
+    gap += "1 0 0 " + std::to_string(i < 30 ? i * 0.5 : 10 + i * 0.5) + " 0 1 0 0 0 0 1 0\n";
+    turn += (i < 30 ? "1 0 0 " : "0 -1 0 ") + std::to_string(i * 0.5) +
+            (i < 30 ? " 0 1 0 0 0 0 1 0\n" : " 1 0 0 0 0 0 1 0\n");
+  }
+  put_bytes(files.folder / "gap.txt", gap);
+  put_bytes(files.folder / "turn.txt", turn);
+  put_bytes(files.folder / "even.txt", gap.substr(0, gap.size() / 2));
+  for (const std::string what : {"resample", "thin"}) {
+    for (const std::string in : {"gap.txt", "turn.txt"}) {
+      const Outcome outcome = files.run(what, in, "out.txt", "--max-motion 0.6 --force");
+      CHECK(outcome.exit_code == 0);
+      CHECK_THAT(outcome.err, Contains("the step from pose 29 to 30 is"));
+      CHECK_THAT(outcome.err, Contains(what == "thin" ? "does not show it" : "are a guess"));
+    }
+    const Outcome even = files.run(what, "even.txt", "out.txt", "--max-motion 0.6 --force");
+    CHECK(even.err.find("the step from") == std::string::npos);
+  }
+  const auto follow = [&](const std::string& in) {
+    return run_program(files.folder, "trajectory follow " + files.path(in) + " --at 1 --force -o " +
+                                         files.path("out.txt"));
+  };
+  CHECK_THAT(follow("gap.txt").err, Contains("the step from pose 29 to 30 is 10.5 m long"));
+  CHECK(follow("even.txt").err.find("the step from") == std::string::npos);
+}
+
 TEST_CASE("an empty trajectory stays one, with a warning") {
   const Files files;
   const std::string what = GENERATE("resample", "thin");

@@ -157,3 +157,44 @@ TEST_CASE("a vehicle above the ground is warned of and one on it is not") {
   yard.put_vehicle(R"({"name": "truck", "model": "box.xyz"})");
   CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 1);
 }
+
+TEST_CASE("poses that the path misses are warned of once, for the vehicle and all its shards") {
+  const Yard yard;
+  std::string path;
+  for (int i = 0; i <= 180; ++i) {
+    if (i < 60 || i >= 120) path += "1 0 0 " + std::to_string(2 + i * 0.1) + " 0 1 0 0 0 0 1 0\n";
+  }
+  put_bytes(yard.folder / "path.txt", path);
+  const auto jumps = [](const Outcome& outcome) {
+    std::vector<std::string> texts;
+    const json all = json::parse(outcome.out);
+    for (const json& warning : all["warnings"]) {
+      if (warning["code"] == "trajectory-jump") texts.push_back(warning["message"]);
+    }
+    return texts;
+  };
+  const Outcome whole = yard.run("--radius 0.3 -o whole.h5 --json");
+  INFO(whole.err);
+  REQUIRE(whole.exit_code == 0);
+  REQUIRE(jumps(whole).size() == 1);
+  CHECK_THAT(jumps(whole)[0], Contains("the path: the step from pose 59 to 60 is 6.1 m"));
+  CHECK(whole.err.find("the model moves farther") == std::string::npos);
+  for (const std::string part : {"1", "2"}) {
+    const Outcome shard = yard.run("--radius 0.3 --json --shard " + part + "/2 -o " + part + ".h5");
+    CHECK(jumps(shard) == jumps(whole));
+  }
+  CHECK(jumps(yard.program("merge 1.h5 2.h5 -o merged.h5 --json")) == jumps(whole));
+}
+
+TEST_CASE("poses that a body's own trajectory misses are its own") {
+  const Yard yard;
+  std::string own;
+  for (int i = 0; i <= 180; ++i) {
+    own += "1 0 0 " + std::to_string(2 + i * 0.1 + (i > 90 ? 5 : 0)) + " 0 1 0 0 0 0 1 0\n";
+  }
+  put_bytes(yard.folder / "own.txt", own);
+  yard.put_vehicle(R"({"name": "truck", "model": "box.xyz", "trajectory": "own.txt"})");
+  const Outcome outcome = yard.run("--radius 0.3 -o out.h5");
+  CHECK_THAT(outcome.err, Contains("body truck: the step from pose 90 to 91 is 5.1 m"));
+  CHECK(outcome.err.find("the path: the step") == std::string::npos);
+}

@@ -84,7 +84,17 @@ TEST_CASE("the middle of a wagon leaves the gauge where a rigid one does not") {
   CHECK(json["first_place"]["body"] == "middle");
   CHECK(json["least_clearance"]["body"] == "middle");
   CHECK(json["files"]["vehicle"] == (tunnel().folder / "wagon.json").string());
-  CHECK_THAT(wagon.err, Contains("body-off-path") || Contains("is off the path"));
+  CHECK_THAT(wagon.err, Contains("is off the path"));
+  CHECK(json["warnings"].empty() == (wagon.err.find("warning: ") == std::string::npos));
+  CHECK(wagon.err.find("warning: " + (tunnel().folder / "wagon.json").string()) ==
+        std::string::npos);
+  // The verdict is about the part of the path on which the wagon has poses.
+  CHECK(json["path_length"].get<double>() - json["searched_length"].get<double>() ==
+        Approx(20).margin(1));
+  CHECK(json["partly_searched_length"] == 0);
+  CHECK_THAT(wagon.err, Contains("; the vehicle was searched on ") && Contains(" of the path"));
+  CHECK(alone["searched_length"] == alone["path_length"]);
+  CHECK(rigid.err.find("was searched on") == std::string::npos);
   // The chord's middle lies up to 0.156 m inside, so somewhere it meets the points at 0.12 m.
   CHECK(json["least_clearance"]["distance"] < 0.01);
 }
@@ -159,6 +169,10 @@ TEST_CASE("every complaint about a vehicle's file names the key") {
   const std::string model = R"("model": "middle.xyz", )";
   refused("{", "is no JSON");
   refused("[]", "expected one JSON object");
+  refused("{\"bodies\": " + std::string(100'000, '['), "line 1, column 75: lists and objects");
+  std::string many = R"({"bodies": [0)";
+  for (int i = 0; i < 300'000; ++i) many += R"(,{"name": "a", "model": "middle.xyz"})";
+  refused(many + "]}", "bodies: has 300,001 entries, expected at most 256");
   refused("{}", "bodies: is missing");
   refused(R"({"bodies": []})", "bodies: is empty");
   refused(R"({"bodies": [], "unit": "m"})", "unit: unknown key");

@@ -158,7 +158,7 @@ TEST_CASE("combinations of export that make no sense are refused") {
   CHECK_THAT(own.err, Contains("path.csv: is an input too"));
   const Outcome none = street.program("export out.h5 --what profile -o p.csv");
   CHECK(none.exit_code == 2);
-  CHECK_THAT(none.err, Contains("run with --profile"));
+  CHECK_THAT(none.err, Contains("makes a result with a profile"));
   CHECK(street.program("export out.h5 --trajectory path.csv -o p.csv").exit_code == 2);
   CHECK(street.program("export out.h5 --what clearance --scans wall.xyz -o p.csv").exit_code == 2);
 }
@@ -191,4 +191,77 @@ TEST_CASE("verify's JSON says whether a file is sound, and what is wrong") {
   const json damaged = json::parse(outcome.out);
   CHECK(damaged["sound"] == false);
   CHECK(damaged["faults"].size() == 1);
+}
+
+TEST_CASE("a question in doubt is undecided, and stays so for whoever reads the result later") {
+  const Street street;
+  std::string path;
+  for (int i = 0; i <= 100; ++i) {
+    path += "1 0 0 " + std::to_string(5000 + i * 0.1) + " 0 1 0 0 0 0 1 0\n";
+  }
+  put_bytes(street.folder / "far.txt", path);
+  const auto at = [&](const std::string& name) { return quoted(street.folder / name); };
+  const auto run = [&](const std::string& arguments) {
+    return run_program(street.folder, arguments);
+  };
+  const std::string run_text = "run --env " + at("site.h5") + " --model " + at("car.xyz") +
+                               " --trajectory " + at("far.txt") + " --radius 0.1 --threads 2 ";
+  const std::string judged = run_text + "--fail-on-collision ";
+  const Outcome first = run(judged + "-o " + at("far.h5"));
+  INFO(first.err);
+  CHECK(first.exit_code == 6);
+  CHECK_THAT(first.out, Contains("undecided, because the question is in doubt (out-of-reach): no "
+                                 "environment point is closer than 0.1 m") &&
+                            Contains("but see the"));
+  CHECK_THAT(first.out, !Contains("clear"));
+  CHECK(run(run_text + "--force -o " + at("far.h5")).exit_code == 0);
+
+  const Outcome again = run(judged + "--resume --json -o " + at("far.h5"));
+  CHECK(again.exit_code == 6);
+  const json finished = json::parse(again.out);
+  CHECK(finished["was_finished"] == true);
+  CHECK(finished["verdict"] == "undecided");
+  CHECK(finished["reasons"] == json{"question-in-doubt"});
+  CHECK(finished["margins"].is_null());
+  CHECK(finished["seen"].is_null());
+
+  const json info = json::parse(run("info --json " + at("far.h5")).out);
+  CHECK(info["verdict"] == "undecided");
+  CHECK(info["doubts"] == json{"out-of-reach"});
+
+  const Outcome report =
+      run("report " + at("far.h5") + " --env " + at("site.h5") + " --model " + at("car.xyz") +
+          " --trajectory " + at("far.txt") + " --json -o " + at("far.html"));
+  INFO(report.err);
+  const json facts = json::parse(report.out);
+  CHECK(facts["verdict"] == "undecided");
+  CHECK(facts["reasons"] == json{"question-in-doubt"});
+  CHECK_THAT(report.err, Contains("undecided, 0 colliding points"));
+
+  CHECK_THAT(run("compare " + at("far.h5") + " " + at("far.h5")).err,
+             Contains("its verdict is undecided, because the run warned of out-of-reach"));
+  CHECK_THAT(run("conflicts " + at("far.h5") + " --trajectory " + at("far.txt")).err,
+             Contains("has no first poses") || Contains("its verdict is undecided"));
+
+  for (const char* part : {"1", "2"}) {
+    const Outcome outcome = run(run_text + "--shard " + part + "/2 --json -o " +
+                                at(std::string("part") + part + ".h5"));
+    CHECK(json::parse(outcome.out)["verdict"] == "unknown");
+    CHECK(json::parse(outcome.out)["reasons"].empty());
+  }
+  const std::string merge = "merge " + at("part1.h5") + " " + at("part2.h5") + " -o " + at("m.h5");
+  const Outcome merged = run(merge + " --fail-on-collision --json");
+  CHECK(merged.exit_code == 6);
+  CHECK(json::parse(merged.out)["verdict"] == "undecided");
+  CHECK(bytes_of(street.folder / "m.h5") == bytes_of(street.folder / "far.h5"));
+  CHECK(run(merge + " --fail-on-collision --resume").exit_code == 6);
+}
+
+TEST_CASE("one colliding point is a conflict, however doubtful the question is") {
+  const Street street;
+  const Outcome outcome = street.run("--radius 0.3 --json --fail-on-collision");
+  CHECK(outcome.exit_code == 1);
+  const json report = json::parse(outcome.out);
+  CHECK(report["verdict"] == "conflict");
+  CHECK(report["reasons"].empty());
 }

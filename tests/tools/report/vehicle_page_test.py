@@ -117,6 +117,82 @@ class VehiclePageTest(PageChecks, unittest.TestCase):
         self.assertAlmostEqual(near, worst["least_distance"], delta=0.02)
         self.check_quiet(page)
 
+    def one_body(self, profile):
+        """The facts and the page of a vehicle that has no pose at the ends of its path."""
+        name = f"{self.folder}/one{profile}"
+        with open(f"{name}.json", "w") as file:
+            json.dump({"bodies": [{"name": "wagon", "model": "model.ply",
+                                   "pivots": [1.02, -1.02]}]}, file)
+        inputs = (*self.inputs[:3], f"{name}.json", *self.inputs[4:])
+        # Pivots leave the ends of every path, so that is no reason to refuse a run.
+        refused = clearway("run", *inputs, "--radius", 0.01, "--profile", profile, "-o",
+                           f"{name}.h5", "--force", "--strict", code=3)
+        self.assertNotIn("body-off-path", refused.splitlines()[-1])
+        self.assertIn("info: ", next(line for line in refused.splitlines() if "off the path" in line))
+        clearway("run", *inputs, "--radius", 0.01, "--profile", profile, "-o", f"{name}.h5",
+                 "--force")
+        facts = json.loads(clearway("report", f"{name}.h5", *inputs, "-o", f"{name}.html",
+                                    "--force", "--json", "--date", DATE))
+        return facts, f"{name}.html"
+
+    def test_stretches_without_an_answer_are_shaded_and_named(self):
+        facts, path = self.one_body(0.02)
+        ends = facts["unsearched"]
+        track = facts["inputs"]["trajectory"]
+        self.assertEqual([end["has_answer"] for end in ends], [False, False])
+        self.assertEqual([ends[0]["first_pose"], ends[1]["last_pose"]], [0, track["poses"] - 1])
+        self.assertEqual(ends[0]["bodies"], ["wagon"])
+        self.assertAlmostEqual(ends[0]["chainage_to"], 1.1, delta=0.15)
+        self.assertAlmostEqual(track["searched_length"],
+                               ends[1]["chainage_from"] - ends[0]["chainage_to"], 9)
+        if self.browser is None:
+            self.skipTest("chromium is not installed: the page is made, but not looked at")
+        page = self.browser.page(path)
+        self.check_words(page, facts)
+        shaded = page.run("""[...document.querySelectorAll('#profile-chart rect.no-answer')]
+            .map((r) => [+r.getAttribute('x'), +r.getAttribute('width')])""")
+        self.assertEqual(len(shaded), 2)
+        for (x, width), end in zip(shaded, ends):
+            self.assertAlmostEqual(x, page.run(f"profileX({end['chainage_from']})"), 6)
+            self.assertAlmostEqual(x + width, page.run(f"profileX({end['chainage_to']})"), 6)
+        chart = page.run("document.querySelector('#profile-chart svg').textContent")
+        self.assertIn("no answer", chart)
+        self.assertIn("Where there is no curve and no shading, nothing is closer than 0.02 m",
+                      chart)
+        self.assertIn("No answer: the vehicle has no pose at chainage 0.00 to 1.",
+                      page.run("byId('profile-unsearched').textContent"))
+        self.assertIn("The vehicle was searched on", page.run("byId('searched').textContent"))
+        self.assertIn("the path is dashed", page.run("byId('plan-note').textContent"))
+        page.run("selectPose(0)")
+        for place in ("profile-readout", "pose-text"):
+            self.assertIn("no answer, as the vehicle has no pose here",
+                          page.run(f"byId('{place}').textContent"))
+        page.run("selectPose(Math.floor(page.poses.count / 2))")
+        self.assertNotIn("no answer", page.run("byId('profile-readout').textContent"))
+        page.run("zoomProfile(0.01, profileStart() + profileLength() / 2)")
+        self.assertEqual(page.run("document.querySelectorAll('rect.no-answer').length"), 0)
+        page.run("(preparePrint(), 1)")
+        page.pdf(f"{self.folder}/one.pdf")
+        self.check_quiet(page)
+
+    def test_stretches_of_a_part_name_the_bodies_that_are_missing(self):
+        parts = [s for s in self.facts["unsearched"] if s["has_answer"]]
+        self.assertEqual(parts, self.facts["unsearched"])
+        self.assertEqual({tuple(part["bodies"]) for part in parts},
+                         {("middle",), ("middle", "front"), ("front",)} &
+                         {tuple(part["bodies"]) for part in parts})
+        self.assertTrue(any("front" in part["bodies"] for part in parts))
+        if self.browser is None:
+            self.skipTest("chromium is not installed: the page is made, but not looked at")
+        page = self.browser.page(self.page)
+        self.assertEqual(page.run("document.querySelectorAll('rect.part-answer').length"),
+                         len(parts))
+        self.assertIn('"middle"', page.run("byId('profile-unsearched').textContent"))
+        page.run("selectPose(page.poses.count - 1)")
+        self.assertIn('without', page.run("byId('profile-readout').textContent"))
+        self.assertIn("some of its bodies on", page.run("byId('searched').textContent"))
+        self.check_quiet(page)
+
 
 if __name__ == "__main__":
     scenes.PROGRAM = os.path.abspath(sys.argv.pop(1))

@@ -58,10 +58,6 @@ std::string text_of(const Arguments& arguments) {
   return text;
 }
 
-std::string short_unit(const std::string& unit) {
-  return unit == "foot" ? "ft" : unit == "us-survey-foot" ? "US ft" : "m";
-}
-
 void tell(const std::string& key, const std::vector<Message>& messages) {
   for (Message message : messages) {
     if (message.severity == Message::Severity::kNote) continue;
@@ -94,15 +90,16 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   parse(run, options);
   const Environment& store = environment(run.environment);
   check_outputs(run);
-  check_classes(run, options, store.metres.value_or(1));
-  if (store.metres) {
-    options.lengths.convert(*store.metres);
-    options.model_options.environment_unit = *store.metres;
-    options.trajectory_options.environment_unit = *store.metres;
-  }
+  check_classes(run, options, store.metres);
+  options.lengths.convert(store.metres);
+  options.model_options.environment_unit = store.metres;
+  options.trajectory_options.environment_unit = store.metres;
+  options.model_options.environment_unit_is_assumed = store.unit_is_assumed;
+  options.trajectory_options.environment_unit_is_assumed = store.unit_is_assumed;
   options.trajectory_options.default_crs = store.header.crs_wkt;
   ResultHeader header = store.header;
   static_cast<QueryParameters&>(header) = options.query;
+  header.float_precision = options.search.float_precision;
   sort_ignored(header);
   if (!header.ignore_classes.empty() && header.classes_hash == 0) {
     throw InputError(file_.string() + ": query.ignore_classes: the points of " +
@@ -120,6 +117,9 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
 std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions& options,
                                         const ReadTrajectory& path, ResultHeader& header) {
   const ReadModel& points = model(run, options);
+  if (points.triangles > 0) {
+    named(run.vehicle.key, [&] { check_surface(options.query, options.search); });
+  }
   header.model_points = points.count;
   header.model_triangles = points.triangles;
   header.model_hash = points.hash;
@@ -198,7 +198,7 @@ void QuestionReader::check_classes(const PlannedRun& run, const RunOptions& opti
       for (const std::string& text :
            CLI::detail::split(one.text.substr(one.option.size() + 1), ',')) {
         const ParsedLength length = parse_length(one.key, text);
-        classes.push_back(length.has_unit ? length.value / metres : length.value);
+        classes.push_back(length.in_units_of(metres));
       }
       if (classes.size() > 3 || !std::ranges::is_sorted(classes, std::less_equal{})) {
         refused("expected one to three distances, each larger than the one before");
@@ -227,8 +227,10 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
     facts.header.environment_hash = metadata.points_hash;
     facts.header.crs_wkt = metadata.crs_wkt;
     if (metadata.classes) facts.header.classes_hash = metadata.classes->hash;
-    facts.metres = metres_of_unit(store.length_unit());
-    facts.unit = short_unit(store.length_unit());
+    facts.metres = store.metres_per_unit();
+    facts.unit_is_assumed = store.length_unit() == "unknown";
+    tell(entry.key, store.warnings());
+    facts.unit = symbol_of_unit(store.length_unit());
     facts.fingerprint = hash_text(store.reader().fingerprint());
   });
   return facts;
@@ -237,26 +239,30 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
 const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
                                                        const RunOptions& options) {
   const ModelOptions how = model_options_of(options);
-  const std::string id = run.vehicle.name + '\n' + format_number(how.spacing) + '\n' +
-                         std::to_string(static_cast<int>(how.as)) + '\n' +
-                         format_number(how.environment_unit);
+  const std::string id =
+      run.vehicle.name + '\n' + format_number(how.spacing) + '\n' + format_number(how.radius) +
+      '\n' + std::to_string(static_cast<int>(how.as)) + '\n' + format_number(how.environment_unit);
   const auto known = models_.find(id);
   if (known != models_.end()) return known->second;
   return named(run.vehicle.key, [&]() -> const ReadModel& {
     check_is_model(options.model);
     std::vector<Message> messages;
-    const auto [points, triangles, solid_of] = read_model_shape(options.model, how, &messages);
+    const ModelShape shape = read_model_shape(options.model, how, &messages);
     tell(run.vehicle.key, messages);
-    return models_[id] = {points.size(), triangles.size(),
-                          hash_of_model(points, triangles, solid_of),
-                          points.empty() ? Box{} : box_of(points)};
+    return models_[id] = {shape.points.size(), shape.triangles.size(),
+                          hash_of_model(shape.points, shape.triangles, shape.solid_of),
+                          shape.points.empty() ? Box{} : box_of(shape.points)};
   });
 }
 
 const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRun& run,
                                                                  const RunOptions& options) {
   const bool needs_poses = estimate_.is_asked_for() || !options.vehicle.empty();
-  const auto known = trajectories_.find(run.route.name);
+  const TrajectoryOptions& how = options.trajectory_options;
+  // Into which unit and onto which map a file is read depends on the environment.
+  const std::string id =
+      run.route.name + '\n' + format_number(how.environment_unit) + '\n' + how.default_crs;
+  const auto known = trajectories_.find(id);
   if (known != trajectories_.end() &&
       (!needs_poses || known->second.poses.size() == known->second.count)) {
     return known->second;
@@ -267,7 +273,7 @@ const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRu
     std::vector<Pose> poses =
         read_trajectory(options.trajectory, options.trajectory_options, &messages);
     if (known == trajectories_.end()) tell(run.route.key, messages);
-    ReadTrajectory& read = trajectories_[run.route.name];
+    ReadTrajectory& read = trajectories_[id];
     read = {poses.size(), hash_of_trajectory(poses)};
     if (needs_poses) read.poses = std::move(poses);
     return read;

@@ -26,8 +26,9 @@ class QuestionReader {
 
  private:
   struct Environment {
-    ResultHeader header;  ///< what a store says in it
-    std::optional<double> metres;
+    ResultHeader header;           ///< what a store says in it
+    double metres = 1;             ///< of its unit of length
+    bool unit_is_assumed = false;  ///< it names none
     std::string unit, fingerprint;
   };
   struct ReadModel {

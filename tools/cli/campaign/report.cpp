@@ -47,8 +47,8 @@ void write_campaign_page(CampaignReportOptions& options) {
   File::create(pending.partial()).write(std::as_bytes(std::span(page)));
   pending.publish();
   const auto facts = campaign::page_facts(runs.plan, runs.looks, options.date);
-  spdlog::info("{}: {} conflict, {} clear, {} not done", (options.folder / kPageName).string(),
-               facts["conflict"].dump(), facts["clear"].dump(), facts["not_done"].dump());
+  spdlog::info("{}: {}", (options.folder / kPageName).string(),
+               campaign::OutcomeCounts(runs.looks).text());
   if (options.json) print(text_of_json(facts));
 }
 

@@ -1,14 +1,19 @@
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "campaign/outcome.hpp"
 #include "campaign/plan_file.hpp"
 #include "campaign/task_list.hpp"
 #include "clearway/error.hpp"
 #include "cli/campaign/commands.hpp"
 #include "cli/campaign/task_queue.hpp"
+#include "cli/support/exit_code.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -16,7 +21,7 @@ namespace {
 struct CampaignRunOptions {
   std::filesystem::path folder;
   std::string tasks;
-  bool all = false;
+  bool all = false, fail_on_collision = false;
   int jobs = 1;
 };
 
@@ -30,11 +35,24 @@ campaign::Plan plan_to_run(const CampaignRunOptions& options) {
   return campaign::read_plan(options.folder, *tasks);
 }
 
+/// Of the runs among these tasks, also of those that were done before.
+campaign::OutcomeCounts outcomes_of(const campaign::Plan& plan,
+                                    const std::filesystem::path& folder) {
+  std::vector<campaign::TaskLook> looks;
+  for (const campaign::Task& task : plan.tasks) looks.push_back(campaign::look_at(task, folder));
+  return campaign::OutcomeCounts(campaign::run_looks(plan, looks).looks);
+}
+
 int run_tasks(const CampaignRunOptions& options) {
   const campaign::Plan plan = plan_to_run(options);
-  TaskQueue queue(plan, std::filesystem::absolute(options.folder).lexically_normal(), options.jobs,
-                  options.all);
-  return queue.run();
+  const auto folder = std::filesystem::absolute(options.folder).lexically_normal();
+  TaskQueue queue(plan, folder, options.jobs, options.all);
+  const int code = queue.run();
+  const campaign::OutcomeCounts outcomes = outcomes_of(plan, folder);
+  if (outcomes.all() > 0) spdlog::info("{}: {}", plan.name, outcomes.text());
+  if (code != kDone || !options.fail_on_collision) return code;
+  if (outcomes.of(campaign::Outcome::kConflict) > 0) return kDiffers;
+  return outcomes.of(campaign::Outcome::kUndecided) > 0 ? int{kUndecided} : code;
 }
 
 }  // namespace
@@ -50,6 +68,9 @@ void add_campaign_run(CLI::App& campaign, int& exit_code) {
       command->add_option("--task", options->tasks, "Numbers of tasks, from 0, for example 3,7-9");
   tasks->type_name("N,...");
   command->add_flag("--all", options->all, "All tasks that are not done")->excludes(tasks);
+  command->add_flag("--fail-on-collision", options->fail_on_collision,
+                    "Exit with code 1 where a run finds a conflict, and with 6 where none does and "
+                    "one is undecided");
   command->add_option("--jobs", options->jobs, "Tasks at the same time; they share the cores")
       ->type_name("N")
       ->check(CLI::Range(1, 1024))
@@ -57,7 +78,8 @@ void add_campaign_run(CLI::App& campaign, int& exit_code) {
   command->footer(
       "Each command of a task is a process of its own; plan.json has its words. An interrupted "
       "task\n"
-      "resumes. The exit code is that of the task, or the largest one of several.\n"
+      "resumes. The exit code is that of the task, or the largest one of several; the verdicts of\n"
+      "runs count only with --fail-on-collision, and only where no task failed.\n"
       "With --all, interrupted tasks (5) are queued again, and those that failed for the "
       "machine's\n"
       "sake (4) at most twice.\n"

@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "campaign/outcome.hpp"
 #include "campaign/plan_file.hpp"
 #include "campaign/task_list.hpp"
 #include "campaign/task_state.hpp"
@@ -44,11 +46,17 @@ campaign::TaskList tasks_to_do(const std::vector<TaskLook>& looks, bool failed) 
   return tasks;
 }
 
+/// A shard whose run is done may have none.
+bool state_is_empty(const TaskLook& look) { return !look.state || look.state->facts.is_null(); }
+
 nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector<TaskLook>& looks) {
   nlohmann::ordered_json out{{"campaign", plan.name}, {"tasks", plan.tasks.size()}};
   for (const TaskStatus status : campaign::kStatuses) {
     out[campaign::name_of(status)] = count_of(looks, status);
   }
+  const campaign::OutcomeCounts outcomes(campaign::run_looks(plan, looks).looks);
+  out["runs"] = outcomes.all();
+  out["outcomes"] = outcomes.json();
   out["list"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < looks.size(); ++i) {
     nlohmann::ordered_json one{{"task", i},
@@ -63,9 +71,33 @@ nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector
       one["host"] = state->host;
       one["time"] = state->time;
     }
+    if (looks[i].status == TaskStatus::kDone && !state_is_empty(looks[i])) {
+      for (const char* key : {"verdict", "reasons", "colliding_points", "ignored", "warnings"}) {
+        one[key] = looks[i].state->facts.value(key, nlohmann::ordered_json());
+      }
+    }
     out["list"].push_back(std::move(one));
   }
   return out;
+}
+
+/// Verdicts with what has to be said beside them, each once with its tasks.
+std::string caveats_text(const campaign::Plan& plan, const std::vector<TaskLook>& looks) {
+  std::map<std::string, campaign::TaskList> tasks_of;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (looks[i].status != TaskStatus::kDone || state_is_empty(looks[i])) continue;
+    const nlohmann::ordered_json& facts = looks[i].state->facts;
+    const std::string caveats = campaign::caveats_of(facts);
+    if (caveats.empty()) continue;
+    tasks_of[facts["verdict"].get<std::string>() + "; " + caveats].push_back(i);
+  }
+  std::string text;
+  for (const auto& [words, tasks] : tasks_of) {
+    text += tasks.size() == 1 ? fmt::format("task {}, {}", tasks[0], plan.tasks[tasks[0]].name())
+                              : "tasks " + campaign::task_list_text(tasks);
+    text += ": " + words + "\n";
+  }
+  return text;
 }
 
 std::string status_text(const campaign::Plan& plan, const std::vector<TaskLook>& looks) {
@@ -76,6 +108,8 @@ std::string status_text(const campaign::Plan& plan, const std::vector<TaskLook>&
     if (count == 0 && status == TaskStatus::kBegun) continue;
     text += fmt::format("  {:<12}{:>7}\n", campaign::name_of(status), format_count(count));
   }
+  text += campaign::OutcomeCounts(campaign::run_looks(plan, looks).looks).text() + "\n";
+  text += caveats_text(plan, looks);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (looks[i].status != TaskStatus::kFailed) continue;
     text += fmt::format("task {}, {}: exit code {}: {}\n", i, plan.tasks[i].name(),
@@ -102,7 +136,8 @@ void run_status(const CampaignStatusOptions& options) {
 void add_campaign_status(CLI::App& campaign) {
   const auto options = std::make_shared<CampaignStatusOptions>();
   CLI::App* command = campaign.add_subcommand(
-      "status", "Say which tasks are done, running, interrupted, failed or missing");
+      "status",
+      "Say which tasks are done, running, interrupted, failed or missing, and what the runs found");
   command->add_option("DIR", options->folder, "Folder of the campaign")
       ->type_name("DIR")
       ->required();

@@ -14,6 +14,7 @@
 #include "campaign/question.hpp"
 #include "clearway/error.hpp"
 #include "cli/support/exit_code.hpp"
+#include "io/journal/journal.hpp"
 #include "io/system/file_lock.hpp"
 #include "io/system/file_text.hpp"
 
@@ -82,21 +83,30 @@ TaskFolder::TaskFolder(const campaign::Task& task, const fs::path& campaign)
   state_.outputs_id = task.outputs_id;
   state_.host = host_name();
   state_.time = time_in_utc();
-  refuse_foreign_result();
+  remove_of_other_inputs(earlier);
+  refuse_damaged_result();
   ++state_.tries;
   campaign::write_state(path_, state_);
   cut_log(log());
 }
 
-void TaskFolder::refuse_foreign_result() {
+/// What an earlier try left that read other inputs than the planned ones: they may have been put
+/// back since, and nothing else tells. So may the store, which only the run can say of a journal.
+void TaskFolder::remove_of_other_inputs(const std::optional<campaign::TaskState>& earlier) {
+  const fs::path result = path_ / task_.result(), journal = journal_of(result);
+  if (campaign::answers_another(result, task_.question)) remove_if_there(result);
+  const bool refused = earlier && earlier->ending == Ending::kFailed &&
+                       (earlier->exit_code == kWrongUsage || earlier->exit_code == kBadInput);
+  if (refused || campaign::is_journal_of_others(journal, task_.question)) remove_if_there(journal);
+}
+
+void TaskFolder::refuse_damaged_result() {
   std::error_code unknown;
   const fs::path result = path_ / task_.result();
   if (!fs::exists(result, unknown) || campaign::answers(result, task_.question)) return;
   state_.ending = Ending::kFailed;
   state_.exit_code = kBadInput;
-  state_.message = result.string() +
-                   ": is not the planned result: it is damaged, or an input has changed; remove "
-                   "it, and plan again where an input has changed";
+  state_.message = result.string() + ": is damaged or no result; remove it, and run the task again";
   campaign::write_state(path_, state_);
   throw InputError(state_.message);
 }
@@ -104,7 +114,7 @@ void TaskFolder::refuse_foreign_result() {
 void TaskFolder::remove_others() {
   if (!campaign::answers(path_ / task_.result(), task_.question)) {
     remove_if_there(path_ / task_.result());
-    remove_if_there(path_ / (std::string(task_.result()) + ".journal"));
+    remove_if_there(journal_of(path_ / task_.result()));
   }
   for (const std::string& output : task_.outputs) remove_if_there(path_ / output);
 }
@@ -140,12 +150,15 @@ const campaign::TaskState& TaskFolder::end(int code) {
 /// The inputs may have changed since they were planned.
 void TaskFolder::judge_result() {
   if (campaign::answers(path_ / task_.result(), task_.question)) {
-    state_.facts = campaign::task_facts(run_output());
+    state_.facts = campaign::task_facts(run_output(), task_.question);
     return;
   }
   state_.ending = Ending::kFailed;
   state_.exit_code = kBadInput;
-  state_.message = "an input has changed since it was planned; plan again";
+  state_.inputs_changed = true;
+  state_.message =
+      "an input has changed since it was planned: put it back and run the task again, or plan "
+      "again with --force";
 }
 
 std::string TaskFolder::last_error() const {

@@ -18,9 +18,9 @@ inline constexpr int kSignalled = 128;
 /// A task that this process is at work on: its folder, locked, and the state that is told there.
 class TaskFolder {
  public:
-  /// Makes the folder, and takes its lock; removes what is there of other questions. Throws
-  /// ResourceError where another process is at work on the task, InputError where a result is there
-  /// that does not answer the question.
+  /// Makes the folder, and takes its lock; removes what is there of other questions and inputs.
+  /// Throws ResourceError where another process is at work on the task, InputError where the file
+  /// of the result is damaged.
   TaskFolder(const campaign::Task& task, const std::filesystem::path& campaign);
 
   const campaign::Task& task() const { return task_; }
@@ -43,7 +43,8 @@ class TaskFolder {
 
  private:
   void remove_others();
-  void refuse_foreign_result();
+  void remove_of_other_inputs(const std::optional<campaign::TaskState>& earlier);
+  void refuse_damaged_result();
   std::string last_error() const;
   void judge_result();
 

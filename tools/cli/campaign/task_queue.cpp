@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "campaign/outcome.hpp"
 #include "clearway/error.hpp"
 #include "cli/campaign/child.hpp"
 #include "cli/support/exit_code.hpp"
@@ -187,8 +188,10 @@ void TaskQueue::end_task(TaskFolder& folder, int code) {
   const campaign::TaskState& state = folder.end(code);
   if (state.ending == campaign::Ending::kDone) {
     end(task);
-    spdlog::info("{} of {}: {}: {}, {:.2f} s", ended_, plan_.tasks.size(), task.name(),
-                 state.facts["verdict"].get<std::string>(), state.seconds);
+    const std::string caveats = campaign::caveats_of(state.facts);
+    spdlog::info("{} of {}: {}: {}{}{}, {:.2f} s", ended_, plan_.tasks.size(), task.name(),
+                 state.facts["verdict"].get<std::string>(), caveats.empty() ? "" : "; ", caveats,
+                 state.seconds);
   } else if (is_tried_again(task, state.exit_code)) {
     spdlog::warn("{}: exit code {}: {}; is tried again", task.name(), state.exit_code,
                  state.message);
@@ -214,7 +217,7 @@ void TaskQueue::fail(const campaign::Task& task, int code, const std::string& me
     interrupted_ = true;
     return spdlog::info("{} of {}: {}: interrupted", ended_, plan_.tasks.size(), task.name());
   }
-  code_ = std::max(code_, code);
+  code_ = more_urgent(code_, code);
   spdlog::error("{} of {}: {}: exit code {}: {}", ended_, plan_.tasks.size(), task.name(), code,
                 message);
 }

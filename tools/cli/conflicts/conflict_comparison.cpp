@@ -4,44 +4,71 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "cli/conflicts/conflict_comparison_files.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/option_groups.hpp"
+#include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
+#include "cli/verdict.hpp"
 #include "core/util/format.hpp"
-#include "findings/match_conflicts.hpp"
+#include "findings/known_places.hpp"
 #include "io/formats/wkt.hpp"
 #include "io/result/result.hpp"
+#include "io/system/pending_file.hpp"
 
 namespace clearway::tool {
 namespace {
 
-using nlohmann::ordered_json;
+/// One of the results that are compared.
+struct ComparedSide {
+  ComparedSide(ConflictComparison& options, const std::filesystem::path& file,
+               const std::filesystem::path& trajectory, const std::filesystem::path& vehicle)
+      : result(file) {
+    check_kind_of_model(result, {}, vehicle);
+    warn_of_doubts(result.reader());
+    const std::vector<Pose> poses = read_poses(trajectory, options.trajectory_options, result);
+    std::vector<Body> bodies;
+    if (!vehicle.empty()) {
+      std::vector<Message> told;
+      bodies = read_bodies_of(vehicle, options.model_options, options, poses, result, told);
+      for (const Message& message : told) {
+        if (message.severity == Message::Severity::kWarning) log_message(message);
+      }
+    }
+    ConflictOptions find = options.find;
+    find.bodies = bodies;
+    conflicts = find_conflicts(result, poses, find, &conflict_of);
+  }
 
-/// A result and its conflicts.
-struct Compared {
-  std::string file;
-  double radius;
-  std::string unit;
+  ComparedResult compared() {
+    return {result.reader().name(), result.parameters().radius,
+            symbol_of(units_of_wkt(result.reader().header().crs_wkt).horizontal),
+            std::move(conflicts)};
+  }
+  GroupedResult grouped() const { return {result, conflicts, conflict_of}; }
+
+  Result result;
   Conflicts conflicts;
+  std::vector<std::uint32_t> conflict_of;
 };
 
-Compared find_side(ConflictComparison& options, const std::filesystem::path& file,
-                   const std::filesystem::path& trajectory) {
-  const Result result(file);
-  const std::vector<Pose> poses = read_poses(trajectory, options.trajectory_options, result);
-  return {file.string(), result.parameters().radius,
-          symbol_of(units_of_wkt(result.reader().header().crs_wkt).horizontal),
-          find_conflicts(result, poses, options.find)};
-}
-
-const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
-  return conflicts.listed[id - 1];
+/// Of what is the same: where b comes nearer, or deeper, by more than `by`.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> worse_ones(const ComparedConflicts& found) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+  for (const auto& pair : found.match.same) {
+    const auto in_a = conflict_at(found.a.conflicts, pair.first).least_distance;
+    const auto in_b = conflict_at(found.b.conflicts, pair.second).least_distance;
+    if (in_b && (!in_a || *in_b < *in_a - found.worse_by)) out.push_back(pair);
+  }
+  return out;
 }
 
 std::string line_of(const Conflict& c) {
@@ -51,90 +78,68 @@ std::string line_of(const Conflict& c) {
                      c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
-std::string list_text(const char* title, const Conflicts& conflicts,
-                      const std::vector<std::uint32_t>& ids, std::size_t show) {
-  std::string text = std::string(title) + ": " + format_count(ids.size()) + "\n";
-  for (std::size_t i = 0; i < std::min(show, ids.size()); ++i) {
-    text += line_of(conflict_at(conflicts, ids[i]));
+/// A title with a number, and the lines of at most `show` items.
+template <typename Items, typename Line>
+std::string list_text(const std::string& title, const Items& items, std::uint64_t show, Line line) {
+  std::string text = title + ": " + format_count(items.size()) + "\n";
+  std::uint64_t shown = 0;
+  for (const auto& item : items) {
+    if (shown++ == show) break;
+    text += line(item);
   }
-  if (ids.size() > show) text += "  and " + format_count(ids.size() - show) + " more\n";
+  if (items.size() > show) text += "  and " + format_count(items.size() - show) + " more\n";
   return text;
 }
 
-/// Points that collide and are in no conflict: there may be new ones among them.
-bool has_more_small_points(const Compared& a, const Compared& b) {
-  return b.conflicts.small_points > a.conflicts.small_points;
-}
-
-std::string text_of(const Compared& a, const Compared& b, const ConflictMatch& match,
-                    std::size_t show) {
-  std::string text;
-  for (const auto& [name, side] : {std::pair("a", &a), std::pair("b", &b)}) {
-    const Conflicts& found = side->conflicts;
-    text += fmt::format("{}: {} of {} in {}\n", name, counted(found.listed.size(), "conflict"),
-                        counted(found.colliding_points - found.small_points, "point"), side->file);
-    if (found.small_groups > 0) {
-      text += fmt::format(
-          "{}: {} of {} {} too small to be compared\n", name, counted(found.small_groups, "group"),
-          counted(found.small_points, "point"), found.small_groups == 1 ? "is" : "are");
-    }
+std::string side_text(const char* name, const ComparedResult& side) {
+  const Conflicts& found = side.conflicts;
+  std::string text =
+      fmt::format("{}: {} of {} in {}\n", name, counted(found.listed.size(), "conflict"),
+                  counted(found.colliding_points - found.small_points, "point"), side.file);
+  if (found.small_groups > 0) {
+    text += fmt::format("{}: {} of {} {} too small to be listed\n", name,
+                        counted(found.small_groups, "group"), counted(found.small_points, "point"),
+                        found.small_groups == 1 ? "is" : "are");
   }
-  if (a.radius != b.radius) {
-    text += "queries differ: radius: " + format_number(a.radius) + " / " + format_number(b.radius) +
-            " " + a.unit + "\n";
+  return text;
+}
+
+std::string text_of(const ComparedConflicts& found, std::uint64_t show) {
+  const Conflicts &a = found.a.conflicts, &b = found.b.conflicts;
+  std::string text = side_text("a", found.a) + side_text("b", found.b);
+  for (const QueryDifference& query : found.questions) {
+    text += "queries differ: " + query.what + ": " + query.a + " / " + query.b + "\n";
   }
-  text += list_text("new, only in b", b.conflicts, match.added, show);
-  text += list_text("gone, only in a", a.conflicts, match.gone, show);
-  text += "the same in both: " + format_count(match.same.size()) + "\n";
-  if (!match.added.empty()) return text + "new conflicts\n";
-  return text + (has_more_small_points(a, b)
-                     ? "no new conflicts, but b has more points in groups that are too small\n"
-                     : "no new conflicts\n");
-}
-
-ordered_json json_of_conflict(const Conflict& c) {
-  ordered_json out{{"id", c.id},
-                   {"points", c.points},
-                   {"source", c.source},
-                   {"lo", {c.box.lo.x, c.box.lo.y, c.box.lo.z}},
-                   {"hi", {c.box.hi.x, c.box.hi.y, c.box.hi.z}},
-                   {"centroid", {c.centroid.x, c.centroid.y, c.centroid.z}},
-                   {"chainage_from", c.chainage_from},
-                   {"chainage_to", c.chainage_to},
-                   {"least_distance", nullptr},
-                   {"side", name_of(c.side)}};
-  if (c.least_distance) out["least_distance"] = *c.least_distance;
-  return out;
-}
-
-ordered_json json_of_list(const Conflicts& conflicts, const std::vector<std::uint32_t>& ids) {
-  auto out = ordered_json::array();
-  for (const std::uint32_t id : ids) out.push_back(json_of_conflict(conflict_at(conflicts, id)));
-  return out;
-}
-
-std::string json_of(const Compared& a, const Compared& b, const ConflictMatch& match) {
-  const auto side = [](const Compared& of) {
-    return ordered_json{{"file", of.file},
-                        {"unit", of.unit},
-                        {"radius", of.radius},
-                        {"conflicts", of.conflicts.listed.size()},
-                        {"colliding_points", of.conflicts.colliding_points},
-                        {"small_groups", of.conflicts.small_groups},
-                        {"small_points", of.conflicts.small_points}};
-  };
-  auto same = ordered_json::array();
-  for (const auto& [in_a, in_b] : match.same) {
-    same.push_back({{"a", json_of_conflict(conflict_at(a.conflicts, in_a))},
-                    {"b", json_of_conflict(conflict_at(b.conflicts, in_b))}});
+  const auto of_b = [&](std::uint32_t id) { return line_of(conflict_at(b, id)); };
+  text += list_text("new, only in b", found.match.added, show, of_b);
+  if (!found.new_small.empty()) {
+    text += list_text(
+        "new groups that are too small to be listed", found.new_small, show, [&](std::size_t i) {
+          const SmallGroup& group = b.small[i];
+          return fmt::format("  {:>5}  {:>19}  {:>11} {:<6}  {:.3f} {:.3f} {:.3f}\n", "",
+                             fmt::format("{:.2f} - {:.2f}", group.chainage_from, group.chainage_to),
+                             format_count(group.points), group.points == 1 ? "point" : "points",
+                             group.box.lo.x, group.box.lo.y, group.box.lo.z);
+        });
   }
-  const ordered_json out{{"a", side(a)},
-                         {"b", side(b)},
-                         {"new", json_of_list(b.conflicts, match.added)},
-                         {"gone", json_of_list(a.conflicts, match.gone)},
-                         {"same", same}};
-  // Names of files need not be UTF-8.
-  return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  if (found.distances_known) {
+    text += list_text(
+        "worse by more than " + format_brief(found.worse_by) + " " + found.a.unit, found.worse,
+        show, [&](const auto& pair) {
+          const auto before = conflict_at(a, pair.first).least_distance;
+          std::string line = of_b(pair.second);
+          line.pop_back();
+          return line + fmt::format("  {} -> {:.3f} {}\n",
+                                    before ? fmt::format("{:.3f}", *before) : "unknown",
+                                    *conflict_at(b, pair.second).least_distance, found.a.unit);
+        });
+  } else {
+    text += "worse: not known, because the results have no clearances (run --clearance)\n";
+  }
+  text += list_text("gone, only in a", found.match.gone, show,
+                    [&](std::uint32_t id) { return line_of(conflict_at(a, id)); });
+  text += "the same in both: " + format_count(found.match.same.size()) + "\n";
+  return text + sentence_of(found) + "\n";
 }
 
 }  // namespace
@@ -142,38 +147,88 @@ std::string json_of(const Compared& a, const Compared& b, const ConflictMatch& m
 void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
                              CLI::Option* conflicts) {
   const std::vector<CLI::Option*> before = command.get_options();
+  const GroupScope inputs(command, OptionGroup::kInputs);
   command.add_option("--trajectory", options.trajectory, "The trajectory of A, and of B")
       ->type_name("FILE");
   command
       .add_option("--trajectory-b", options.trajectory_b,
                   "The trajectory of B, where it is another")
       ->type_name("FILE");
+  command
+      .add_option("--vehicle", options.vehicle,
+                  "The vehicle of several bodies of A, and of B: for sides")
+      ->type_name("FILE");
+  command.add_option("--vehicle-b", options.vehicle_b, "The vehicle of B, where it is another")
+      ->type_name("FILE");
   add_conflict_options(command, options);
+  {
+    const GroupScope conflict_group(command, OptionGroup::kConflicts);
+    options.lengths.add(
+        command, "--worse-by", options.worse_by,
+        "A conflict is worse where it comes nearer, or reaches deeper, by more than "
+        "this (default: 0.02)",
+        LengthRange::kFromZero);
+    command.add_flag("--allow-other-question", options.allow_other_question,
+                     "Compare results of different questions; they differ otherwise (exit code 1)");
+  }
+  command
+      .add_option("-o,--output", options.output,
+                  "Write the comparison to a file: .csv, .json or .html")
+      ->type_name("FILE");
+  const GroupScope files(command, OptionGroup::kFiles);
+  command.add_flag("--force", options.force, "Overwrite an existing output");
   for (CLI::Option* option : command.get_options()) {
     if (std::ranges::find(before, option) == before.end()) option->needs(conflicts);
   }
 }
 
 bool compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
-                       const std::filesystem::path& b, std::size_t show, bool json) {
+                       const std::filesystem::path& b, std::uint64_t show, bool json) {
   if (options.trajectory.empty()) {
     throw UsageError("--conflicts needs --trajectory, the trajectory of the runs");
   }
-  options.trajectory_options.environment_unit =
-      options.lengths.convert_for(a.string(), Result(a).reader().header().crs_wkt);
+  const auto or_a = [](const std::filesystem::path& of_b, const std::filesystem::path& of_a) {
+    return of_b.empty() ? of_a : of_b;
+  };
+  const std::filesystem::path path_b = or_a(options.trajectory_b, options.trajectory);
+  const std::filesystem::path vehicle_b = or_a(options.vehicle_b, options.vehicle);
+  std::optional<PendingFile> output;
+  if (!options.output.empty()) {
+    check_comparison_ending(options.output);
+    refuse_overwriting(options.output,
+                       {a, b, options.trajectory, path_b, options.vehicle, vehicle_b});
+    output.emplace(options.output, options.force);
+  }
+  const double unit = options.lengths.convert_for(a.string(), Result(a).reader().header().crs_wkt);
+  options.trajectory_options.environment_unit = unit;
+  options.model_options.environment_unit = unit;
   ConsoleProgress progress;
   options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
   options.find.stop = &stop_flag();
-  const Compared in_a = find_side(options, a, options.trajectory);
-  const Compared in_b = find_side(
-      options, b, options.trajectory_b.empty() ? options.trajectory : options.trajectory_b);
-  if (in_a.unit != in_b.unit) {
-    throw InputError(in_b.file + ": its coordinates are in " + in_b.unit + ", expected " +
-                     in_a.unit + " as in " + in_a.file);
+  ComparedSide in_a(options, a, options.trajectory, options.vehicle);
+  ComparedSide in_b(options, b, path_b, vehicle_b);
+  ComparedConflicts found;
+  const ResultHeader &header_a = in_a.result.reader().header(),
+                     &header_b = in_b.result.reader().header();
+  found.questions = question_differences(header_a, header_b);
+  found.other_question_allowed = options.allow_other_question;
+  found.distances_known = header_a.clearance > 0 && header_b.clearance > 0;
+  found.worse_by = options.worse_by;
+  found.match = match_conflicts(in_a.conflicts, in_b.conflicts, options.find.gap);
+  found.new_small = match_points(in_a.grouped(), in_b.grouped(), options.find.gap, found.match);
+  found.a = in_a.compared();
+  found.b = in_b.compared();
+  if (found.a.unit != found.b.unit) {
+    throw InputError(found.b.file + ": its coordinates are in " + found.b.unit + ", expected " +
+                     found.a.unit + " as in " + found.a.file);
   }
-  const ConflictMatch match = match_conflicts(in_a.conflicts, in_b.conflicts, options.find.gap);
-  print(json ? json_of(in_a, in_b, match) : text_of(in_a, in_b, match, show));
-  return match.added.empty() && !has_more_small_points(in_a, in_b);
+  if (found.distances_known) found.worse = worse_ones(found);
+  if (output) {
+    write_comparison(found, options.output, output->partial());
+    output->publish();
+  }
+  print(json ? json_of(found) : text_of(found, show));
+  return found.holds();
 }
 
 }  // namespace clearway::tool

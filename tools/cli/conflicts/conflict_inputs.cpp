@@ -7,6 +7,7 @@
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/util/format.hpp"
@@ -27,12 +28,14 @@ void add_axis(CLI::App& command, const std::string& name, Axis& axis, const char
       .add_option_function<std::string>(
           name, [&axis](const std::string& text) { axis = kAxes.at(text); }, description)
       ->type_name("AXIS")
-      ->check(CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
+      ->transform(
+          CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}, CLI::ignore_case));
 }
 
 }  // namespace
 
 void add_conflict_options(CLI::App& command, ConflictCommand& options) {
+  const GroupScope group(command, OptionGroup::kConflicts);
   options.lengths.add(command, "--gap", options.find.gap,
                       "Points at most this far apart belong together (default: 0.3)");
   add_count_option(command, "--min-points", options.find.min_points, 1, 1'000'000'000'000'000,
@@ -42,12 +45,16 @@ void add_conflict_options(CLI::App& command, ConflictCommand& options) {
                       "never (default: 25)",
                       LengthRange::kFromZero);
   add_chainage_option(command, options.lengths, options.find.chainage_start);
-  add_memory_option(command, options.find.memory_bytes);
-  add_threads_option(command, options.find.threads);
+  {
+    const GroupScope speed(command, OptionGroup::kSpeed);
+    add_memory_option(command, options.find.memory_bytes);
+    add_threads_option(command, options.find.threads);
+  }
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
 void add_axis_options(CLI::App& command, ConflictOptions& options) {
+  const GroupScope group(command, OptionGroup::kUnits);
   add_axis(command, "--forward", options.forward,
            "Axis of the model that points ahead, for example +y (default: +x)");
   add_axis(command, "--up", options.up,
@@ -68,11 +75,19 @@ std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOption
   return poses;
 }
 
-ModelAs model_kind_of(const Result& result) {
+ModelOptions model_options_of(const Result& result, ModelOptions options) {
   const ResultHeader& header = result.reader().header();
-  return header.model_solids > 0      ? ModelAs::kSolid
-         : header.model_triangles > 0 ? ModelAs::kSurface
-                                      : ModelAs::kPoints;
+  options.radius = header.radius;
+  if (header.model_solids > 0) {
+    options.as = ModelAs::kSolid;
+  } else if (header.model_triangles > 0) {
+    // A body of a vehicle may be points where another one is a surface.
+    options.as = header.bodies.empty() ? ModelAs::kSurface : ModelAs::kAuto;
+  } else {
+    options.as = ModelAs::kPoints;
+    if (!options.asks_for_points()) options.spacing = header.model_spacing.metres;
+  }
+  return options;
 }
 
 void check_kind_of_model(const Result& result, const std::filesystem::path& model,
@@ -89,19 +104,15 @@ void check_kind_of_model(const Result& result, const std::filesystem::path& mode
 std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const ModelOptions& model,
                                  const ConflictCommand& options, const std::vector<Pose>& path,
                                  const Result& result, std::vector<Message>& warnings) {
-  ModelOptions how = with_spacing(model, result.parameters().radius);
-  how.as = model_kind_of(result);
-  if (how.as == ModelAs::kSurface) how.as = ModelAs::kSurfaceOfMesh;  // others may be points
-  VehicleOptions all{how, options.trajectory_options, options.find.threads};
+  VehicleOptions all{model_options_of(result, model), options.trajectory_options,
+                     options.find.threads};
   all.trajectory.default_crs = result.reader().header().crs_wkt;
   return read_vehicle(vehicle, path, all, &warnings);
 }
 
 ModelShape read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                          const Result& result) {
-  ModelOptions how = with_spacing(options, result.parameters().radius);
-  how.as = model_kind_of(result);
-  ModelShape shape = read_model_shape(path, how);
+  ModelShape shape = read_model_shape(path, model_options_of(result, options));
   const ResultHeader& header = result.reader().header();
   const std::uint64_t hash = hash_of_model(shape.points, shape.triangles, shape.solid_of);
   if (shape.points.size() == header.model_points && hash == header.model_hash) return shape;

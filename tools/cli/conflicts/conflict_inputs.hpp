@@ -39,8 +39,8 @@ void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result);
 
-/// What the model of a result was searched as.
-ModelAs model_kind_of(const Result& result);
+/// How the model of a result is read again: as it was for the search.
+ModelOptions model_options_of(const Result& result, ModelOptions options);
 
 /// Throws InputError where a result is of one model, and a vehicle is given, or the other way
 /// round.

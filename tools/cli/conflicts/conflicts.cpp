@@ -17,12 +17,15 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/conflicts/conflict_text.hpp"
 #include "cli/input_roles.hpp"
+#include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
+#include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
+#include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
 #include "findings/conflict_warnings.hpp"
 #include "io/conflicts/conflict_summary.hpp"
@@ -120,6 +123,7 @@ void run_conflicts(ConflictsCommand& options) {
   const Outputs outputs = open_outputs(options);
   check_is_trajectory(options.trajectory);
   const Result result(options.result);
+  warn_of_doubts(result.reader());
   check_kind_of_model(result, options.model, options.vehicle);
   const double unit =
       options.lengths.convert_for(options.result.string(), result.reader().header().crs_wkt);
@@ -132,6 +136,7 @@ void run_conflicts(ConflictsCommand& options) {
       read_poses(options.trajectory, options.trajectory_options, result);
   const SeenFrom from = read_seen_from(options, poses, result);
   options.find.bodies = from.bodies;
+  if (!from.model.points.empty()) options.find.model = &from.model;
   const bool has_pictures = std::ranges::any_of(
       outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
   std::vector<std::uint32_t> conflict_of;
@@ -180,11 +185,15 @@ void add_sides(CLI::App& command, ConflictsCommand& options) {
   add_axis_options(command, options.find);
   CLI::Option* model =
       command
-          .add_option("--model", options.model,
-                      "The model of the run: for the sides of older results, and BCF pictures")
+          .add_option(
+              "--model", options.model,
+              "The model of the run: for lateral shifts, the sides of older results, and BCF "
+              "pictures")
           ->type_name("FILE");
-  add_vehicle_option(command, options.vehicle,
-                     "The vehicle of several bodies of the run: for sides and BCF pictures", model);
+  add_vehicle_option(
+      command, options.vehicle,
+      "The vehicle of several bodies of the run: for sides, lateral shifts and BCF pictures",
+      model);
   add_model_options(command, options.model_options, options.lengths);
 }
 
@@ -213,6 +222,7 @@ void add_conflicts(CLI::App& program) {
           "--date", [&date = options->date](const std::string& text) { date = full_date(text); },
           "Date that BCF and GeoPackage show, for example 2025-03-31 (default: 2000-01-01, so that "
           "equal conflicts give equal files)")
+      ->group(title_of(OptionGroup::kConflicts))
       ->type_name("DATE");
   command->add_flag("--force", options->force, "Overwrite existing outputs");
   command->add_flag("--json", options->json, "Print one JSON object, without the conflicts");
@@ -222,8 +232,11 @@ void add_conflicts(CLI::App& program) {
       "numbered along the path. Those of a result with clearances have their least distance; the\n"
       "table then begins with the worst.\n"
       "Example: clearway conflicts out.h5 --trajectory path.txt -o conflicts.csv");
-  command->callback([options] {
-    run_stoppable(options->result, kStartsAgain, [&] { run_conflicts(*options); });
+  command->callback([options, command] {
+    run_stoppable(options->result, kStartsAgain, [&] {
+      advising_to_run_again(*command, {{options->result, options->trajectory}},
+                            [&] { run_conflicts(*options); });
+    });
   });
 }
 

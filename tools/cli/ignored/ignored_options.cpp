@@ -68,8 +68,9 @@ Box parse_box(const std::string& text) {
   return box;
 }
 
-nlohmann::ordered_json ignored_json(const QueryParameters& query,
-                                    const IgnoredPointCounts& counts) {
+nlohmann::ordered_json ignored_json(const Answer& answer) {
+  const QueryParameters& query = answer.parameters;
+  const IgnoredPointCounts& counts = answer.ignored;
   nlohmann::ordered_json classes = nlohmann::ordered_json::array();
   nlohmann::ordered_json boxes = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < query.ignore_classes.size(); ++i) {
@@ -81,7 +82,11 @@ nlohmann::ordered_json ignored_json(const QueryParameters& query,
                      {"hi", {box.hi.x, box.hi.y, box.hi.z}},
                      {"points", counts.in_boxes[i]}});
   }
-  return {{"points", counts.points}, {"classes", classes}, {"boxes", boxes}};
+  nlohmann::ordered_json out{{"points", counts.points}, {"colliding", nullptr}};
+  if (answer.ignored_colliding) out["colliding"] = *answer.ignored_colliding;
+  out["classes"] = std::move(classes);
+  out["boxes"] = std::move(boxes);
+  return out;
 }
 
 }  // namespace clearway::tool

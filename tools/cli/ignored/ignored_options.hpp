@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "clearway/box.hpp"
-#include "clearway/ignored.hpp"
-#include "clearway/query.hpp"
 
 namespace clearway::tool {
 
@@ -17,7 +16,7 @@ std::vector<std::uint8_t> parse_classes(const std::vector<std::string>& lists);
 /// Of "x0,y0,z0,x1,y1,z1". Throws CLI::ValidationError.
 Box parse_box(const std::string& text);
 
-/// Keys points, classes and boxes. counts: of the query's lists, as the result has them.
-nlohmann::ordered_json ignored_json(const QueryParameters& query, const IgnoredPointCounts& counts);
+/// Keys points, colliding (null where it is not known), classes and boxes.
+nlohmann::ordered_json ignored_json(const Answer& answer);
 
 }  // namespace clearway::tool

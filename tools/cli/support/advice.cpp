@@ -1,5 +1,7 @@
 #include "cli/support/advice.hpp"
 
+#include <algorithm>
+
 #include "core/util/format.hpp"
 
 namespace clearway::tool {
@@ -65,7 +67,7 @@ std::string advice_on(const Error& error) {
     case Remedy::kResumeOrOverwrite:
       return "; --resume continues it, --force starts again";
     case Remedy::kOverwriteNotResume:
-      return "; --force in the place of --resume overwrites it";
+      return "; --force instead of --resume overwrites it";
     case Remedy::kRestoreOptions:
       return "; give the options and files that it was started with, or --force to start again";
     case Remedy::kNameFormat:
@@ -97,11 +99,12 @@ std::string advice_on(const Error& error) {
     case Remedy::kResume:
       return "; the same command with --resume, without --force, continues from the finished work";
     case Remedy::kModelPoints:
-      return "; take --model-as points";
+      return "; --model-as points searches points of it, and the answer says how far its surface "
+             "may be from them";
     case Remedy::kMerge:
       return "; clearway merge makes the result of all parts";
     case Remedy::kOtherPart:
-      return "; give --shard as its run did, or another output. --force in the place of --resume "
+      return "; give the same --shard as its run, or another output. --force instead of --resume "
              "overwrites it";
   }
   return "";
@@ -109,7 +112,19 @@ std::string advice_on(const Error& error) {
 
 std::string advice_on(const Message& message) {
   if (message.code == "large-steps") {
+    const bool searched_between = std::ranges::any_of(
+        message.numbers, [](const auto& n) { return n.first == "turn_degrees"; });
+    if (searched_between) {
+      return message.severity == Message::Severity::kNote
+                 ? ""
+                 : ". More poses of the recording help; where none are missing, clearway "
+                   "trajectory "
+                   "resample adds poses on a smooth curve";
+    }
     return ". --between-poses searches the way too; clearway trajectory resample adds poses";
+  }
+  if (message.code == "loose-vertices") {
+    return ", or search all vertices, and nothing else of the file, with --model-vertices";
   }
   if (message.code == "one-long-conflict") {
     return ". clearway run --model-above leaves out the lowest part of the model";

@@ -1,15 +1,40 @@
 #pragma once
 
+#include "clearway/answer.hpp"
+
 namespace clearway::tool {
 
-/// Of the program; `run`, `compare` and `verify` set kDiffers themselves.
+/// Of the program. `run`, `merge`, `compare` and `verify` set kDiffers themselves, `run` and
+/// `merge` kUndecided too.
 enum ExitCode {
   kDone = 0,
   kDiffers = 1,
   kWrongUsage = 2,
   kBadInput = 3,
   kResource = 4,
-  kInterrupted = 5
+  kInterrupted = 5,
+  kUndecided = 6
 };
+
+/// What --fail-on-collision makes of a verdict. One part alone never says that nothing collides.
+inline int exit_code_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kClear:
+      return kDone;
+    case Verdict::kConflict:
+      return kDiffers;
+    case Verdict::kUndecided:
+    case Verdict::kUnknown:
+      break;
+  }
+  return kUndecided;
+}
+
+/// The exit code of several tasks of which `a` and `b` are two: failures before conflicts, and
+/// these before undecided ones: 5, 4, 3, 2, 1, 6, 0.
+inline int more_urgent(int a, int b) {
+  const auto rank = [](int code) { return code == kUndecided ? 1 : code == kDone ? 0 : code + 1; };
+  return rank(a) < rank(b) ? b : a;
+}
 
 }  // namespace clearway::tool

@@ -3,10 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
+#include "cli/support/option_groups.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/formats/text/column_names.hpp"
 #include "io/formats/wkt.hpp"
 
@@ -49,13 +52,8 @@ ParsedLength parse_length(const std::string& option, const std::string& text, Le
                                                         : "";
   throw CLI::ValidationError(option,
                              text + ": expected a finite number of metres" + limit +
-                                 ", for example 0.1, or a number with mm, cm, m, km, in or ft, "
-                                 "for example 10cm");
-}
-
-std::optional<double> metres_of_unit(const std::string& length_unit) {
-  const double metres = metres_of(length_unit_of(length_unit));
-  return metres > 0 && metres != 1 ? std::optional(metres) : std::nullopt;
+                                 ", for example 0.1, or a number with a unit (mm, cm, m, km, "
+                                 "in, ft, ift or us-ft), for example 10cm");
 }
 
 std::string symbol_of_unit(const std::string& length_unit) {
@@ -63,12 +61,11 @@ std::string symbol_of_unit(const std::string& length_unit) {
   return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
 }
 
-CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,
+CLI::Option* add_unit_option(CLI::App& command, const std::string& names, FileUnit& unit,
                              const std::string& description) {
   return command
       .add_option_function<std::string>(
-          names, [&metres](const std::string& name) { metres = metres_of_file_unit(name).value(); },
-          description)
+          names, [&unit](const std::string& name) { unit = FileUnit::named(name); }, description)
       ->type_name("UNIT")
       ->check(CLI::IsMember(file_unit_names()));
 }
@@ -82,7 +79,7 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, doub
             set(length, parse_length(name, text, range));
           },
           description)
-      ->type_name("METRES");
+      ->type_name(kLengthType);
 }
 
 CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
@@ -95,7 +92,7 @@ CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
             set(length.emplace(), parse_length(name, text, range));
           },
           description)
-      ->type_name("METRES");
+      ->type_name(kLengthType);
 }
 
 CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, Vec3& lengths,
@@ -139,6 +136,27 @@ void LengthOptions::convert(double metres) const {
   for (const auto& [length, parsed] : with_unit_) *length = parsed.in_units_of(metres);
 }
 
+std::optional<Message> LengthOptions::convert_for(const Store& store) const {
+  convert(store.metres_per_unit());
+  const LengthUnit unit = length_unit_of(store.length_unit());
+  const bool in_ft = std::ranges::any_of(
+      with_unit_, [](const auto& length) { return length.second.unit.is_any_foot(); });
+  if (in_ft && unit == LengthUnit::kUsSurveyFoot) {
+    spdlog::info("lengths in ft are in the environment's foot, the US survey foot");
+  }
+  if (unit != LengthUnit::kUnknown) return std::nullopt;
+  for (const auto& [length, parsed] : with_unit_) {
+    const bool of_ten = parsed.unit == FileUnit(kMetresPerMillimetre) ||
+                        parsed.unit == FileUnit(kMetresPerCentimetre) || parsed.unit.metres() >= 1;
+    if (of_ten || parsed.unit == FileUnit(0.1)) continue;
+    return Message{Message::Severity::kWarning,
+                   "unit-assumed",
+                   unit_assumed_text("lengths of the command", parsed.unit.metres()),
+                   {{"metres", parsed.unit.metres()}}};
+  }
+  return std::nullopt;
+}
+
 double LengthOptions::convert_for(const std::string& result, const std::string& crs_wkt) const {
   const double metres = metres_of_crs(crs_wkt);
   if (crs_wkt.empty() && !with_unit_.empty()) {
@@ -152,8 +170,10 @@ double LengthOptions::convert_for(const std::string& result, const std::string& 
 }
 
 void add_chainage_option(CLI::App& command, LengthOptions& lengths, double& start) {
-  lengths.add(command, "--chainage-start", start, "Chainage of the first pose (default: 0)",
-              LengthRange::kAny);
+  lengths
+      .add(command, "--chainage-start", start, "Chainage of the first pose (default: 0)",
+           LengthRange::kAny)
+      ->group(title_of(OptionGroup::kConflicts));
 }
 
 }  // namespace clearway::tool

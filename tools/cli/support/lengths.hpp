@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "clearway/store.hpp"
 #include "clearway/vec3.hpp"
 #include "io/formats/text/length_text.hpp"
 
@@ -28,12 +29,19 @@ ParsedLength parse_length(const std::string& option, const std::string& text,
 /// warned of elsewhere, and count as metres here.
 std::string symbol_of_unit(const std::string& length_unit);
 
-/// Metres of the unit of a store's coordinates, by its name there; none where it is the metre.
-std::optional<double> metres_of_unit(const std::string& length_unit);
+/// Tells the readers of models and trajectories what the environment is in.
+template <typename... Options>
+void set_environment_unit(const Store& store, Options&... options) {
+  ((options.environment_unit = store.metres_per_unit()), ...);
+  ((options.environment_unit_is_assumed = store.length_unit() == "unknown"), ...);
+}
 
-/// An option that takes the name of a unit of a file. metres: receives its length.
-CLI::Option* add_unit_option(CLI::App& command, const std::string& names, double& metres,
+/// An option that takes the name of a unit of a file.
+CLI::Option* add_unit_option(CLI::App& command, const std::string& names, FileUnit& unit,
                              const std::string& description);
+
+/// What the help calls the value of an option that takes one length.
+inline constexpr const char* kLengthType = "METRES";
 
 /// Lengths of a command line that were given with a unit, for an environment that is not in metres.
 class LengthOptions {
@@ -55,6 +63,9 @@ class LengthOptions {
 
   /// Turns those that were given with a unit into units of `metres` metres.
   void convert(double metres) const;
+  /// The same for a store. Where it names no unit, a length in feet or inches is a sign that the
+  /// scan is not in metres, and warned of.
+  std::optional<Message> convert_for(const Store& store) const;
   /// The same for a result, whose unit its CRS tells. Gives metres of the unit. Warns where there
   /// is no CRS and a length was given with a unit: the scan may have a unit all the same.
   double convert_for(const std::string& result, const std::string& crs_wkt) const;

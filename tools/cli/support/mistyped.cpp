@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <optional>
+#include <span>
 
 #include "clearway/error.hpp"
+#include "cli/support/lengths.hpp"
+#include "io/formats/text/length_text.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -37,6 +41,22 @@ class WordCheck {
  public:
   WordCheck(const CLI::App& program, const char* name) : command_(&program), name_(name) {}
 
+  /// The option at the front of the words and its value as one word, where the parser would not see
+  /// that they belong together: the value begins with a minus, or it is a length whose unit stands
+  /// apart, as in --radius 10 cm. How many words these are is added to `taken`.
+  std::string joined(std::span<const std::string> words, std::size_t& taken) const {
+    const std::string& word = words[0];
+    const CLI::Option* option = word.starts_with('-') && word.find('=') == std::string::npos
+                                    ? command_->get_option_no_throw(word)
+                                    : nullptr;
+    const std::size_t values = option == nullptr || option->get_lnames().empty()
+                                   ? 0
+                                   : words_of_value(*option, words.subspan(1));
+    taken += 1 + values;
+    if (values == 0) return word;
+    return "--" + option->get_lnames().front() + "=" + words[1] + (values > 1 ? words[2] : "");
+  }
+
   /// False where the rest is not to be looked at.
   bool accepts(const std::string& word) {
     if (word == "--") return false;
@@ -53,6 +73,19 @@ class WordCheck {
 
  private:
   static unsigned char uchar(char c) { return static_cast<unsigned char>(c); }
+
+  /// How many of the words that follow an option are to be joined to it.
+  std::size_t words_of_value(const CLI::Option& option, std::span<const std::string> words) const {
+    if (option.get_items_expected_max() == 0 || words.empty()) return 0;
+    const std::string& value = words[0];
+    if (words.size() > 1 && option.get_type_name() == kLengthType) {
+      const std::optional<ParsedLength> bare = length_of(value);
+      const std::optional<ParsedLength> whole = length_of(value + words[1]);
+      if (bare && !bare->has_unit && whole && whole->has_unit) return 2;
+    }
+    const bool may_be_value = value.size() > 1 && value[0] == '-' && value[1] != '-';
+    return may_be_value && command_->get_option_no_throw(value.substr(0, 2)) == nullptr ? 1 : 0;
+  }
 
   void check_option(const std::string& option) const {
     std::vector<std::string> known;
@@ -100,10 +133,21 @@ std::string likeliest(const std::string& typed, const std::vector<std::string>& 
   return best;
 }
 
-void check_words(const CLI::App& program, const char* program_name, int argc, char** argv) {
+std::vector<std::string> checked_words(const CLI::App& program, const char* program_name, int argc,
+                                       char** argv) {
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   WordCheck check(program, program_name);
-  for (int i = 1; i < argc && check.accepts(argv[i]); ++i) {
+  std::vector<std::string> out;
+  bool looking = true;
+  for (std::size_t i = 0; i < words.size();) {
+    if (!looking) {
+      out.push_back(words[i++]);
+      continue;
+    }
+    out.push_back(check.joined(std::span(words).subspan(i), i));
+    looking = check.accepts(out.back());
   }
+  return out;
 }
 
 }  // namespace clearway::tool

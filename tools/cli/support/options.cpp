@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "cli/support/lengths.hpp"
+#include "cli/support/option_groups.hpp"
 #include "core/util/format.hpp"
 #include "io/formats/text/text_number.hpp"
 
@@ -94,22 +95,19 @@ void add_threads_option(CLI::App& command, int& threads) {
       ->check(CLI::Range(1, 1024));
 }
 
-void add_model_unit(CLI::App& command, const std::string& names, double& unit) {
+void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit) {
   add_unit_option(command, names, unit,
-                  "Unit of the model's file: mm, cm, m, in or ft (default: m)");
-}
-
-ModelOptions with_spacing(ModelOptions options, double radius) {
-  constexpr double kSpacingsInRadius = 4;
-  if (options.spacing == 0) options.spacing = radius / kSpacingsInRadius;
-  return options;
+                  "Unit of the model's file; ft is the environment's foot, ift the international "
+                  "and us-ft the US survey foot (default: that of the environment)")
+      ->group(title_of(OptionGroup::kUnits));
 }
 
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths) {
+  const GroupScope group(command, OptionGroup::kModel);
   CLI::Option* spacing =
       lengths.add(command, "--model-spacing", options.spacing,
-                  "Of a mesh: no place of its surface is farther than this from a model point "
-                  "(default: a quarter of the radius)");
+                  "Search points of a mesh, and no place of its surface is farther than this from "
+                  "one (default: a quarter of the radius)");
   add_model_unit(command, "--model-unit", options.unit);
   command
       .add_flag("--model-vertices", options.vertices_only,

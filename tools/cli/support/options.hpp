@@ -35,14 +35,10 @@ void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 void add_threads_option(CLI::App& command, int& threads);
 
 /// --model-unit; `names` where it is called otherwise too.
-void add_model_unit(CLI::App& command, const std::string& names, double& unit);
+void add_model_unit(CLI::App& command, const std::string& names, FileUnit& unit);
 
 /// --model-spacing, --model-unit, --model-vertices and --model-above.
 void add_model_options(CLI::App& command, ModelOptions& options, LengthOptions& lengths);
-
-/// The same with a spacing for meshes, a quarter of the radius, where none is given. All commands
-/// that read the model of a run sample it so.
-ModelOptions with_spacing(ModelOptions options, double radius);
 
 /// Bytes of "512M", "1.5G", "4GiB" or "300000000"; throws CLI::ValidationError naming the option.
 std::uint64_t parse_size(const std::string& option, const std::string& text);

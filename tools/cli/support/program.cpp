@@ -10,12 +10,14 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "clearway/error.hpp"
 #include "cli/support/advice.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/exit_code.hpp"
 #include "cli/support/mistyped.hpp"
+#include "cli/support/option_groups.hpp"
 #include "cli/support/standard_output.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/system/mapped_file.hpp"
@@ -46,10 +48,14 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   program.require_subcommand(1);
   int exit_code = kDone;
   program.failure_message(failure_text);
+  show_groups_in_order(program);
   add_commands(program, exit_code);
-  check_words(program, text.name, argc, argv);
+  group_common_options(program);
+  const std::vector<std::string> words = checked_words(program, text.name, argc, argv);
+  std::vector<const char*> pointers{argv[0]};
+  for (const std::string& word : words) pointers.push_back(word.c_str());
   try {
-    program.parse(argc, argv);
+    program.parse(static_cast<int>(pointers.size()), pointers.data());
   } catch (const CLI::ParseError& error) {
     return finish(program, error);
   }

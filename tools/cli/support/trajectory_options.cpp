@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/support/lengths.hpp"
+#include "cli/support/option_groups.hpp"
 #include "io/formats/text/column_names.hpp"
 #include "io/trajectory/trajectory_file.hpp"
 
@@ -90,7 +91,9 @@ void add_map(CLI::App& command, TrajectoryOptions& options) {
 
 void add_lengths(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths) {
   add_unit_option(command, "--trajectory-unit", options.metres_per_unit,
-                  "Unit of the positions: mm, cm, m, in or ft (default: m, or what a header says)");
+                  "Unit of the positions; ft is the environment's foot, ift the international and "
+                  "us-ft the US survey foot (default: what a header says, otherwise that of the "
+                  "environment)");
   lengths.add(command, "--lever-arm", options.lever_arm,
               "Where the point that the trajectory gives, such as an antenna, lies in the model's "
               "frame, in metres");
@@ -99,9 +102,13 @@ void add_lengths(CLI::App& command, TrajectoryOptions& options, LengthOptions& l
 }  // namespace
 
 void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths) {
-  add_format(command, options);
-  command.add_flag("--allow-non-rigid", options.allow_non_rigid,
-                   "Accept matrices that scale or shear");
+  {
+    const GroupScope group(command, OptionGroup::kPath);
+    add_format(command, options);
+    command.add_flag("--allow-non-rigid", options.allow_non_rigid,
+                     "Accept matrices that scale or shear");
+  }
+  const GroupScope group(command, OptionGroup::kUnits);
   add_angles(command, options);
   add_map(command, options);
   add_lengths(command, options, lengths);

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -20,6 +21,7 @@
 #include "cli/trajectory/commands.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/resample_trajectory.hpp"
+#include "core/trajectory/step_doubts.hpp"
 #include "core/trajectory/thin_trajectory.hpp"
 #include "core/trajectory/trajectory_motion.hpp"
 #include "core/util/format.hpp"
@@ -31,15 +33,20 @@ namespace {
 
 struct ChangeOptions {
   std::filesystem::path input, output, model;
-  double max_motion = 0, model_unit = 0;
+  double max_motion = 0;
+  FileUnit model_unit = {};
   LengthOptions lengths;
   TrajectoryOptions trajectory;
   bool force = false;
   bool json = false;
 };
 
-using Change = std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Box& model,
-                                               double max_motion, Progress& progress)>;
+struct Change {
+  std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Box& model,
+                                  double max_motion, Progress& progress)>
+      make;
+  const char* consequence;  ///< what it means for the output that poses may be missing
+};
 
 std::vector<Pose> resample(const std::vector<Pose>& poses, const Box& model, double max_motion,
                            Progress& progress) {
@@ -56,10 +63,23 @@ std::vector<Pose> thin(const std::vector<Pose>& poses, const Box& model, double 
 std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
                           const ChangeOptions& options, const Change& change, Progress& progress) {
   try {
-    return change(poses, model, options.max_motion, progress);
+    return change.make(poses, model, options.max_motion, progress);
   } catch (const InputError& error) {
     throw InputError(options.input.string() + ": " + error.what());
   }
+}
+
+/// A gap of the recording is not seen any more in what is written.
+void warn_of_jumps(const std::vector<Pose>& poses, const Box& model, const ChangeOptions& options,
+                   const std::string& consequence) {
+  std::vector<double> motions;
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    motions.push_back(motion_bound(model, poses[i], poses[i + 1]));
+  }
+  const auto jumps = jumps_of(motions, std::min(kLeastJump, options.max_motion));
+  if (jumps.empty()) return;
+  log_message(
+      jump_warning(jumps, options.input.string() + ": as the model moves, ", "m", consequence));
 }
 
 void write_changed(const ChangeOptions& options, const Change& change) {
@@ -83,6 +103,7 @@ void write_changed(const ChangeOptions& options, const Change& change) {
     throw InputError(options.input.string() +
                      ": poses too far apart: the motion from one to the next is no finite number");
   }
+  warn_of_jumps(before, model, options, change.consequence);
   ConsoleProgress progress;
   const std::vector<Pose> after = changed(before, model, options, change, progress);
   write_trajectory(after, File::create(output.partial()), progress);
@@ -131,7 +152,7 @@ void add_trajectory_changes(CLI::App& trajectory) {
   CLI::App* resampling = trajectory.add_subcommand(
       "resample", "Add poses on a smooth curve until all steps are small; the given poses stay");
   add_change(*resampling, "The most that a model point may move from one pose to the next",
-             resample);
+             {resample, ". The poses that are put between them are a guess"});
   resampling->footer(
       "Example: clearway trajectory resample path.txt -o dense.txt --max-motion 0.05 --model "
       "car.ply");
@@ -141,7 +162,7 @@ void add_trajectory_changes(CLI::App& trajectory) {
       *thinning,
       "The most that a model point may move between a dropped pose and the last kept pose before "
       "it",
-      thin);
+      {thin, ". The output does not show it any more"});
   thinning->footer(
       "Example: clearway trajectory thin path.txt -o sparse.txt --max-motion 0.01 --model car.ply");
 }

@@ -19,6 +19,7 @@
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
+#include "core/trajectory/step_doubts.hpp"
 #include "core/util/format.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/trajectory_writer.hpp"
@@ -127,6 +128,11 @@ void write_followed(const FollowOptions& options) {
   refuse_nowhere(options, followed, path);
   for (const Message& doubt : doubts_about(followed, path, mount, options.input.string())) {
     log_message(doubt);
+  }
+  const auto jumps = jumps_of(step_lengths(poses), kLeastJump);
+  if (!jumps.empty()) {
+    log_message(jump_warning(jumps, options.input.string() + ": ", "m",
+                             ". Where the body is on that part of the path is a guess"));
   }
   ConsoleProgress progress;
   write_trajectory(followed.poses, File::create(output.partial()), progress);

@@ -17,6 +17,7 @@
 #include "cli/trajectory/commands.hpp"
 #include "cli/trajectory/description.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/step_doubts.hpp"
 #include "core/trajectory/trajectory_motion.hpp"
 #include "core/util/format.hpp"
 
@@ -25,7 +26,8 @@ namespace {
 
 struct InfoOptions {
   std::filesystem::path input, environment, model;
-  double radius = 0, model_unit = 0;
+  double radius = 0;
+  FileUnit model_unit = {};
   LengthOptions lengths;
   TrajectoryOptions trajectory;
   bool json = false;
@@ -45,18 +47,19 @@ StepMotion motion_of(const std::vector<Pose>& poses, const Box& model, double ra
 void warn_of_axes(const std::string& name, Description& what) {
   const BodyAxis& up = what.summary.up;
   if (up.cosine >= kClearAxis && up.axis != 2) {
-    what.file.warn("up-axis",
-                   fmt::format("{}: the {} axis of the poses' frame points up, as of a camera; the "
-                               "model is to have that frame, not z up",
-                               name, axis_name(up)),
-                   {{"cosine", up.cosine}});
+    what.file.warn(
+        "up-axis",
+        fmt::format("{}: the {} axis of the poses' frame points up, as in a camera's frame; "
+                    "the model needs the same frame, not z up",
+                    name, axis_name(up)),
+        {{"cosine", up.cosine}});
   }
   const BodyAxis& forward = what.summary.forward;
   const bool ahead = forward.axis == 0 && !forward.negative;
   if (forward.cosine >= kClearAxis && !ahead) {
     what.file.warn("forward-axis",
                    fmt::format("{}: the motion is along the {} axis of the poses' frame; the "
-                               "model's front is to point there, not along x",
+                               "model's front has to point along that axis, not along x",
                                name, axis_name(forward)),
                    {{"cosine", forward.cosine}});
   }
@@ -72,26 +75,40 @@ void warn_of_scan(const InfoOptions& options, Description& what) {
       {{"distance", what.overlap.distance}});
 }
 
-void warn_of_steps(const InfoOptions& options, Description& what) {
-  const std::size_t above = what.motion ? what.motion->above_radius.value_or(0) : 0;
+/// Jumps need other remedies than steps that are all long, so each step is in one of the warnings.
+void warn_of_steps(const InfoOptions& options, const Box& model, Description& what) {
+  const std::vector<Pose>& poses = what.file.poses;
+  const double least = options.radius > 0 ? options.radius : kLeastJump / what.file.metres_per_unit;
+  const std::vector<Jump> jumps = jumps_of(step_lengths(poses), least);
+  if (!jumps.empty()) {
+    what.file.remarks.push_back(jump_warning(jumps, options.input.string() + ": ", "m", ""));
+  }
+  if (!what.motion || what.motion->above_radius.value_or(0) == 0) return;
+  std::size_t above = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    const double motion = motion_bound(model, poses[i], poses[i + 1]);
+    if (!(motion > options.radius) || std::ranges::binary_search(jumps, i, {}, &Jump::pose))
+      continue;
+    ++above;
+    largest = std::max(largest, motion);
+  }
   if (above == 0) return;
   what.file.warn(
       "steps-above-radius",
       fmt::format("{}: {} of {} steps move the model by more than the radius, up to {:.4g} m; "
                   "--between-poses or clearway trajectory resample close the gaps",
                   options.input.string(), format_count(above), format_count(what.summary.poses - 1),
-                  what.motion->largest),
-      {{"steps", static_cast<double>(above)}, {"largest_motion", what.motion->largest}});
+                  largest),
+      {{"steps", static_cast<double>(above)}, {"largest_motion", largest}});
 }
 
 Description describe(InfoOptions& options) {
   Description what;
   if (!options.environment.empty()) {
     const Store store(options.environment);
-    if (const auto metres = metres_of_unit(store.length_unit())) {
-      options.lengths.convert(*metres);
-      options.trajectory.environment_unit = *metres;
-    }
+    if (const auto warning = options.lengths.convert_for(store)) log_message(*warning);
+    set_environment_unit(store, options.trajectory);
     options.trajectory.default_crs = store.crs_wkt();
     if (store.point_count() > 0) what.scan = store.box();
   }
@@ -99,9 +116,10 @@ Description describe(InfoOptions& options) {
   const std::vector<Pose>& poses = what.file.poses;
   what.summary = summarize_trajectory(poses);
   if (what.scan && !poses.empty()) what.overlap = overlap_of(poses, what.summary.box, *what.scan);
+  Box model{};
   if (!options.model.empty()) {
     // No other place of a mesh is farther out than its vertices.
-    const Box model =
+    model =
         box_of(read_model(options.model, {.unit = options.model_unit,
                                           .environment_unit = options.trajectory.environment_unit,
                                           .vertices_only = true}));
@@ -109,7 +127,7 @@ Description describe(InfoOptions& options) {
   }
   warn_of_axes(options.input.string(), what);
   warn_of_scan(options, what);
-  warn_of_steps(options, what);
+  warn_of_steps(options, model, what);
   return what;
 }
 
@@ -142,7 +160,7 @@ void add_trajectory_info(CLI::App& trajectory) {
       ->needs(model);
   add_trajectory_options(*command, options->trajectory, options->lengths);
   command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer("Example: clearway trajectory info path.csv --angles deg --env site.h5");
+  command->footer("Example: clearway trajectory info path.csv --angles deg,enu --env site.h5");
   command->callback([options] { run_info(*options); });
 }
 

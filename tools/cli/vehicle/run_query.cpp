@@ -13,10 +13,7 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   const ModelOptions how = model_options_of(options);
   Query query({}, {}, options.query);
   if (options.vehicle.empty()) {
-    ModelShape model = read_model_shape(options.model, how, &warnings);
-    query.model = std::move(model.points);
-    query.triangles = std::move(model.triangles);
-    query.solid_of = std::move(model.solid_of);
+    set_model(query, read_model_shape(options.model, how, &warnings));
   }
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);

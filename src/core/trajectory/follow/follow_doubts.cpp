@@ -23,9 +23,17 @@ std::string listed(const std::vector<std::uint64_t>& indices) {
 /// To a millimetre.
 std::string metres_text(double metres) { return format_number(std::round(metres * 1e3) / 1e3); }
 
-Message warning(const std::string& code, const std::string& text,
+/// Whether ascending poses are those at the beginning of the path, those at its end, or both.
+bool only_at_ends(const std::vector<std::uint64_t>& poses, std::size_t count) {
+  std::size_t first = 0, last = 0;
+  while (first < poses.size() && poses[first] == first) ++first;
+  while (last < poses.size() && poses[poses.size() - 1 - last] == count - 1 - last) ++last;
+  return first + last >= poses.size();
+}
+
+Message message(Message::Severity severity, const std::string& code, const std::string& text,
                 const std::vector<std::uint64_t>& poses) {
-  return {Message::Severity::kWarning,
+  return {severity,
           code,
           text,
           {{"poses", static_cast<double>(poses.size())},
@@ -38,16 +46,24 @@ Message warning(const std::string& code, const std::string& text,
 std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
                                   const BodyMount& mount, const std::string& name) {
   std::vector<Message> doubts;
-  const auto warn = [&](const std::string& code, const std::vector<std::uint64_t>& poses,
-                        const std::string& what) {
+  const std::size_t count = path.poses().size();
+  const auto tell = [&](Message::Severity severity, const std::string& code,
+                        const std::vector<std::uint64_t>& poses, const std::string& what) {
     if (poses.empty()) return;
     const std::string share = name + ": " + format_count(poses.size()) + " of " +
-                              counted(path.poses().size(), "pose") + " of the path (" +
-                              listed(poses) + ", from 0): ";
-    doubts.push_back(warning(code, share + what, poses));
+                              counted(count, "pose") + " of the path (" + listed(poses) +
+                              ", from 0): ";
+    doubts.push_back(message(severity, code, share + what, poses));
+  };
+  const auto warn = [&](const std::string& code, const std::vector<std::uint64_t>& poses,
+                        const std::string& what) {
+    tell(Message::Severity::kWarning, code, poses, what);
   };
   const bool pivots = std::holds_alternative<BodyPivots>(mount);
-  warn("body-off-path", followed.off_path,
+  // A wagon on pivots leaves the ends of any path: the verdict says how much of it was searched.
+  const bool expected = only_at_ends(followed.off_path, count);
+  tell(expected ? Message::Severity::kNote : Message::Severity::kWarning, "body-off-path",
+       followed.off_path,
        std::string("the body has no pose there, as ") + (pivots ? "a pivot" : "its station") +
            " is off the path, which is " + metres_text(path.length()) +
            " m long. Make the path longer to search there too");

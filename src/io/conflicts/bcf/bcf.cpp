@@ -9,6 +9,7 @@
 #include "io/conflicts/bcf/bcf_text.hpp"
 #include "io/conflicts/bcf/picture.hpp"
 #include "io/conflicts/bcf/zip_writer.hpp"
+#include "io/conflicts/conflict_fields.hpp"
 #include "io/result/result_rows.hpp"
 
 namespace clearway {
@@ -17,9 +18,10 @@ namespace {
 constexpr int kWidth = 800, kHeight = 600;
 constexpr Colour kColliding{200, 30, 30}, kModel{90, 110, 140}, kPath{40, 90, 200},
     kBoxEdge{120, 120, 120};
-constexpr double kLeastDistance = 6;      // metres from camera to conflict
-constexpr double kSizesAway = 1.6;        // and at least so many times the conflict's diagonal
-constexpr std::size_t kPathPoses = 2000;  // beside the nearest one, drawn as a line
+constexpr std::size_t kMostSmallTopics = 10;  // of groups that are shown instead of conflicts
+constexpr double kLeastDistance = 6;          // metres from camera to conflict
+constexpr double kSizesAway = 1.6;            // and at least so many times the conflict's diagonal
+constexpr std::size_t kPathPoses = 2000;      // beside the nearest one, drawn as a line
 
 Vec3 sum(const Vec3& a, const Vec3& b, double times) {
   return {a.x + times * b.x, a.y + times * b.y, a.z + times * b.z};
@@ -149,15 +151,20 @@ ConflictPoints conflict_points(const ResultReader& result, const Conflicts& conf
 void write_bcf(const ConflictFile& file, const ConflictPictures& pictures, const File& output) {
   ZipWriter zip(output);
   zip.add("bcf.version", bcf_version());
-  for (std::size_t i = 0; i < file.conflicts.listed.size(); ++i) {
-    const Conflict& conflict = file.conflicts.listed[i];
+  const auto add = [&](const Conflict& conflict, const std::vector<Vec3>& points) {
     const Camera camera = camera_of(file, conflict);
     const std::string folder = conflict_uuid(file, conflict, "topic") + "/";
     zip.add(folder + "markup.bcf", bcf_markup(file, conflict));
     zip.add(folder + "viewpoint.bcfv", bcf_viewpoint(file, conflict, camera));
-    zip.add(folder + "snapshot.png",
-            snapshot_of(file, conflict, camera, pictures.points[i], pictures.models));
+    zip.add(folder + "snapshot.png", snapshot_of(file, conflict, camera, points, pictures.models));
+  };
+  for (std::size_t i = 0; i < file.conflicts.listed.size(); ++i) {
+    add(file.conflicts.listed[i], pictures.points[i]);
   }
+  std::vector<Conflict> small = small_groups_instead(file.conflicts);
+  if (small.size() > kMostSmallTopics) small.resize(kMostSmallTopics);
+  // Their points are not held one by one: the picture marks where they begin, are and end.
+  for (const Conflict& group : small) add(group, {group.box.lo, group.centroid, group.box.hi});
   zip.finish();
 }
 

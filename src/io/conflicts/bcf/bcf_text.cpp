@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/util/format.hpp"
+#include "io/conflicts/conflict_fields.hpp"
 #include "io/conflicts/json_text.hpp"
 #include "io/system/xxh64.hpp"
 
@@ -55,8 +56,9 @@ std::string length_text(const ConflictFile& file, const std::string& number) {
 }
 
 std::string title_of(const ConflictFile& file, const Conflict& c) {
-  std::string out = "Conflict " + std::to_string(c.id) + " at " +
-                    length_text(file, format_brief(c.chainage_from));
+  const std::string what =
+      c.id > 0 ? "Conflict " + std::to_string(c.id) : "Group of " + counted(c.points, "point");
+  std::string out = what + " at " + length_text(file, format_brief(c.chainage_from));
   if (c.chainage_to > c.chainage_from) {
     out += " to " + length_text(file, format_brief(c.chainage_to));
   }
@@ -95,6 +97,28 @@ std::string offset_text(const ConflictFile& file, const Conflict& c) {
          (*c.height < 0 ? " below it" : " above it");
 }
 
+/// The lateral shifts that free the conflict's own points, where they are known.
+std::string shift_text(const ConflictFile& file, const Conflict& c) {
+  if (!c.shift_left && !c.shift_right) return "";
+  std::string out = " Its points are free where the vehicle runs at least";
+  if (c.shift_left)
+    out += " " + length_text(file, format_number(*rounded_up(c.shift_left))) + " farther left";
+  if (c.shift_left && c.shift_right) out += " or";
+  if (c.shift_right)
+    out += " " + length_text(file, format_number(*rounded_up(c.shift_right))) + " farther right";
+  return out + ".";
+}
+
+/// What the archive has no topic of.
+std::string small_text(const ConflictFile& file) {
+  const Conflicts& found = file.conflicts;
+  if (found.small_groups == 0) return "";
+  return " In all, " + counted(found.small_groups, "group") + " of fewer than " +
+         counted(file.options.min_points, "point") +
+         (found.small_groups == 1 ? " collides" : " collide") + " too, with " +
+         counted(found.small_points, "point") + " together.";
+}
+
 std::string description_of(const ConflictFile& file, const Conflict& c) {
   std::string out = format_count(c.points) + (c.points == 1 ? " point is" : " points are") +
                     " closer than " + length_text(file, format_number(file.header.radius)) +
@@ -110,13 +134,21 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
            length_text(file, format_brief(*c.encroachment)) + " are missing.";
   }
   if (c.lateral && c.height) {
-    out += std::string(!c.nearest_point          ? " Its centroid"
+    out += std::string(!c.nearest_point          ? " The point that is touched first"
                        : c.depth.value_or(0) > 0 ? " That point"
                                                  : " Its nearest point") +
            " lies " + offset_text(file, c) + ".";
   }
-  return out + " First touched at poses " + std::to_string(c.first_pose) + " to " +
-         std::to_string(c.last_pose) + ", counted from 0.";
+  if (c.obstacle_chainage) {
+    out += " The obstacle stands at chainage " +
+           length_text(file, format_brief(*c.obstacle_chainage)) + ".";
+  }
+  out += shift_text(file, c);
+  out +=
+      " Poses " + std::to_string(c.first_pose) + " to " + std::to_string(c.last_pose) +
+      ", counted from 0, touch it" +
+      (file.conflicts.has_last_poses ? "." : "; later ones may, which this result does not tell.");
+  return out + small_text(file);
 }
 
 }  // namespace

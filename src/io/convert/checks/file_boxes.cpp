@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/util/format.hpp"
+#include "io/formats/declared_box.hpp"
 
 namespace clearway {
 namespace {
@@ -198,6 +199,28 @@ std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation
     }
   }
   return common;
+}
+
+std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
+                                             const Quantisation& quantisation,
+                                             std::span<const std::filesystem::path> files,
+                                             std::span<const CloudInfo> infos) {
+  std::size_t count = 0;
+  std::string first;
+  for (std::size_t i = 0; i < boxes.size() && i < infos.size(); ++i) {
+    if (boxes[i].points == 0 || !infos[i].declared_box) continue;
+    const Box found = box_of(boxes[i], quantisation);
+    if (!goes_far_beyond(*infos[i].declared_box, found)) continue;
+    if (count++ > 0) continue;
+    first = files[i].string() + ": points lie far beyond the bounds of its header. It declares " +
+            declared_box_text(*infos[i].declared_box) + " and has " + declared_box_text(found);
+  }
+  if (count == 0) return std::nullopt;
+  if (count > 1) first += ". " + format_count(count - 1) + " more files are alike";
+  return Message{Message::Severity::kWarning,
+                 "declared-bounds",
+                 first + ". Some records may be damaged or zero, or the header of another scan",
+                 {{"files", static_cast<double>(count)}}};
 }
 
 std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,

@@ -36,6 +36,13 @@ class FileBoxes {
 /// Of all inputs, metres; none where there is no point.
 std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation);
 
+/// A warning on inputs whose points go far beyond the box that their file declares; none where
+/// there is no such input. infos: of each input.
+std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
+                                             const Quantisation& quantisation,
+                                             std::span<const std::filesystem::path> files,
+                                             std::span<const CloudInfo> infos);
+
 /// Warnings on inputs that hold no point, lie far from all others, or are far larger than others.
 std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
                                        const Quantisation& quantisation,

@@ -52,6 +52,10 @@ std::optional<Box> warn_of_inputs(const EnvironmentSource& environment, const Fi
   for (Message& warning : warnings_on_boxes(of_files, metadata.quantisation, files)) {
     log.add(std::move(warning));
   }
+  if (auto warning =
+          beyond_declared_boxes(of_files, metadata.quantisation, files, environment.infos())) {
+    log.add(std::move(*warning));
+  }
   if (auto warning = warning_on_same_scans(files, metadata.sources, of_files)) {
     log.add(std::move(*warning));
   }

@@ -13,7 +13,7 @@ namespace clearway {
 /// A warning is due where more than this share of the points are at one place ...
 inline constexpr double kSamePlaceShare = 0.01;
 /// ... and at least as many as this.
-inline constexpr std::uint64_t kSamePlacePoints = 1000;
+inline constexpr std::uint64_t kSamePlacePoints = 10;
 
 /// Points in the store's integers.
 using PlaceQuanta = std::array<std::int32_t, 3>;

@@ -81,7 +81,7 @@ void EnvironmentSource::open_inputs() {
 }
 
 void EnvironmentSource::find_crs() {
-  crs_ = common_crs(files(), infos_, options_.ignore_crs);
+  crs_ = common_crs(files(), infos_, options_.unit, options_.ignore_crs);
   for (std::size_t i = 0; i < files().size(); ++i) {
     if (infos_[i].faces == 0) continue;
     crs_.warnings.push_back({Message::Severity::kWarning, "mesh-faces",

@@ -16,6 +16,7 @@ namespace clearway {
 
 struct EnvironmentOptions {
   std::optional<double> scale{};       ///< metres; wanted on all axes
+  FileUnit unit{};                     ///< of inputs that name none
   bool ignore_crs = false;             ///< accept degrees and inputs of different units
   bool skip_unreadable = false;        ///< leave out files that cannot be read to their end
   std::vector<std::string> columns{};  ///< of texts, see PointReadOptions
@@ -38,6 +39,8 @@ class EnvironmentSource {
   const Quantisation& quantisation() const { return quantisation_; }
   const std::string& crs_wkt() const { return crs_.wkt; }
   LengthUnit unit() const { return crs_.unit; }
+  /// What each of files() says of itself.
+  std::span<const CloudInfo> infos() const { return infos_; }
   const std::vector<std::filesystem::path>& files() const {
     return inputs_.files();
   }  ///< "-": stream

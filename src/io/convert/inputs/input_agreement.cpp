@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clearway/error.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/system/input_error.hpp"
 
@@ -57,6 +58,37 @@ void refuse_units(const std::filesystem::path& file, const CloudInfo& info) {
          Remedy::kIgnoreCrs);
 }
 
+LengthUnit environment_unit_of(const FileUnit& unit) {
+  for (const LengthUnit known :
+       {LengthUnit::kMetre, LengthUnit::kFoot, LengthUnit::kUsSurveyFoot}) {
+    if (unit.metres() == metres_of(known)) return known;
+  }
+  throw UsageError("the coordinates of a scan in units of " + brief(unit.metres()) +
+                   " m are not read; expected m, ft, ift or us-ft");
+}
+
+/// Inputs that name no unit are in the given one.
+std::vector<CloudInfo> with_unit(std::span<const std::filesystem::path> files,
+                                 std::span<const CloudInfo> as_read, const FileUnit& unit,
+                                 bool ignore) {
+  std::vector<CloudInfo> infos(as_read.begin(), as_read.end());
+  if (!unit.is_known()) return infos;
+  const LengthUnit given = environment_unit_of(unit);
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    CloudInfo& info = infos[i];
+    if (!has_unit(info) || (info.any_foot && is_foot(unit.metres()))) {
+      info.any_foot = unit.is_any_foot();
+      info.unit = given;
+    }
+    const bool same = info.unit == given || (unit.is_any_foot() && is_foot(metres_of(info.unit)));
+    if (!same && !ignore) {
+      refuse(files[i].string(), "its unit of length is " + to_string(info.unit) + ", but " +
+                                    to_string(given) + " was given; expected the same unit");
+    }
+  }
+  return infos;
+}
+
 /// The first that any input has. Others are warned of, and none at all is noted.
 void choose_wkt(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                 CommonCrs& common) {
@@ -87,17 +119,29 @@ void choose_wkt(std::span<const std::filesystem::path> files, std::span<const Cl
 
 }  // namespace
 
-CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
-                     bool ignore) {
+CommonCrs common_crs(std::span<const std::filesystem::path> files,
+                     std::span<const CloudInfo> as_read, const FileUnit& unit, bool ignore) {
   CommonCrs common;
+  const std::vector<CloudInfo> infos = with_unit(files, as_read, unit, ignore);
   for (std::size_t i = 0; i < infos.size() && !ignore; ++i) refuse_units(files[i], infos[i]);
-  const auto known = std::find_if(infos.begin(), infos.end(), has_unit);
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    if (infos[i].unit_doubt.empty()) continue;
+    warn(common, "units-contradict", files[i].string() + ": " + infos[i].unit_doubt);
+  }
+  // A "ft" of a text is the foot of another input that says which one it is in.
+  const auto says_which = [](const CloudInfo& info) { return has_unit(info) && !info.any_foot; };
+  auto known = std::find_if(infos.begin(), infos.end(), has_unit);
+  if (known != infos.end() && known->any_foot) {
+    const auto exact = std::find_if(infos.begin(), infos.end(), says_which);
+    if (exact != infos.end() && is_foot(metres_of(exact->unit))) known = exact;
+  }
   if (known != infos.end()) {
     common.unit = known->unit;
     const auto& first = files[static_cast<std::size_t>(known - infos.begin())];
     for (std::size_t i = 0; i < infos.size() && !ignore; ++i) {
       // What says nothing is taken for metres.
-      const bool agrees = infos[i].unit == common.unit ||
+      const bool same_foot = infos[i].any_foot && is_foot(metres_of(common.unit));
+      const bool agrees = infos[i].unit == common.unit || same_foot ||
                           (!has_unit(infos[i]) && common.unit == LengthUnit::kMetre);
       if (!agrees) refuse_unit(files[i], infos[i].unit, first, common.unit);
     }

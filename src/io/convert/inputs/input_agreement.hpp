@@ -26,7 +26,7 @@ struct CommonCrs {
 /// Of the first input that says so. Degrees, and other units than that one's, are refused unless
 /// `ignore`. Inputs that say nothing go with metres.
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
-                     bool ignore);
+                     const FileUnit& unit, bool ignore);
 
 struct CommonQuanta {
   Quantisation quantisation{};                      ///< that of the first input with integers

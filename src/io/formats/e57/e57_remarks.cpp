@@ -4,30 +4,11 @@
 #include <cmath>
 
 #include "core/util/format.hpp"
+#include "io/formats/declared_box.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
-
-/// "(1, 2, 3) to (4, 5, 6)"
-std::string text_of(const Box& box) {
-  const auto corner = [](const Vec3& p) {
-    return "(" + brief(p.x) + ", " + brief(p.y) + ", " + brief(p.z) + ")";
-  };
-  return corner(box.lo) + " to " + corner(box.hi);
-}
-
-/// Whether the found points go farther out of the declared box than its own size. Writers round
-/// their bounds, and a wrong unit is far more. A box without any extent was never filled in.
-bool goes_far_beyond(const Box& declared, const std::optional<Box>& found) {
-  double size = 0;
-  for (int k = 0; k < 3; ++k) size = std::max(size, declared.hi[k] - declared.lo[k]);
-  if (!found || !(size > 0)) return false;
-  for (int k = 0; k < 3; ++k) {
-    if (found->lo[k] < declared.lo[k] - size || found->hi[k] > declared.hi[k] + size) return true;
-  }
-  return false;
-}
 
 Message note(std::string text, std::vector<std::pair<std::string, double>> numbers) {
   return {Message::Severity::kNote, {}, std::move(text), std::move(numbers)};
@@ -51,8 +32,8 @@ void E57Remarks::add(const E57Scan& scan, const E57Findings& findings) {
     return;
   }
   if (beyond_bounds_++ == 0) {
-    first_beyond_bounds_ =
-        scan.name() + " declares " + text_of(*scan.bounds) + " and has " + text_of(*findings.own);
+    first_beyond_bounds_ = scan.name() + " declares " + declared_box_text(*scan.bounds) +
+                           " and has " + declared_box_text(*findings.own);
   }
 }
 

@@ -51,6 +51,19 @@ StatedUnit unit_of(std::uint16_t code) {
   return {LengthUnit::kUnknown, is_unit ? "the GeoTIFF unit " + std::to_string(code) : ""};
 }
 
+/// What the code of the projection says against the unit that a key names.
+std::string doubt_of(std::span<const std::byte> keys) {
+  const std::uint16_t code = value_of(keys, kProjectedSystem);
+  const StatedUnit named = unit_of(value_of(keys, kProjectedLinearUnit));
+  if (code == 0 || code == kUserDefined || value_of(keys, kModelType) == 2) return {};
+  if (named.unit == LengthUnit::kUnknown) return {};
+  const auto metres = unit_of_epsg(code);
+  if (!metres || unit_of_length(*metres).unit == named.unit) return {};
+  return "its GeoTIFF keys contradict each other: they name the unit " + to_string(named.unit) +
+         ", and EPSG:" + std::to_string(code) + ", whose unit is " + units_text(*metres) +
+         ". It is taken to be in the named unit";
+}
+
 StatedUnit plane_unit(std::span<const std::byte> keys) {
   const std::uint16_t model = value_of(keys, kModelType);
   const std::uint16_t unit = value_of(keys, kProjectedLinearUnit);
@@ -70,7 +83,10 @@ StatedUnit plane_unit(std::span<const std::byte> keys) {
 }  // namespace
 
 CrsUnits units_of_geotiff(std::span<const std::byte> key_directory) {
-  return crs_units(plane_unit(key_directory), unit_of(value_of(key_directory, kVerticalUnit)));
+  CrsUnits units =
+      crs_units(plane_unit(key_directory), unit_of(value_of(key_directory, kVerticalUnit)));
+  if (units.doubt.empty()) units.doubt = doubt_of(key_directory);
+  return units;
 }
 
 }  // namespace clearway

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -75,6 +76,17 @@ Quantisation read_quantisation(const InputBuffer& input, const std::byte* header
   return result;
 }
 
+/// Bounds are stored as the greatest and the least of x, of y and of z.
+std::optional<Box> read_box(const std::byte* bytes) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.hi[k] = load<double>(bytes + 179 + 16 * k);
+    box.lo[k] = load<double>(bytes + 187 + 16 * k);
+    if (!std::isfinite(box.lo[k]) || !std::isfinite(box.hi[k])) return std::nullopt;
+  }
+  return box;
+}
+
 /// rest: the header from byte 227 on.
 void read_version_14(const InputBuffer& input, std::span<const std::byte> rest,
                      LasPublicHeader& header) {
@@ -143,6 +155,7 @@ LasPublicHeader read_las_header(InputBuffer& input) {
   header.point_format = load<std::uint8_t>(bytes + 104) & kFormatBits;
   header.compressed = (load<std::uint8_t>(bytes + 104) & ~kFormatBits) != 0;
   header.quantisation = read_quantisation(input, bytes);
+  header.box = read_box(bytes);
 
   const std::size_t least = minor == 4 ? kHeaderBytes14 : kHeaderBytes10;
   if (header.header_bytes < least) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "clearway/box.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/formats/input_buffer.hpp"
 #include "io/formats/point_reader.hpp"
@@ -21,6 +23,7 @@ struct LasPublicHeader {
   bool compressed;         ///< LAZ
   std::uint16_t encoding;  ///< the bits of "global encoding"
   Quantisation quantisation;
+  std::optional<Box> box;     ///< of all points, where it holds finite numbers
   std::uint64_t tail_offset;  ///< byte of the first extended variable length record
   std::uint32_t tail_count;   ///< number of those records; 0: none
 

@@ -33,6 +33,7 @@ class LasReader final : public PointReader {
     }
     info_.quantisation = header_.quantisation;
     info_.declared_points = header_.points;
+    info_.declared_box = header_.box;
     crs_.describe(info_);
   }
 
@@ -181,6 +182,7 @@ std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicH
   CloudInfo info;
   info.quantisation = header.quantisation;
   info.declared_points = header.points;
+  info.declared_box = header.box;
   records.crs.describe(info);
   const std::uint64_t end = header.tail_count > 0 ? header.tail_offset : *input.size();
   return read_laz_points(std::move(input), scheme, {header.points_offset, end, header.points},

@@ -54,8 +54,16 @@ bool is_about_crs(std::string_view user, unsigned id) {
 void LasCrs::describe(CloudInfo& info) const {
   info.crs_wkt = wkt.empty() ? foreign_wkt : wkt;
   CrsUnits units = units_of_wkt(info.crs_wkt);
-  if (units.horizontal == LengthUnit::kUnknown && units.trouble.empty()) units = geotiff;
+  const bool keys_count = units.horizontal == LengthUnit::kUnknown && units.trouble.empty();
+  if (keys_count) {
+    units = geotiff;
+  } else if (geotiff.horizontal != LengthUnit::kUnknown && units.horizontal != geotiff.horizontal) {
+    units.doubt = "its well-known text names the unit " + to_string(units.horizontal) +
+                  ", its GeoTIFF keys " + to_string(geotiff.horizontal) +
+                  ". It is taken to be in that of the text";
+  }
   info.unit = units.horizontal;
+  info.unit_doubt = units.doubt;
   info.unit_trouble = units.trouble;
 }
 

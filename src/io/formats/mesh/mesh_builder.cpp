@@ -24,6 +24,35 @@ void MeshBuilder::add_vertex(const Vec3& vertex, const FilePlace& at) {
   file_.mesh.vertices.push_back(vertex);
 }
 
+std::uint32_t MeshBuilder::checked(std::int64_t vertex, const char* what,
+                                   const FilePlace& at) const {
+  if (vertex < 0 || vertex >= static_cast<std::int64_t>(vertices())) {
+    refuse_at(at, std::string(what) + " names vertex " + std::to_string(vertex) +
+                      " (counted from 0), of " + std::to_string(vertices()) +
+                      "; expected a vertex of the file");
+  }
+  return static_cast<std::uint32_t>(vertex);
+}
+
+void MeshBuilder::add_line(std::span<const std::int64_t> vertices, const FilePlace& at) {
+  if (vertices.size() < 2) {
+    refuse_at(at, "a line through " + counted(vertices.size(), "vertex", "vertices") +
+                      "; expected 2 or more");
+  }
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    const std::uint32_t from = checked(vertices[i - 1], "a line", at);
+    const std::uint32_t to = checked(vertices[i], "a line", at);
+    file_.mesh.triangles.push_back({from, to, to});
+  }
+  file_.remarks.segments += vertices.size() - 1;
+}
+
+void MeshBuilder::add_point(std::int64_t vertex, const FilePlace& at) {
+  const std::uint32_t place = checked(vertex, "a point", at);
+  file_.mesh.triangles.push_back({place, place, place});
+  ++file_.remarks.single_points;
+}
+
 void MeshBuilder::add_face(std::span<const std::int64_t> corners, const FilePlace& at) {
   if (corners.size() < 3) {
     refuse_at(at, "a face with " + std::to_string(corners.size()) + " corners; expected 3 or more");
@@ -34,11 +63,7 @@ void MeshBuilder::add_face(std::span<const std::int64_t> corners, const FilePlac
   }
   corners_.clear();
   for (const std::int64_t corner : corners) {
-    if (corner < 0 || corner >= static_cast<std::int64_t>(vertices())) {
-      refuse_at(at, "a face names vertex " + std::to_string(corner) + " (counted from 0), of " +
-                        std::to_string(vertices()) + "; expected a vertex of the file");
-    }
-    corners_.push_back(static_cast<std::uint32_t>(corner));
+    corners_.push_back(checked(corner, "a face", at));
   }
   if (corners_.size() == 3) {
     file_.mesh.triangles.push_back({corners_[0], corners_[1], corners_[2]});

@@ -18,8 +18,8 @@ struct FilePlace {
   std::string text() const { return unit + (" " + std::to_string(number)); }
 };
 
-/// Collects the vertices and faces of a file, and refuses what cannot be part of a mesh. Memory
-/// grows with what was added, never with what a file declares.
+/// Collects the vertices, faces, lines and single points of a file, and refuses what cannot be part
+/// of a mesh. Memory grows with what was added, never with what a file declares.
 class MeshBuilder {
  public:
   /// name: of the file, for messages
@@ -34,11 +34,16 @@ class MeshBuilder {
   /// A face of three corners or more; indices from 0. Throws InputError for other faces and for an
   /// index that no vertex has.
   void add_face(std::span<const std::int64_t> corners, const FilePlace& at);
+  /// A line through two vertices or more. Throws InputError for fewer, and as add_face().
+  void add_line(std::span<const std::int64_t> vertices, const FilePlace& at);
+  void add_point(std::int64_t vertex, const FilePlace& at);
   MeshFile finish() { return std::move(file_); }
 
   [[noreturn]] void refuse_at(const FilePlace& at, const std::string& what) const;
 
  private:
+  /// The number of a vertex that `what` names.
+  std::uint32_t checked(std::int64_t vertex, const char* what, const FilePlace& at) const;
   void add_polygon(const FilePlace& at);
 
   std::string name_;

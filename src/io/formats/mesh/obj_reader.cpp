@@ -81,13 +81,17 @@ class ObjParser {
 
   void read_statement() {
     const std::string_view keyword = words_[0];
-    last_counts_ = keyword == "v" || keyword == "f";
+    last_counts_ = keyword == "v" || keyword == "f" || keyword == "l" || keyword == "p";
     if (keyword == "v") return read_vertex();
-    if (keyword == "f" || keyword == "fo") return read_face();
-    if (keyword == "l" || keyword == "p") {
-      ++mesh_.remarks().not_faces;
-      return;
+    if (keyword == "f" || keyword == "fo") {
+      read_corners("a face");
+      return mesh_.add_face(corners_, here());
     }
+    if (keyword == "l") {
+      read_corners("a line");
+      return mesh_.add_line(corners_, here());
+    }
+    if (keyword == "p") return read_points();
     if (is_among(keyword, kIgnored)) return;
     if (is_among(keyword, kFreeForms)) {
       mesh_.refuse_at(here(), excerpt(keyword) +
@@ -111,15 +115,20 @@ class ObjParser {
     mesh_.add_vertex(vertex, here());
   }
 
-  void read_face() {
+  void read_corners(const char* what) {
     corners_.clear();
-    for (std::size_t i = 1; i < words_.size(); ++i) corners_.push_back(corner_of(words_[i]));
-    mesh_.add_face(corners_, here());
+    for (std::size_t i = 1; i < words_.size(); ++i) corners_.push_back(corner_of(words_[i], what));
+  }
+
+  void read_points() {
+    read_corners("a point");
+    if (corners_.empty()) mesh_.refuse_at(here(), "a point without a vertex; expected `p V`");
+    for (const std::int64_t vertex : corners_) mesh_.add_point(vertex, here());
   }
 
   /// The vertex of "V", "V/VT", "V//VN" or "V/VT/VN", from 0. Indices in the file count from 1, or
   /// from -1 backwards.
-  std::int64_t corner_of(std::string_view word) const {
+  std::int64_t corner_of(std::string_view word, const char* what) const {
     std::int64_t index = 0;
     const char* const end = word.data() + word.size();
     const auto [stop, error] = std::from_chars(word.data(), end, index);
@@ -128,8 +137,8 @@ class ObjParser {
     }
     const auto vertices = static_cast<std::int64_t>(mesh_.vertices());
     if (index == 0 || index > vertices || index < -vertices) {
-      mesh_.refuse_at(here(), "a face names vertex " + std::to_string(index) + "; expected 1 to " +
-                                  std::to_string(vertices) +
+      mesh_.refuse_at(here(), std::string(what) + " names vertex " + std::to_string(index) +
+                                  "; expected 1 to " + std::to_string(vertices) +
                                   ", the number of vertices before this line, or -1 to -" +
                                   std::to_string(vertices));
     }
@@ -143,7 +152,7 @@ class ObjParser {
   std::string joined_;
   std::vector<std::string_view> words_;
   std::vector<std::int64_t> corners_;
-  bool last_counts_ = false;  ///< whether the last statement is a vertex or a face
+  bool last_counts_ = false;  ///< whether the last statement is part of the model
 };
 
 }  // namespace

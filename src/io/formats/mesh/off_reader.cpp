@@ -113,6 +113,8 @@ class OffParser {
       }
       corners_.push_back(static_cast<std::int64_t>(corner));
     }
+    if (corners == 1) return mesh_.add_point(corners_[0], here());
+    if (corners == 2) return mesh_.add_line(corners_, here());
     mesh_.add_face(corners_, here());
   }
 

@@ -1,6 +1,8 @@
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -131,18 +133,45 @@ class BinaryPlyNumbers final : public PlyNumbers {
   std::uint64_t row_ = 0, start_ = 0;
 };
 
+/// Lists of vertices that were read before the vertices, so that they cannot be checked yet.
+template <typename Kind>
+class PendingLists {
+ public:
+  void add(Kind kind, std::span<const std::int64_t> vertices, const FilePlace& at) {
+    lists_.push_back({kind, vertices.size(), at});
+    vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
+  }
+
+  /// use(kind, vertices, at)
+  template <typename Use>
+  void use_all(Use use) {
+    const std::int64_t* next = vertices_.data();
+    for (const auto& [kind, size, at] : lists_) {
+      use(kind, std::span(next, size), at);
+      next += size;
+    }
+    lists_ = {};
+    vertices_ = {};
+  }
+
+ private:
+  struct List {
+    Kind kind;
+    std::size_t size;
+    FilePlace at;
+  };
+
+  std::vector<List> lists_;
+  std::vector<std::int64_t> vertices_;
+};
+
 class PlyMeshParser {
  public:
   PlyMeshParser(InputBuffer& input, PlyHeader header)
       : input_(input), header_(std::move(header)), mesh_(input.name()) {}
 
   MeshFile parse() {
-    find_faces();
-    if (face_ == header_.elements.size()) return {};
-    find_corners(header_.elements[face_]);
-    if (face_ < header_.vertex) {
-      refuse(input_.name(), "faces before the vertices; expected them behind");
-    }
+    if (!find_drawn()) return {};
     if (header_.format == PlyFormat::kAscii) {
       AsciiPlyNumbers numbers(input_);
       read_body(numbers);
@@ -154,28 +183,52 @@ class PlyMeshParser {
   }
 
  private:
-  /// face_: the element of the faces; the number of elements where there are none.
-  void find_faces() {
-    face_ = header_.elements.size();
-    for (std::size_t i = 0; i < header_.elements.size(); ++i) {
-      const PlyElement& element = header_.elements[i];
-      if (element.count == 0) continue;
-      if (element.name == "tristrips") {
-        refuse(input_.name(),
-               "triangle strips are not read; expected the element face. Export the mesh with "
-               "faces");
+  /// What an element other than the vertices stands for.
+  enum class Kind { kNothing, kFace, kStrip, kEdge };
+
+  struct Drawn {
+    Kind kind = Kind::kNothing;
+    std::optional<std::size_t> list;                ///< property that lists the vertices
+    std::optional<std::size_t> ends[2] = {{}, {}};  ///< of an edge without a list
+  };
+
+  /// Whether anything is drawn between the vertices.
+  bool find_drawn() {
+    bool any = false;
+    const PlyElement* faces = nullptr;
+    for (const PlyElement& element : header_.elements) {
+      drawn_.push_back(element.count == 0 ? Drawn{} : drawn_by(element));
+      any = any || drawn_.back().kind != Kind::kNothing;
+      if (drawn_.back().kind != Kind::kFace) continue;
+      if (faces != nullptr) {
+        refuse(input_.name(), "two elements with faces, " + faces->name + " and " + element.name +
+                                  "; expected one");
       }
-      if (element.name != "face" && !corners_of(element)) continue;
-      if (face_ != header_.elements.size()) {
-        refuse(input_.name(), "two elements with faces, " + header_.elements[face_].name + " and " +
-                                  element.name + "; expected one");
-      }
-      face_ = i;
+      faces = &element;
     }
+    return any;
   }
 
-  /// The property that lists the corners of faces; none where the element has none.
-  static std::optional<std::size_t> corners_of(const PlyElement& element) {
+  Drawn drawn_by(const PlyElement& element) const {
+    Drawn drawn{.list = list_of(element)};
+    if (element.name == "vertex") return {};
+    if (element.name == "edge") {
+      drawn.kind = Kind::kEdge;
+      if (!drawn.list) find_ends(element, drawn);
+      return drawn;
+    }
+    const bool strips = element.name == "tristrips";
+    if (!drawn.list && (strips || element.name == "face")) {
+      refuse(input_.name(), "the element " + element.name +
+                                " has no list vertex_indices or vertex_index; expected one of "
+                                "them");
+    }
+    if (drawn.list) drawn.kind = strips ? Kind::kStrip : Kind::kFace;
+    return drawn;
+  }
+
+  /// The property that lists the vertices of an element; none where the element has none.
+  static std::optional<std::size_t> list_of(const PlyElement& element) {
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
       if ((property.name == "vertex_indices" || property.name == "vertex_index") &&
@@ -186,28 +239,35 @@ class PlyMeshParser {
     return std::nullopt;
   }
 
-  void find_corners(const PlyElement& face) {
-    const auto found = corners_of(face);
-    if (!found) {
-      refuse(input_.name(),
-             "the element face has no list vertex_indices or vertex_index; expected one of them");
+  void find_ends(const PlyElement& edge, Drawn& drawn) const {
+    for (std::size_t i = 0; i < edge.properties.size(); ++i) {
+      const PlyProperty& property = edge.properties[i];
+      if (property.list_count) continue;
+      if (property.name == "vertex1") drawn.ends[0] = i;
+      if (property.name == "vertex2") drawn.ends[1] = i;
     }
-    corners_at_ = *found;
+    if (drawn.ends[0] && drawn.ends[1]) return;
+    refuse(input_.name(),
+           "the element edge does not name its two vertices; expected the properties vertex1 and "
+           "vertex2");
   }
 
   void read_body(PlyNumbers& numbers) {
     for (std::size_t i = 0; i < header_.elements.size(); ++i) {
       const PlyElement& element = header_.elements[i];
-      const bool vertex = i == header_.vertex;
       for (std::uint64_t row = 0; row < element.count; ++row) {
         numbers.begin_row(element, row);
-        if (vertex) {
+        if (i == header_.vertex) {
           read_vertex(numbers, element);
         } else {
-          read_other(numbers, element, i == face_);
+          read_other(numbers, element, drawn_[i]);
+          if (drawn_[i].kind != Kind::kNothing) keep(drawn_[i].kind, i, numbers.here());
         }
         numbers.end_row();
       }
+      if (i != header_.vertex) continue;
+      pending_.use_all([this](Kind kind, std::span<const std::int64_t> vertices,
+                              const FilePlace& at) { draw(kind, vertices, at); });
     }
     mesh_.remarks().last_line_open =
         header_.format == PlyFormat::kAscii && !input_.line_terminated();
@@ -232,18 +292,23 @@ class PlyMeshParser {
     mesh_.add_vertex(vertex, numbers.here());
   }
 
-  void read_other(PlyNumbers& numbers, const PlyElement& element, bool face) {
+  void read_other(PlyNumbers& numbers, const PlyElement& element, const Drawn& drawn) {
+    corners_.clear();
+    std::int64_t ends[2] = {};
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
-      if (!property.list_count) {
-        numbers.next(property.type, property.name);
-      } else if (face && i == corners_at_) {
-        read_corners(numbers, property);
-      } else {
+      if (drawn.list == i) {
+        read_corners(numbers, property, drawn.kind);
+      } else if (property.list_count) {
         skip_list(numbers, property);
+      } else {
+        const double value = numbers.next(property.type, property.name);
+        for (int end = 0; end < 2; ++end) {
+          if (drawn.ends[end] == i) ends[end] = vertex_of(value, drawn.kind, numbers);
+        }
       }
     }
-    if (face) mesh_.add_face(corners_, numbers.here());
+    if (drawn.kind == Kind::kEdge && !drawn.list) corners_.assign({ends[0], ends[1]});
   }
 
   std::uint64_t list_size(PlyNumbers& numbers, const PlyProperty& property) {
@@ -260,25 +325,55 @@ class PlyMeshParser {
     for (std::uint64_t i = 0; i < count; ++i) numbers.next(property.type, property.name);
   }
 
-  void read_corners(PlyNumbers& numbers, const PlyProperty& property) {
-    corners_.clear();
+  void read_corners(PlyNumbers& numbers, const PlyProperty& property, Kind kind) {
     const std::uint64_t count = list_size(numbers, property);
     for (std::uint64_t i = 0; i < count; ++i) {
-      const double corner = numbers.next(property.type, property.name);
-      if (!(corner >= 0 && corner < 0x1p32 && corner == std::floor(corner))) {
-        mesh_.refuse_at(numbers.here(), "a face names vertex " + shown(corner) +
-                                            "; expected a whole number from 0");
-      }
-      corners_.push_back(static_cast<std::int64_t>(corner));
+      corners_.push_back(vertex_of(numbers.next(property.type, property.name), kind, numbers));
+    }
+  }
+
+  /// In strips, -1 ends one and starts the next.
+  std::int64_t vertex_of(double value, Kind kind, const PlyNumbers& numbers) const {
+    const bool ends_strip = kind == Kind::kStrip && value == -1;
+    if (!ends_strip && !(value >= 0 && value < 0x1p32 && value == std::floor(value))) {
+      mesh_.refuse_at(numbers.here(), std::string(kind == Kind::kEdge ? "an edge" : "a face") +
+                                          " names vertex " + shown(value) +
+                                          "; expected a whole number from 0");
+    }
+    return static_cast<std::int64_t>(value);
+  }
+
+  /// Of the row that was read. element: its index.
+  void keep(Kind kind, std::size_t element, const FilePlace& at) {
+    if (element > header_.vertex) return draw(kind, corners_, at);
+    pending_.add(kind, corners_, at);
+  }
+
+  void draw(Kind kind, std::span<const std::int64_t> vertices, const FilePlace& at) {
+    if (kind == Kind::kFace) return mesh_.add_face(vertices, at);
+    if (kind == Kind::kEdge) return mesh_.add_line(vertices, at);
+    draw_strips(vertices, at);
+  }
+
+  /// Every other triangle of a strip is turned. Those with two equal vertices only lead from one
+  /// part of a strip to the next, and are not drawn.
+  void draw_strips(std::span<const std::int64_t> vertices, const FilePlace& at) {
+    std::size_t first = 0;  // of the strip
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (vertices[i] == -1) first = i + 1;
+      if (vertices[i] == -1 || i < first + 2) continue;
+      std::int64_t a = vertices[i - 2], b = vertices[i - 1], c = vertices[i];
+      if ((i - first) % 2 == 1) std::swap(a, b);
+      if (a != b && b != c && c != a) mesh_.add_face(std::array{a, b, c}, at);
     }
   }
 
   InputBuffer& input_;
   PlyHeader header_;
   MeshBuilder mesh_;
-  std::size_t face_ = 0;        ///< element
-  std::size_t corners_at_ = 0;  ///< property of the element face
-  std::vector<std::int64_t> corners_;
+  std::vector<Drawn> drawn_;  ///< by element
+  PendingLists<Kind> pending_;
+  std::vector<std::int64_t> corners_;  ///< of the row
 };
 
 }  // namespace

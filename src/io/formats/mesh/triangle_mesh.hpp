@@ -9,7 +9,9 @@
 
 namespace clearway {
 
-/// Triangles over indexed vertices. Every index is that of a vertex, every coordinate is finite.
+/// Triangles over indexed vertices. Every index is that of a vertex, every coordinate is finite. A
+/// line segment from a to b is the triangle a, b, b, and a single point is a, a, a: everything that
+/// is asked of triangles is asked of them too.
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -21,9 +23,10 @@ struct MeshRemarks {
   std::uint64_t crossing = 0;  ///< of them, those whose outline crosses itself
   std::string first_crossing;  ///< its place in the file
   double largest_bend = 0;  ///< farthest corner of a polygon from the polygon's plane, file units
-  std::string largest_bend_at;  ///< its place in the file
-  std::uint64_t not_faces = 0;  ///< lines and single points that are drawn
-  bool last_line_open = false;  ///< text that ends without a line break
+  std::string largest_bend_at;      ///< its place in the file
+  std::uint64_t segments = 0;       ///< of lines that the file draws; triangles of the mesh
+  std::uint64_t single_points = 0;  ///< that the file draws; triangles of the mesh
+  bool last_line_open = false;      ///< text that ends without a line break
 };
 
 /// A mesh file as it is read: no triangles where it holds vertices alone.

@@ -28,6 +28,7 @@ class PlyBodyReader : public PointReader {
   PlyBodyReader(InputBuffer input, PlyHeader header)
       : input_(std::move(input)), header_(std::move(header)) {
     info_.declared_points = header_.vertices().count;
+    info_.model_spacing = header_.model_spacing;
     for (const PlyElement& element : header_.elements) {
       if (element.name == "face") info_.faces += element.count;
     }

@@ -1,11 +1,13 @@
 #include "io/formats/ply/ply_header.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
 
 #include "io/formats/text/column_names.hpp"
+#include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
@@ -37,7 +39,7 @@ class HeaderParser {
     read_format();
     for (;;) {
       const auto words = next();
-      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+      if (is_remark(words)) continue;
       if (words[0] == "end_header" && words.size() == 1) break;
       if (words[0] == "element") {
         add_element(words);
@@ -70,9 +72,24 @@ class HeaderParser {
     return words;
   }
 
+  /// Whether a line says nothing of the elements. One comment is read all the same.
+  bool is_remark(const std::vector<std::string_view>& words) {
+    if (words.empty() || words[0] == "obj_info") return true;
+    if (words[0] != "comment") return false;
+    if (words.size() == 5 && words[1] == "clearway" && words[2] == "model" &&
+        words[3] == "spacing") {
+      const std::optional<double> metres = parse_whole_number(words[4]);
+      if (!metres || !(*metres > 0) || !std::isfinite(*metres)) {
+        fail("comment of a model spacing of " + excerpt(words[4]) + "; expected metres above 0");
+      }
+      header_.model_spacing = *metres;
+    }
+    return true;
+  }
+
   void read_format() {
     auto words = next();
-    while (words.empty() || words[0] == "comment" || words[0] == "obj_info") words = next();
+    while (is_remark(words)) words = next();
     if (words.size() == 3 && words[0] == "format" && words[2] == "1.0") {
       header_.format = words[1] == "binary_little_endian" ? PlyFormat::kLittleEndian
                        : words[1] == "binary_big_endian"  ? PlyFormat::kBigEndian

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/formats/input_buffer.hpp"
@@ -32,11 +33,17 @@ struct PlyElement {
   std::size_t least_bytes() const;
 };
 
+/// Begins the comment of points that were sampled from a mesh: their spacing in metres, as
+/// Query::model_spacing, follows.
+inline constexpr std::string_view kSpacingComment = "clearway model spacing ";
+
 struct PlyHeader {
   PlyFormat format;
   std::vector<PlyElement> elements;
   std::size_t vertex;          ///< index of the element named vertex
   std::size_t coordinates[3];  ///< indices of its properties x, y, z, all scalar
+  /// Of a comment that begins with kSpacingComment; 0 where there is none.
+  double model_spacing = 0;
 
   const PlyElement& vertices() const { return elements[vertex]; }
 };

@@ -3,24 +3,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "clearway/model.hpp"
+#include "io/formats/length_unit.hpp"
 
 namespace clearway {
 namespace {
-
-struct Unit {
-  std::string_view name;
-  double metres;
-  int power;      ///< of ten, metres
-  int ten_thous;  ///< of a metre, where it is no power of ten; otherwise 0
-  bool of_files;  ///< files are written in it
-};
-constexpr Unit kUnits[] = {{"mm", kMetresPerMillimetre, -3, 0, true},
-                           {"cm", kMetresPerCentimetre, -2, 0, true},
-                           {"m", 1, 0, 0, true},
-                           {"in", kMetresPerInch, 0, 254, true},
-                           {"ft", kMetresPerFoot, 0, 3048, true},
-                           {"km", 1000, 3, 0, false}};
 
 std::optional<double> number_of(std::string_view text) {
   double value = 0;
@@ -43,22 +29,31 @@ std::optional<double> shifted(std::string_view digits, int power) {
   return number_of(std::string(digits.substr(0, at)) + "e" + std::to_string(exponent + power));
 }
 
-std::optional<double> length_in(std::string_view digits, const Unit& unit) {
-  if (unit.ten_thous == 0) return shifted(digits, unit.power);
+/// Of ten, where a unit is such a power of a metre.
+std::optional<int> power_of(const NamedUnit& unit) {
+  int power = 0;
+  std::uint32_t above = unit.numerator, below = unit.denominator;
+  for (; above % 10 == 0; above /= 10) ++power;
+  for (; below % 10 == 0; below /= 10) --power;
+  return above == 1 && below == 1 ? std::optional(power) : std::nullopt;
+}
+
+std::optional<double> length_in(std::string_view digits, const NamedUnit& unit) {
+  if (const auto power = power_of(unit)) return shifted(digits, *power);
   const auto value = number_of(digits);
   if (!value) return std::nullopt;
-  return static_cast<double>(static_cast<long double>(*value) * unit.ten_thous / 10'000);
+  return static_cast<double>(static_cast<long double>(*value) * unit.numerator / unit.denominator);
 }
 
 /// "0.2ft" is the double nearest to 0.2.
-double feet_in(std::string_view digits, const Unit& unit) {
-  constexpr long double kFoot = 3048;
-  const long double ten_thous =
-      unit.ten_thous != 0 ? unit.ten_thous : std::pow(10.0L, 4 + unit.power);
-  return static_cast<double>(number_of(digits).value_or(0) * ten_thous / kFoot);
+double feet_in(double number, const NamedUnit& unit) {
+  constexpr long double kFoot = 3048, kTenThousand = 10'000;
+  return static_cast<double>(number * (unit.numerator * kTenThousand / unit.denominator) / kFoot);
 }
 
 std::optional<ParsedLength> parsed(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
   const std::size_t last_digit = text.find_last_of("0123456789.");
   if (last_digit == std::string_view::npos) return std::nullopt;
   std::string_view unit = text.substr(last_digit + 1);
@@ -67,42 +62,31 @@ std::optional<ParsedLength> parsed(std::string_view text) {
   while (unit.starts_with(' ')) unit.remove_prefix(1);
   if (unit.empty()) {
     const auto value = number_of(digits);
-    return value ? std::optional(ParsedLength{.value = *value}) : std::nullopt;
+    return value ? std::optional(ParsedLength{.value = *value, .number = *value}) : std::nullopt;
   }
-  for (const Unit& known : kUnits) {
-    if (unit != known.name) continue;
-    const auto value = length_in(digits, known);
-    if (!value) return std::nullopt;
-    return ParsedLength{.value = *value, .has_unit = true, .feet = feet_in(digits, known)};
-  }
-  return std::nullopt;
+  const NamedUnit* const known = find_unit(unit);
+  const auto number = number_of(digits);
+  if (known == nullptr || !number) return std::nullopt;
+  const auto value = length_in(digits, *known);
+  if (!value) return std::nullopt;
+  return ParsedLength{.value = *value,
+                      .has_unit = true,
+                      .feet = feet_in(*number, *known),
+                      .number = *number,
+                      .unit = known->file_unit()};
 }
 
 }  // namespace
 
 double ParsedLength::in_units_of(double metres) const {
   if (!has_unit) return value;
+  if (unit.is_any_foot() && is_foot(metres)) return number;
   return metres == kMetresPerFoot ? feet : value / metres;
 }
 
 std::optional<ParsedLength> length_of(std::string_view text) {
   const auto length = parsed(text);
   return length && std::isfinite(length->value) ? length : std::nullopt;
-}
-
-std::vector<std::string> file_unit_names() {
-  std::vector<std::string> names;
-  for (const Unit& unit : kUnits) {
-    if (unit.of_files) names.emplace_back(unit.name);
-  }
-  return names;
-}
-
-std::optional<double> metres_of_file_unit(std::string_view name) {
-  for (const Unit& unit : kUnits) {
-    if (unit.of_files && unit.name == name) return unit.metres;
-  }
-  return std::nullopt;
 }
 
 }  // namespace clearway

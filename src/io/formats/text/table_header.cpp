@@ -16,14 +16,9 @@ constexpr std::string_view kNorth[] = {"northing", "north", "n",        "utm_nor
                                        "hochwert", "utm_n", "utm_north"};
 constexpr std::string_view kHeight[] = {"height", "elevation", "altitude", "h",
                                         "elev",   "alt",       "hgt"};
-constexpr std::string_view kMetres[] = {"m", "metre", "metres", "meter", "meters"};
-constexpr std::string_view kFeet[] = {"ft", "foot", "feet", "ift"};
-constexpr std::string_view kSurveyFeet[] = {"us-ft", "usft",   "us_ft", "us ft",
-                                            "ftus",  "ft(us)", "ftus",  "us survey foot"};
-constexpr std::string_view kOthers[] = {
-    "mm", "millimetres", "millimeters", "cm",     "centimetres", "centimeters", "dm",    "km",
-    "in", "\"",          "inch",        "inches", "yd",          "yard",        "yards", "mil",
-    "um", "deg",         "°",           "degree", "degrees",     "arcsec",      "rad"};
+/// Units of a point's coordinates that no scan is read in, beside those lengths.
+constexpr std::string_view kOthers[] = {"mil",    "um",      "deg",    "°",
+                                        "degree", "degrees", "arcsec", "rad"};
 
 bool is_one_of(std::string_view text, Names names) {
   return std::find(names.begin(), names.end(), text) != names.end();
@@ -68,13 +63,14 @@ std::string bracketed_unit(std::string_view field) {
 void add_name(TableHeader& header, std::string_view field) {
   std::string name = table_name(field);
   std::string unit = bracketed_unit(field);
-  const std::size_t mark = name.rfind('_');
-  if (unit.empty() && mark != std::string::npos && mark > 0) {
+  // The longest unit counts: "x_us_ft" is a column x.
+  std::size_t mark = unit.empty() ? name.find('_', 1) : std::string::npos;
+  for (; mark != std::string::npos; mark = name.find('_', mark + 1)) {
     const std::string_view end = std::string_view(name).substr(mark + 1);
-    if (is_one_of(end, kMetres) || is_one_of(end, kFeet) || is_one_of(end, kOthers)) {
-      unit = end;
-      name.resize(mark);
-    }
+    if (find_unit(end) == nullptr && !is_one_of(end, kOthers)) continue;
+    unit = end;
+    name.resize(mark);
+    break;
   }
   header.names.push_back(std::move(name));
   header.units.push_back(std::move(unit));
@@ -170,20 +166,24 @@ std::string other_table(const TableHeader& header) {
 }
 
 TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns) {
-  std::optional<LengthUnit> found;
+  const NamedUnit* found = nullptr;
   for (const std::size_t column : columns) {
     if (column >= header.units.size()) continue;
     const std::string& unit = header.units[column];
-    const auto known = is_one_of(unit, kMetres)       ? std::optional(LengthUnit::kMetre)
-                       : is_one_of(unit, kFeet)       ? std::optional(LengthUnit::kFoot)
-                       : is_one_of(unit, kSurveyFeet) ? std::optional(LengthUnit::kUsSurveyFoot)
-                                                      : std::nullopt;
-    if (!known && is_one_of(unit, kOthers)) return {LengthUnit::kUnknown, unit};
-    if (!known) continue;
-    if (found && *found != *known) return {LengthUnit::kUnknown, "m and ft together"};
+    const NamedUnit* const known = find_unit(unit);
+    const bool read = known != nullptr && known->environment != LengthUnit::kUnknown;
+    if (!read && (known != nullptr || is_one_of(unit, kOthers))) {
+      return {LengthUnit::kUnknown, false, unit};
+    }
+    if (!read) continue;
+    if (found != nullptr && found != known) {
+      return {LengthUnit::kUnknown, false,
+              std::string(found->symbol) + " and " + std::string(known->symbol) + " together"};
+    }
     found = known;
   }
-  return {found.value_or(LengthUnit::kUnknown), {}};
+  if (found == nullptr) return {};
+  return {found->environment, found->any_foot, {}};
 }
 
 }  // namespace clearway

@@ -40,7 +40,8 @@ std::string other_table(const TableHeader& header);
 /// The unit of the three columns as the header says.
 struct TableUnit {
   LengthUnit unit = LengthUnit::kUnknown;
-  std::string refused;  ///< a unit that is not read, or two different ones; empty: none
+  bool any_foot = false;  ///< see CloudInfo
+  std::string refused;    ///< a unit that is not read, or two different ones; empty: none
 };
 TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns);
 

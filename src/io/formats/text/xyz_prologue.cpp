@@ -206,6 +206,7 @@ class PrologueReader {
     }
     out_.line = PointLine(columns, separator);
     out_.unit = unit.unit;
+    out_.any_foot = unit.any_foot;
     all_named_ = all_named_ || !options_.columns.empty();
   }
 

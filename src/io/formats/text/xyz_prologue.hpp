@@ -16,6 +16,7 @@ struct XyzPrologue {
   std::optional<std::uint64_t> declared_points;
   std::uint64_t count_line = 0;  ///< where they are declared
   LengthUnit unit = LengthUnit::kUnknown;
+  bool any_foot = false;  ///< see CloudInfo
   std::vector<Message> remarks;
 };
 

@@ -3,6 +3,7 @@
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
 #include "core/query/ignored_text.hpp"
+#include "core/util/format.hpp"
 #include "io/result/result_cursor.hpp"
 #include "io/system/input_error.hpp"
 #include "io/system/xxh64.hpp"
@@ -58,6 +59,57 @@ std::string ignored_lists_text(const ResultHeader& header) {
   return text + (text.empty() ? "" : ", ") + "boxes " + boxes_text(header.ignore_boxes);
 }
 
+/// What was to be ignored, whatever classes the environment has.
+std::string asked_to_ignore_text(const ResultHeader& header) {
+  if (!header.ignores_points()) return "none";
+  const std::string boxes =
+      header.ignore_boxes.empty() ? "" : ": " + boxes_text(header.ignore_boxes);
+  return ignored_text(header) + boxes;
+}
+
+std::string crs_text(const ResultHeader& header) {
+  return header.crs_wkt.empty() ? "none" : header.crs_wkt;
+}
+
+std::string model_text(const ResultHeader& header) {
+  if (header.model_triangles == 0) {
+    return content_text(header.model_points, "points", header.model_hash);
+  }
+  const std::string solids =
+      header.model_solids > 0 ? " with " + counted(header.model_solids, "solid") : "";
+  return content_text(header.model_triangles, ("triangles" + solids).c_str(), header.model_hash);
+}
+
+const char* motion_text(const ResultHeader& header) {
+  return header.between_poses ? "between poses" : "at poses only";
+}
+
+class Differences {
+ public:
+  void add(std::string what, std::string a, std::string b) {
+    if (a != b) out_.push_back({std::move(what), std::move(a), std::move(b)});
+  }
+  std::vector<QueryDifference> take() { return std::move(out_); }
+
+ private:
+  std::vector<QueryDifference> out_;
+};
+
+void add_question(const ResultHeader& a, const ResultHeader& b, Differences& out) {
+  out.add("model", model_text(a), model_text(b));
+  out.add("bodies", bodies_text(a), bodies_text(b));
+  out.add("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
+          content_text(b.poses, "poses", b.trajectory_hash));
+  out.add("radius", shown(a.radius) + " m", shown(b.radius) + " m");
+  out.add("first poses", first_pose_text(a), first_pose_text(b));
+  out.add("clearance", distance_text(a.clearance), distance_text(b.clearance));
+  out.add("profile", distance_text(a.profile), distance_text(b.profile));
+  out.add("motion", motion_text(a), motion_text(b));
+  out.add("tolerance", tolerance_text(a), tolerance_text(b));
+  out.add("precision", a.float_precision ? "float" : "exact",
+          b.float_precision ? "float" : "exact");
+}
+
 class Merge {
  public:
   Merge(const ResultReader& a, const ResultReader& b, std::size_t kept)
@@ -66,6 +118,7 @@ class Merge {
     out_.in_b = b.collisions();
     out_.queries = query_differences(a.header(), b.header());
     if (a.header().first_pose && b.header().first_pose) out_.differing_first_poses = 0;
+    if (a.header().last_pose && b.header().last_pose) out_.differing_last_poses = 0;
     same_bodies_ = a.header().bodies == b.header().bodies;
   }
 
@@ -95,6 +148,11 @@ class Merge {
     if (out_.differing_first_poses && (point.first_pose_a != point.first_pose_b || !same_body)) {
       ++*out_.differing_first_poses;
       keep(point);
+    }
+    if (out_.differing_last_poses && a_.last_pose() != b_.last_pose()) {
+      ++*out_.differing_last_poses;
+      keep({Kind::kLastPose, point.source, point.xyz, point.first_pose_a, point.first_pose_b,
+            a_.last_pose(), b_.last_pose()});
     }
     if (a_.xyz() != b_.xyz()) {
       ++out_.differing_coordinates;
@@ -156,31 +214,21 @@ ProfileComparison compare_profiles(const ResultReader& a, const ResultReader& b)
 
 }  // namespace
 
+std::vector<QueryDifference> question_differences(const ResultHeader& a, const ResultHeader& b) {
+  Differences out;
+  add_question(a, b, out);
+  out.add("ignored points", asked_to_ignore_text(a), asked_to_ignore_text(b));
+  out.add("CRS", crs_text(a), crs_text(b));
+  return out.take();
+}
+
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b) {
-  std::vector<QueryDifference> out;
-  const auto differ = [&out](std::string what, std::string text_a, std::string text_b) {
-    if (text_a != text_b) out.push_back({std::move(what), std::move(text_a), std::move(text_b)});
-  };
-  const auto model_text = [](const ResultHeader& of) {
-    return of.model_triangles > 0 ? content_text(of.model_triangles, "triangles", of.model_hash)
-                                  : content_text(of.model_points, "points", of.model_hash);
-  };
-  differ("model", model_text(a), model_text(b));
-  differ("bodies", bodies_text(a), bodies_text(b));
-  differ("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
-         content_text(b.poses, "poses", b.trajectory_hash));
-  differ("radius", shown(a.radius) + " m", shown(b.radius) + " m");
-  differ("first poses", first_pose_text(a), first_pose_text(b));
-  differ("clearance", distance_text(a.clearance), distance_text(b.clearance));
-  differ("profile", distance_text(a.profile), distance_text(b.profile));
-  differ("motion", a.between_poses ? "between poses" : "at poses only",
-         b.between_poses ? "between poses" : "at poses only");
-  differ("tolerance", tolerance_text(a), tolerance_text(b));
-  differ("precision", a.float_precision ? "float" : "exact", b.float_precision ? "float" : "exact");
-  differ("ignored points", ignored_lists_text(a), ignored_lists_text(b));
-  differ("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
-  differ("CRS", a.crs_wkt.empty() ? "none" : a.crs_wkt, b.crs_wkt.empty() ? "none" : b.crs_wkt);
-  return out;
+  Differences out;
+  add_question(a, b, out);
+  out.add("ignored points", ignored_lists_text(a), ignored_lists_text(b));
+  out.add("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));
+  out.add("CRS", crs_text(a), crs_text(b));
+  return out.take();
 }
 
 Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept) {

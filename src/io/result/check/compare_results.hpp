@@ -17,12 +17,13 @@ struct QueryDifference {
 
 /// A point that the two results do not say the same of.
 struct PointDifference {
-  enum class Kind { kOnlyInA, kOnlyInB, kFirstPose, kCoordinates };
+  enum class Kind { kOnlyInA, kOnlyInB, kFirstPose, kLastPose, kCoordinates };
 
   Kind kind;
   std::uint64_t source;
-  Vec3 xyz;                                                 ///< as a has it, where a has it
-  std::optional<std::uint32_t> first_pose_a, first_pose_b;  ///< where that result has it
+  Vec3 xyz;                                                         ///< as a has it, where a has it
+  std::optional<std::uint32_t> first_pose_a, first_pose_b;          ///< where that result has it
+  std::optional<std::uint32_t> last_pose_a = {}, last_pose_b = {};  ///< likewise
 };
 
 /// How the clearances of two results differ.
@@ -52,6 +53,8 @@ struct Comparison {
   std::uint64_t differing_coordinates = 0;  ///< of common points
   /// Of common points, where both have them, in pose or, of the same bodies, in body.
   std::optional<std::uint64_t> differing_first_poses;
+  /// Of common points, where both have last poses.
+  std::optional<std::uint64_t> differing_last_poses = {};
   std::optional<ClearanceComparison> clearances;  ///< where both have them
   /// Where both have one, of the same trajectory.
   std::optional<ProfileComparison> profiles;
@@ -62,12 +65,15 @@ struct Comparison {
   /// was asked.
   bool equal() const {
     return only_in_a == 0 && only_in_b == 0 && differing_coordinates == 0 &&
-           differing_first_poses.value_or(0) == 0 && (!clearances || clearances->equal()) &&
-           (!profiles || profiles->equal());
+           differing_first_poses.value_or(0) == 0 && differing_last_poses.value_or(0) == 0 &&
+           (!clearances || clearances->equal()) && (!profiles || profiles->equal());
   }
 };
 
-/// Of the model, the trajectory and the parameters.
+/// Of the model, the trajectory and the parameters: what was asked, of whichever environment.
+std::vector<QueryDifference> question_differences(const ResultHeader& a, const ResultHeader& b);
+
+/// The same of one environment, with how its coordinates are stored and its classes.
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b);
 
 /// Merges both results in constant memory; keeps up to `kept` differing points. Throws InputError

@@ -53,7 +53,10 @@ bool is_intact_result(const std::filesystem::path& file, const ResultHeader& hea
                       Progress& progress) {
   try {
     const ResultReader result(file, Parts::kAccepted);
-    return result.header() == header && !verify_result(result, progress);
+    ResultHeader found = result.header();
+    found.last_pose =
+        header.last_pose;  // older releases wrote none, and answered the same question
+    return found == header && !verify_result(result, progress);
   } catch (const InputError&) {
     return false;
   }

@@ -1,9 +1,11 @@
 #include "io/trajectory/geographic/geographic_poses.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "core/geometry/angle.hpp"
+#include "io/formats/length_unit.hpp"
 #include "io/system/input_error.hpp"
 #include "io/trajectory/geographic/map_projection.hpp"
 
@@ -98,11 +100,18 @@ void remark_map(const MapProjection& map, const TrajectoryOptions& options, cons
                " degrees clockwise from its northing; its scale, " + ranges.scale.text() +
                ", is not applied to the model",
            {{"least_scale", ranges.scale.least}, {"greatest_scale", ranges.scale.greatest}});
-  if (map.metres_per_unit() < kFeet) {
+  const double unit = map.metres_per_unit(), environment = options.environment_unit;
+  if (environment != 1 && std::abs(unit - environment) > 1e-9) {
+    out.warn("map-unit",
+             name + ": positions are in the unit of " + map.name() + ", " + brief(unit) +
+                 " m, but the environment is in " + units_text(environment) +
+                 ". Give the CRS of the environment",
+             {{"metres", unit}});
+  } else if (unit < kFeet) {
     out.note("map-unit",
-             name + ": the unit of " + map.name() + " is " + brief(map.metres_per_unit()) +
+             name + ": the unit of " + map.name() + " is " + brief(unit) +
                  " m; model, radius and lever arm are to be in it too",
-             {{"metres", map.metres_per_unit()}});
+             {{"metres", unit}});
   }
   const double worst = std::max(ranges.scale.greatest - 1, 1 - ranges.scale.least);
   if (worst > kGoodScale) {

@@ -4,10 +4,11 @@
 #include <iterator>
 #include <utility>
 
+#include "io/formats/length_unit.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
 #include "io/trajectory/text/angle_table.hpp"
-#include "io/trajectory/text/length_unit.hpp"
+#include "io/trajectory/text/position_unit.hpp"
 
 namespace clearway {
 namespace {
@@ -84,9 +85,13 @@ PoseRows::PoseRows(TrajectoryFormat format, std::optional<PoseColumns> columns,
       name_(std::move(name)) {
   std::span<const std::string> units;
   if (columns_) units = columns_->position_units;
-  if (columns_ && columns_->geographic) units = units.subspan(2);
+  if (is_geographic()) units = units.subspan(2);
   unit_ = unit_of_positions(units, options_, name_);
-  if (unit_) in_metres_ = UnitFactor(*unit_);
+  metres_ = unit_.metres_in(options_.environment_unit);
+  // The environment's own unit is left alone here and in convert_positions(): turned into metres
+  // and back, the numbers would not be the same.
+  const bool stays = metres_ == options_.environment_unit && !is_geographic();
+  if (unit_.is_known() && !stays) in_metres_ = UnitFactor(metres_);
 }
 
 Objection PoseRows::add(std::string_view line) {
@@ -215,7 +220,7 @@ Objection PoseRows::add_angles(const std::array<double, 3>& position) {
   if (!objection.text.empty()) return objection;
   const double sum = position[0] + position[1] + position[2] + angles[0] + angles[1] + angles[2];
   if (!std::isfinite(sum)) return {"expected finite numbers"};
-  const UnitFactor horizontal = columns_->geographic ? UnitFactor(1) : in_metres_;
+  const UnitFactor horizontal = is_geographic() ? UnitFactor(1) : in_metres_;
   angles_.push_back({{horizontal(position[0]), horizontal(position[1]), in_metres_(position[2])},
                      angles[0],
                      angles[1],
@@ -254,11 +259,25 @@ void PoseRows::finish(TrajectoryFile& out) {
   if (angles) append_poses_of_angles(std::move(angles_), *columns_, options_, name_, out);
   if (times_.size() == out.poses.size()) out.times = std::move(times_);
   if (names_.size() == out.poses.size()) out.names = std::move(names_);
-  out.in_metres = unit_.has_value();
-  if (unit_.value_or(1) != 1) {
+  out.unit = unit_;
+  if (metres_ == 0) return;
+  // Places on a map are in the map's unit already; the unit was that of heights.
+  out.in_metres = metres_ != options_.environment_unit && !is_geographic();
+  if (metres_ == 1) return;
+  if (is_geographic()) {
     out.note("trajectory-unit",
-             name_ + ": positions were multiplied by " + brief(*unit_) + " to give metres",
-             {{"metres", *unit_}});
+             name_ + ": heights were multiplied by " + brief(metres_) + " to give metres",
+             {{"metres", metres_}});
+  } else if (metres_ == options_.environment_unit) {
+    out.metres_per_unit = metres_;
+    out.note("trajectory-unit",
+             name_ + ": positions are in " + units_text(metres_) +
+                 ", as the environment is, and are taken as they are",
+             {{"metres", metres_}});
+  } else {
+    out.note("trajectory-unit",
+             name_ + ": positions were multiplied by " + brief(metres_) + " to give metres",
+             {{"metres", metres_}});
   }
 }
 

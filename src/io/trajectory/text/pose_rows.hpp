@@ -44,13 +44,15 @@ class PoseRows {
   void add_time(double time) { times_.push_back(time); }
   void add_labels();
   void push(const Pose& pose);
+  bool is_geographic() const { return columns_ && columns_->geographic; }
 
   TrajectoryFormat format_;
   std::optional<PoseColumns> columns_;
   TrajectoryOptions options_;
   std::string name_;
-  std::optional<double> unit_;   ///< of positions, metres, where it is known
-  UnitFactor in_metres_{1};      ///< by it
+  FileUnit unit_;                ///< of positions
+  double metres_ = 0;            ///< of that unit; 0 where it is not known
+  UnitFactor in_metres_{1};      ///< from that unit; from the environment's unit into itself
   std::size_t row_numbers_ = 0;  ///< 12 or 16 in every line; 0: none yet
   std::array<double, 16> numbers_{};
   std::vector<std::string_view> fields_;

@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "io/formats/length_unit.hpp"
+
 namespace clearway {
 namespace {
 
@@ -52,16 +54,21 @@ std::vector<std::size_t> find_all(const ColumnNames& header,
 
 /// "roll_deg" is a column "roll" in the unit "deg". A unit in brackets stays.
 ColumnNames with_units(ColumnNames header) {
-  static constexpr std::string_view kUnits[] = {
-      "deg", "degree", "degrees", "rad", "radian", "radians", "m", "mm", "cm", "in", "ft"};
+  static constexpr std::string_view kAngles[] = {"deg", "degree", "degrees",
+                                                 "rad", "radian", "radians"};
   for (std::size_t i = 0; i < header.names.size(); ++i) {
     std::string& name = header.names[i];
-    const std::size_t at = name.rfind('_');
-    if (at == std::string::npos || at == 0 || !header.units[i].empty()) continue;
-    const std::string_view unit = std::string_view(name).substr(at + 1);
-    if (std::find(std::begin(kUnits), std::end(kUnits), unit) == std::end(kUnits)) continue;
-    header.units[i] = unit;
-    name.resize(at);
+    if (!header.units[i].empty()) continue;
+    // The longest unit counts: "x_us_ft" is a column x.
+    for (std::size_t at = name.find('_', 1); at != std::string::npos; at = name.find('_', at + 1)) {
+      const std::string_view unit = std::string_view(name).substr(at + 1);
+      if (find_unit(unit) == nullptr && std::ranges::find(kAngles, unit) == std::end(kAngles)) {
+        continue;
+      }
+      header.units[i] = unit;
+      name.resize(at);
+      break;
+    }
   }
   return header;
 }

@@ -91,6 +91,17 @@ Vec3 Drive::along_axes(Reading reading) const {
   return {shares.x / sum, shares.y / sum, shares.z / sum};
 }
 
+double Drive::forwards(int axis) const {
+  double sum = 0;
+  for (const Piece& piece : pieces_) {
+    const auto& r = piece.rotation;
+    const Vec3& d = piece.direction;
+    const auto k = static_cast<std::size_t>(axis);
+    sum += r[k] * d.x + r[3 + k] * d.y + r[6 + k] * d.z;
+  }
+  return sum / static_cast<double>(pieces_.size());
+}
+
 double Drive::upright(Reading reading) const {
   double sum = 0;
   for (const Piece& piece : pieces_) sum += reread(piece.rotation, reading)[8];

@@ -28,6 +28,9 @@ class Drive {
 
   /// Shares of the motion along the model's x, y and z axes; their sum is 1.
   Vec3 along_axes(Reading reading = Reading::kAsGiven) const;
+  /// The mean of the direction of motion along the model's axis, 1 where it moves straight along it
+  /// and -1 where it moves backwards.
+  double forwards(int axis) const;
   /// The mean of the model's z axis along the scan's z axis, 1 for an upright model.
   double upright(Reading reading = Reading::kAsGiven) const;
   /// Of the directions of motion: 1 for a straight path, lower where it turns.

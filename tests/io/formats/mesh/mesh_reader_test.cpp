@@ -11,6 +11,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
+using Triple = std::array<std::uint32_t, 3>;
+
 MeshFile read(const std::filesystem::path& path) {
   File file = File::open_for_reading(path);
   const auto format = mesh_format_of(file, path);
@@ -107,12 +109,25 @@ TEST_CASE("OBJ counts forwards, backwards and with textures and normals") {
                              "f 1/1/1 2//1 \\\n  3/1\nv 0 1 0\nf -4 -2 -1\nl 1 2\np 1\n"
                              "f 1 2 3 4");
   CHECK(file.mesh.vertices.size() == 4);
-  REQUIRE(file.mesh.triangles.size() == 4);
-  CHECK(file.mesh.triangles[0] == std::array<std::uint32_t, 3>{0, 1, 2});
-  CHECK(file.mesh.triangles[1] == std::array<std::uint32_t, 3>{0, 2, 3});
+  REQUIRE(file.mesh.triangles.size() == 6);
+  CHECK(file.mesh.triangles[0] == Triple{0, 1, 2});
+  CHECK(file.mesh.triangles[1] == Triple{0, 2, 3});
+  CHECK(file.mesh.triangles[2] == Triple{0, 1, 1});
+  CHECK(file.mesh.triangles[3] == Triple{0, 0, 0});
   CHECK(file.remarks.polygons == 1);
-  CHECK(file.remarks.not_faces == 2);
+  CHECK(file.remarks.segments == 1);
+  CHECK(file.remarks.single_points == 1);
   CHECK(file.remarks.last_line_open);
+}
+
+TEST_CASE("lines and points of OBJ belong to the mesh as triangles without area") {
+  const MeshFile file = read("a.obj",
+                             "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1/1 2/2 3\nv 0 1 0\nl -2 -1\n"
+                             "p 1 -1\n");
+  CHECK(file.mesh.triangles ==
+        std::vector<Triple>{{0, 1, 1}, {1, 2, 2}, {2, 3, 3}, {0, 0, 0}, {3, 3, 3}});
+  CHECK(file.remarks.segments == 3);
+  CHECK(file.remarks.single_points == 2);
 }
 
 TEST_CASE("OBJ that cannot be a mesh is refused with its line") {
@@ -122,6 +137,10 @@ TEST_CASE("OBJ that cannot be a mesh is refused with its line") {
       {"f 1 2 0", "names vertex 0"},
       {"f 1 2 -4", "names vertex -4"},
       {"f 1 2", "2 corners"},
+      {"l 1", "a line through 1 vertex; expected 2 or more"},
+      {"l 1 4", "a line names vertex 4; expected 1 to 3"},
+      {"p 0", "a point names vertex 0"},
+      {"p", "a point without a vertex"},
       {"f 1 2 3x", "corner \"3x\""},
       {"f 1 2 99999999999999999999", "corner"},
       {"v 1 2", "expected `v X Y Z`"},
@@ -151,6 +170,12 @@ TEST_CASE("OFF may have comments, colours, normals and its counts beside its nam
   }
 }
 
+TEST_CASE("faces of OFF with one or two corners are points and lines") {
+  const MeshFile file = read("a.off", "OFF\n3 3 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n2 0 2\n1 1\n");
+  CHECK(file.mesh.triangles == std::vector<Triple>{{0, 1, 2}, {0, 2, 2}, {1, 1, 1}});
+  CHECK_THAT(refusal("a.off", "OFF\n1 1 0\n0 0 0\n0\n"), Contains("0 corners"));
+}
+
 TEST_CASE("OFF that lies or is of another kind is refused") {
   CHECK_THAT(refusal("a.off", "OFF BINARY\n"), Contains("binary OFF"));
   CHECK_THAT(refusal("a.off", "4OFF\n1 0 0\n0 0 0 1\n"), Contains("line 1"));
@@ -163,7 +188,58 @@ TEST_CASE("OFF that lies or is of another kind is refused") {
   CHECK_THAT(refusal("a.off", "OFF\n-1 1 0\n"), Contains("line 2"));
 }
 
-TEST_CASE("PLY faces need their list, vertices before them and indices that exist") {
+TEST_CASE("edges and strips of PLY belong to the mesh, wherever its elements stand") {
+  const std::string vertices =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string edges =
+      "element edge 2\nproperty int vertex1\nproperty int vertex2\nproperty uchar crease\n";
+  const std::string points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const auto ply = [](const std::string& elements, const std::string& body) {
+    return read("a.ply", "ply\nformat ascii 1.0\n" + elements + "end_header\n" + body);
+  };
+  const std::vector<Triple> expected{{0, 1, 2}, {2, 3, 3}, {3, 0, 0}};
+  const MeshFile behind = ply(vertices + faces + edges, points + "3 0 1 2\n2 3 9\n3 0 9\n");
+  CHECK(behind.mesh.triangles == expected);
+  CHECK(behind.remarks.segments == 2);
+  const MeshFile before = ply(faces + edges + vertices, "3 0 1 2\n2 3 9\n3 0 9\n" + points);
+  CHECK(before.mesh.triangles == expected);
+  CHECK(before.mesh.vertices == behind.mesh.vertices);
+  CHECK(ply(edges + vertices, "2 3 9\n3 0 9\n" + points).mesh.triangles.size() == 2);
+  const std::string lines = "element edge 1\nproperty list uchar int vertex_indices\n";
+  CHECK(ply(vertices + lines, points + "3 0 1 2\n").mesh.triangles ==
+        std::vector<Triple>{{0, 1, 1}, {1, 2, 2}});
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+  CHECK(ply(vertices + strips, points + "8 0 1 2 3 -1 3 1 0\n").mesh.triangles ==
+        std::vector<Triple>{{0, 1, 2}, {2, 1, 3}, {3, 1, 0}});
+  CHECK(ply(vertices + strips, points + "5 0 1 2 2 3\n").mesh.triangles ==
+        std::vector<Triple>{{0, 1, 2}});  // the other two lead on
+  const std::string start = "ply\nformat ascii 1.0\n";
+  CHECK_THAT(refusal("a.ply", start + faces + vertices + "end_header\n3 0 1 4\n" + points),
+             Contains("line 10") && Contains("a face names vertex 4"));
+  CHECK_THAT(refusal("a.ply", start + edges + vertices + "end_header\n0 4 1\n0 1 1\n" + points),
+             Contains("line 12") && Contains("a line names vertex 4"));
+  CHECK_THAT(refusal("a.ply", start + vertices + edges + "end_header\n" + points + "0 -1 1\n"),
+             Contains("an edge names vertex -1"));
+  CHECK_THAT(refusal("a.ply", start + vertices + "element edge 1\nproperty int a\nend_header\n"),
+             Contains("vertex1 and vertex2"));
+}
+
+TEST_CASE("binary PLY with its faces before its vertices is the same mesh") {
+  const TriangleMesh cube = unit_cube();
+  const std::string bytes = ply_mesh(cube, "binary_little_endian");
+  const std::size_t body = bytes.find("end_header\n") + 11, faces = body + 8 * 24;
+  std::string turned =
+      "ply\nformat binary_little_endian 1.0\nelement face 12\n"
+      "property list uchar int vertex_indices\nelement vertex 8\n"
+      "property double x\nproperty double y\nproperty double z\nend_header\n";
+  turned += bytes.substr(faces) + bytes.substr(body, faces - body);
+  const MeshFile file = read("a.ply", turned);
+  CHECK(file.mesh.triangles == cube.triangles);
+  CHECK(file.mesh.vertices == cube.vertices);
+}
+
+TEST_CASE("PLY faces need their list and indices that exist") {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
   const std::string vertex = "element vertex 3\n" + xyz;
   const std::string list = "property list uchar int vertex_index\n";
@@ -171,17 +247,13 @@ TEST_CASE("PLY faces need their list, vertices before them and indices that exis
   const auto ply = [](const std::string& rest) { return "ply\nformat ascii 1.0\n" + rest; };
   const MeshFile file =
       read("a.ply", ply(vertex + "element face 1\nproperty uchar red\n" + list +
-                        "property list uchar float uv\nelement edge 1\nproperty int a\n"
+                        "property list uchar float uv\nelement other 1\nproperty int a\n"
                         "end_header\n" +
                         points + "7 3 0 1 2 2 0.5 0.5\n9"));
   CHECK(file.mesh.triangles.size() == 1);
   CHECK(file.remarks.last_line_open);
   CHECK_THAT(refusal("a.ply", ply(vertex + "element face 1\nproperty int a\nend_header\n")),
              Contains("vertex_indices"));
-  CHECK_THAT(refusal("a.ply", ply("element face 1\n" + list + vertex + "end_header\n")),
-             Contains("faces before the vertices"));
-  CHECK_THAT(refusal("a.ply", ply(vertex + "element tristrips 1\n" + list + "end_header\n")),
-             Contains("triangle strips"));
   CHECK(read("a.ply",
              ply(vertex + "element polygon 1\n" + list + "end_header\n" + points + "3 0 1 2\n"))
             .mesh.triangles.size() == 1);

@@ -162,7 +162,7 @@ def torment(path, reference, draw, kills):
     expect(counts["done"] == len(reference.bytes), f"done, but {counts}")
     expect(bytes_of(path) == reference.bytes, "the results differ")
     again = outcome("campaign", "run", path, "--all")
-    expect(again.returncode == 0 and again.stderr == "", f"done twice: {again.stderr}")
+    expect(again.returncode == 0 and again.stderr.count("\n") == 1, f"done twice: {again.stderr}")
     watch.see_results()
     shutil.rmtree(path)
     return struck, watch.looks

@@ -91,7 +91,8 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
   CHECK(rows[0] ==
         "id,points,source,lo_x,lo_y,lo_z,hi_x,hi_y,hi_z,centroid_x,centroid_y,centroid_z,"
         "first_pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,"
-        "nearest_source,encroachment,side,lateral,height,group,depth,points_inside");
+        "nearest_source,encroachment,side,lateral,height,group,depth,points_inside,"
+        "obstacle_chainage,shift_left,shift_right,small_groups,small_points");
   CHECK_THAT(rows[1], Catch::StartsWith("1," + all["conflicts"][0]["points"].dump() + "," +
                                         all["conflicts"][0]["source"].dump() + ","));
 }
@@ -175,7 +176,8 @@ TEST_CASE("BCF follows its schemas") {
       run_program_at(CHECK_BCF, work.folder, work.path("c.bcf") + " " + work.path("none.bcfzip"));
   INFO(checked.err);
   CHECK(checked.exit_code == 0);
-  CHECK_THAT(checked.out, Contains("none.bcfzip: 0 topics") && !Contains("c.bcf: 0 topics"));
+  // Without any conflict that is listed, the small groups have topics.
+  CHECK_THAT(checked.out, !Contains("none.bcfzip: 0 topics") && !Contains("c.bcf: 0 topics"));
 }
 
 TEST_CASE("conflicts of no colliding point are an empty list in every format") {
@@ -199,7 +201,8 @@ TEST_CASE("conflicts of no colliding point are an empty list in every format") {
 TEST_CASE("what conflicts cannot do is refused, and no output is left") {
   const HallResult work;
   REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5").exit_code == 0);
-  check_refused(work.conflicts("-o " + work.path("c.csv"), "set.h5"), 2, "run with --first-pose");
+  check_refused(work.conflicts("-o " + work.path("c.csv"), "set.h5"), 2,
+                "makes a result with first poses");
   check_refused(work.conflicts("-o " + work.path("c.xml")), 2, "unknown output format");
   check_refused(work.conflicts("--gap 0"), 2, "--gap");
   check_refused(work.conflicts("--split=-1"), 2, "0 or more");
@@ -274,15 +277,16 @@ TEST_CASE("compare --conflicts tells new, gone and the same, and exits with 1 on
                                  " --conflicts --trajectory " + (work.hall / "trajectory.txt") +
                                  " --min-points 1000000");
   CHECK(small.exit_code == 1);
-  CHECK_THAT(small.out, Contains("b has more points in groups that are too small"));
+  CHECK_THAT(small.out, Contains("too small to be listed"));
   const Outcome more = compare("fewer.h5", "out.h5", "--json");
   CHECK(more.exit_code == 1);
   const json all = json::parse(more.out);
   CHECK(all["new"].size() > 0);
   CHECK(all["new"].size() + all["same"].size() == all["b"]["conflicts"]);
-  CHECK(all["gone"].size() + all["same"].size() == all["a"]["conflicts"]);
+  CHECK(all["questions"][0]["what"] == "radius");
+  CHECK(all["gone"].size() + all["same"].size() >= all["a"]["conflicts"]);
   const Outcome text = compare("fewer.h5", "out.h5", "--show 1");
-  CHECK_THAT(text.out, Contains("queries differ: radius: 0.02 / 0.1 m") &&
+  CHECK_THAT(text.out, Contains("queries differ: radius: 0.02 m / 0.1 m") &&
                            Contains("new, only in b: ") && Contains("new conflicts"));
   const json back = json::parse(compare("out.h5", "fewer.h5", "--json").out);
   CHECK(back["gone"].size() == all["new"].size());
@@ -291,4 +295,159 @@ TEST_CASE("compare --conflicts tells new, gone and the same, and exits with 1 on
       "--trajectory");
   CHECK(work.run("compare " + work.path("out.h5") + " " + work.path("out.h5") + " --gap 1")
             .exit_code == 2);
+}
+
+namespace {
+
+/// A car of four points that drives 20 m along x at 0.5 m, and scans for it.
+struct Street : Work {
+  Street() {
+    std::string path_text, model_text;
+    for (int i = 0; i <= 80; ++i) path_text += line(i);
+    put_bytes(folder / "path.txt", path_text);
+    for (int i = 0; i <= 40; ++i) half_text += line(i);
+    put_bytes(folder / "half.txt", half_text);
+    for (const char* corner : {"1 0.5 0.5", "1 -0.5 0.5", "-1 0.5 0.5", "-1 -0.5 0.5"}) {
+      model_text += std::string(corner) + "\n";
+    }
+    put_bytes(folder / "car.xyz", model_text);
+    put_bytes(folder / "car.obj",
+              "v 1 0.5 0.5\nv 1 -0.5 0.5\nv -1 0.5 0.5\nv -1 -0.5 0.5\nf 1 2 3\nf 2 4 3\n");
+  }
+
+  static std::string line(int i) {
+    return "1 0 0 " + std::to_string(0.25 * i) + " 0 1 0 0 0 0 1 0\n";
+  }
+
+  /// A post of 200 points with its face at y, and more lines.
+  void scan(const std::string& name, double y, const std::string& more = "", int seed = 0) const {
+    std::string text;
+    for (int i = 0; i < 200; ++i) {
+      const double shift = 0.001 * ((i * 7 + seed * 13) % 5 - 2);
+      text += std::to_string(10 + 0.005 * (i % 20) + shift) + " " + std::to_string(y + shift) +
+              " " + std::to_string(0.42 + 0.016 * (i / 20) + shift) + "\n";
+    }
+    put_bytes(folder / (name + ".xyz"), text + more);
+    REQUIRE(run("convert " + path(name + ".xyz") + " -o " + path(name + "_site.h5")).exit_code ==
+            0);
+  }
+  void search(const std::string& site, const std::string& output, const std::string& more = "",
+              const std::string& model = "car.xyz", const std::string& along = "path.txt") const {
+    const Outcome outcome =
+        run("run --env " + path(site + "_site.h5") + " --model " + path(model) + " --trajectory " +
+            path(along) + " --radius 0.1 --first-pose -o " + path(output + ".h5") + " " + more);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+  }
+  Outcome compare(const std::string& a, const std::string& b, const std::string& more = "") const {
+    return run("compare " + path(a + ".h5") + " " + path(b + ".h5") + " --conflicts --trajectory " +
+               path("path.txt") + " " + more);
+  }
+
+  std::string half_text;
+};
+
+}  // namespace
+
+TEST_CASE("compare --conflicts names every other question, and calls none of them the same") {
+  const Street street;
+  street.scan("site", 0.55);
+  street.search("site", "a", "--clearance 0.2");
+  street.search("site", "box", "--clearance 0.2 --ignore-box 0,0,0,20,1,2");
+  street.search("site", "half", "--clearance 0.2", "car.xyz", "half.txt");
+  street.search("site", "ways", "--between-poses");
+  street.search("site", "surface", "--clearance 0.2 --model-as surface", "car.obj");
+  const auto differs = [&](const std::string& b, const std::string& what,
+                           const std::string& more = "") {
+    const Outcome outcome = street.compare("a", b, more);
+    INFO(outcome.out + outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.out,
+               Contains("queries differ: " + what) && Contains("--allow-other-question"));
+    const json all = json::parse(street.compare("a", b, more + " --json").out);
+    CHECK(all["holds"] == false);
+    CHECK(all["questions"].size() > 0);
+  };
+  differs("box", "ignored points");
+  differs("half", "trajectory", "--trajectory-b " + street.path("half.txt"));
+  differs("ways", "motion");
+  differs("surface", "model");
+  const Outcome allowed = street.compare("a", "box", "--allow-other-question");
+  CHECK(allowed.exit_code == 0);
+  CHECK_THAT(allowed.out, Contains("which was allowed"));
+  CHECK(street.compare("a", "a").exit_code == 0);
+}
+
+TEST_CASE("compare --conflicts tells what became worse, and writes it") {
+  const Street street;
+  street.scan("before", 0.58);
+  street.scan("after", 0.53);
+  street.search("before", "a", "--clearance 0.2");
+  street.search("after", "b", "--clearance 0.2");
+  const Outcome worse = street.compare("a", "b", "-o " + street.path("c.csv"));
+  INFO(worse.out + worse.err);
+  CHECK(worse.exit_code == 1);
+  CHECK_THAT(worse.out,
+             Contains("worse by more than 0.02 m: 1") && Contains("1 conflict is worse"));
+  CHECK_THAT(street.bytes("c.csv"), Contains("status,id_a,id_b") && Contains("\nworse,1,1,"));
+  CHECK(street.compare("b", "a").exit_code == 0);
+  CHECK(street.compare("a", "b", "--worse-by 0.1").exit_code == 0);
+  CHECK(street.compare("a", "b", "--force -o " + street.path("c.json")).exit_code == 1);
+  CHECK(json::parse(street.bytes("c.json"))["worse"].size() == 1);
+  CHECK(street.compare("a", "b", "-o " + street.path("c.html")).exit_code == 1);
+  CHECK_THAT(street.bytes("c.html"), Contains("<table>") && Contains("worse"));
+  check_refused(street.compare("a", "b", "-o " + street.path("c.xml")), 2, "unknown output format");
+  check_refused(street.compare("a", "b", "-o " + street.path("c.csv")), 2, "--force");
+}
+
+TEST_CASE("compare --conflicts finds a rescan the same, and a new cable") {
+  const Street street;
+  street.scan("before", 0.55);
+  street.scan("again", 0.55, "", 3);
+  street.scan("cable", 0.55, "5 0.55 0.5\n5 0.56 0.5\n5 0.57 0.5\n", 3);
+  for (const char* name : {"before", "again", "cable"})
+    street.search(name, name, "--clearance 0.2");
+  const Outcome same = street.compare("before", "again");
+  INFO(same.out + same.err);
+  CHECK(same.exit_code == 0);
+  CHECK_THAT(same.out, Contains("the same in both: 1\n"));
+  const Outcome cable = street.compare("before", "cable");
+  CHECK(cable.exit_code == 1);
+  CHECK_THAT(cable.out, Contains("new groups that are too small to be listed: 1"));
+  CHECK(json::parse(street.compare("before", "cable", "--json").out)["new_small"][0]["points"] ==
+        3);
+  // The same cable in both, though there is another elsewhere.
+  CHECK(street.compare("cable", "cable").exit_code == 0);
+  street.scan("moved", 0.55, "7 0.55 0.5\n7 0.56 0.5\n7 0.57 0.5\n");
+  street.search("moved", "moved", "--clearance 0.2");
+  CHECK(street.compare("cable", "moved").exit_code == 1);
+}
+
+TEST_CASE("conflicts of a few points are told by the headline and by every output") {
+  const Street street;
+  put_bytes(street.folder / "cable.xyz", "5 0.55 0.5\n5 0.56 0.5\n5 0.57 0.5\n");
+  REQUIRE(street.run("convert " + street.path("cable.xyz") + " -o " + street.path("cable_site.h5"))
+              .exit_code == 0);
+  street.search("cable", "cable");
+  std::string outputs;
+  for (const char* ending : {"csv", "json", "geojson", "gpkg", "bcf"}) {
+    outputs += " -o " + street.path(std::string("c.") + ending);
+  }
+  const Outcome outcome = street.run("conflicts " + street.path("cable.h5") + " --trajectory " +
+                                     street.path("path.txt") + outputs);
+  INFO(outcome.out + outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("3 points collide") && Contains("1 group of fewer than 10") &&
+                              Contains("5.000 0.560 0.500") && Contains("--min-points 1 lists it"));
+  const auto rows = lines_of(street.bytes("c.csv"));
+  REQUIRE(rows.size() == 2);
+  CHECK_THAT(rows[1], Catch::StartsWith("0,3,0,5,") && Catch::EndsWith(",1,3"));
+  CHECK(json::parse(street.bytes("c.json"))["small"][0]["points"] == 3);
+  const json features = json::parse(street.bytes("c.geojson"));
+  REQUIRE(features["features"].size() == 1);
+  CHECK(features["features"][0]["properties"]["shape"] == "small group");
+  const std::string package = said_by("ogrinfo", "-so -al " + street.path("c.gpkg"), street);
+  if (!package.empty()) CHECK_THAT(package, Contains("Layer name: small_groups"));
+  const Outcome checked = run_program_at(CHECK_BCF, street.folder, street.path("c.bcf"));
+  CHECK_THAT(checked.out, Contains("c.bcf: 1 topics") || Contains("c.bcf: 1 topic"));
 }

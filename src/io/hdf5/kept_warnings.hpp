@@ -8,7 +8,8 @@
 
 namespace clearway {
 
-/// What the run of a part warned of, as docs/design/result-format.md says.
+/// Writes what the run of a part or the conversion of a store warned of into the group "warnings"
+/// of their file, as docs/design/result-format.md says.
 void write_warnings(const hdf5::Id& file, const std::vector<Message>& warnings);
 
 /// name: of the file. Throws InputError where they are damaged.

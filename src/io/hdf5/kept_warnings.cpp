@@ -1,15 +1,21 @@
-#include "io/result/part_warnings.hpp"
+#include "io/hdf5/kept_warnings.hpp"
 
 #include <cstdint>
 #include <span>
 
-#include "io/result/result_names.hpp"
 #include "io/system/input_error.hpp"
 
 namespace clearway {
 namespace {
 
-namespace names = result_names;
+namespace names {
+constexpr const char* kWarningsGroup = "warnings";  // a group each, from 0
+constexpr const char* kWarningCount = "count";
+constexpr const char* kCode = "code";
+constexpr const char* kMessage = "message";
+constexpr const char* kNumberNames = "names";  // a line each; only where there are numbers
+constexpr const char* kNumbers = "numbers";
+}  // namespace names
 
 /// An attribute holds 64 KiB.
 constexpr std::size_t kMostTextBytes = 1 << 15;

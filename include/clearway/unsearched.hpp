@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "clearway/body.hpp"
+#include "clearway/pose.hpp"
+
+namespace clearway {
+
+/// A stretch of the path on which bodies of a vehicle have no pose, for example because a pivot has
+/// left the path. Nothing is known of these bodies there, so a result without collisions does not
+/// say that they are clear.
+struct UnsearchedStretch {
+  std::uint32_t first_pose = 0, last_pose = 0;  ///< poses of the path at its two ends
+  double chainage_from = 0, chainage_to = 0;    ///< metres along the positions of the path
+  std::vector<std::uint32_t> bodies;            ///< those without a pose, ascending
+  bool has_answer = false;                      ///< whether other bodies were searched there
+};
+
+/// The stretches on which not all of `bodies` are searched, in the order of the path. A body is
+/// searched from one pose of the path to the next where it has both poses. Empty for no bodies,
+/// because a model has every pose of the path.
+std::vector<UnsearchedStretch> unsearched_stretches(std::span<const Pose> path,
+                                                    std::span<const Body> bodies);
+
+/// How much of a path was searched, in metres along its positions.
+struct SearchedLength {
+  double path = 0;   ///< the whole path
+  double whole = 0;  ///< where all bodies are searched
+  double part = 0;   ///< where some bodies are searched and others are not
+};
+
+SearchedLength searched_length(std::span<const Pose> path, std::span<const Body> bodies);
+
+}  // namespace clearway

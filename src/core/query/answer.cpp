@@ -1,0 +1,80 @@
+#include "clearway/answer.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace clearway {
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kClear:
+      return "clear";
+    case Verdict::kConflict:
+      return "conflict";
+    case Verdict::kUndecided:
+      return "undecided";
+    case Verdict::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+const char* name_of(Reason reason) {
+  switch (reason) {
+    case Reason::kQuestionInDoubt:
+      break;
+  }
+  return "question-in-doubt";
+}
+
+bool is_doubt(std::string_view code) {
+  constexpr std::array<std::string_view, 4> kDoubts{"all-ignored", "no-points", "no-poses",
+                                                    "out-of-reach"};
+  return std::ranges::find(kDoubts, code) != kDoubts.end();
+}
+
+std::vector<std::string> doubts_among(const std::vector<Message>& warnings) {
+  std::vector<std::string> doubts;
+  for (const Message& warning : warnings) {
+    if (warning.severity == Message::Severity::kWarning && is_doubt(warning.code)) {
+      doubts.push_back(warning.code);
+    }
+  }
+  std::ranges::sort(doubts);
+  doubts.erase(std::unique(doubts.begin(), doubts.end()), doubts.end());
+  return doubts;
+}
+
+Verdict Answer::verdict() const {
+  if (colliding_points > 0) return Verdict::kConflict;
+  if (shard) return Verdict::kUnknown;
+  return doubts.empty() ? Verdict::kClear : Verdict::kUndecided;
+}
+
+std::vector<Reason> Answer::reasons() const {
+  if (verdict() != Verdict::kUndecided) return {};
+  return {Reason::kQuestionInDoubt};
+}
+
+const std::optional<FoundPlace>& Answer::nearest() const {
+  // A profile does not say which body is so near, so equal distances are told of the clearance.
+  if (!bodies.empty() && least_clearance &&
+      (!least_profile || least_clearance->distance <= least_profile->distance)) {
+    return least_clearance;
+  }
+  return least_profile ? least_profile : least_clearance;
+}
+
+std::optional<std::uint64_t> Answer::points_inside() const {
+  if (model_solids == 0 || !(parameters.clearance > 0)) return std::nullopt;
+  return inside_points;
+}
+
+std::optional<double> Answer::greatest_depth() const {
+  if (model_solids == 0 || !(std::max(parameters.clearance, parameters.profile) > 0)) {
+    return std::nullopt;
+  }
+  return nearest() ? std::max(0.0, -nearest()->distance) : 0;
+}
+
+}  // namespace clearway

@@ -1,0 +1,81 @@
+#include "clearway/unsearched.hpp"
+
+#include <bitset>
+#include <cstddef>
+
+#include "core/trajectory/chainage.hpp"
+
+namespace clearway {
+namespace {
+
+using BodySet = std::bitset<kMostBodies>;
+
+/// For each pose of the path, the bodies that have none there; empty where each has every pose.
+std::vector<BodySet> missing_at(std::size_t poses, std::span<const Body> bodies) {
+  std::vector<BodySet> missing;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::vector<std::uint32_t>& there = bodies[b].path_pose;
+    if (there.size() == poses) continue;
+    if (missing.empty()) missing.resize(poses);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < poses; ++i) {
+      if (next < there.size() && there[next] == i) {
+        ++next;
+      } else {
+        missing[i].set(b);
+      }
+    }
+  }
+  return missing;
+}
+
+std::vector<std::uint32_t> members_of(const BodySet& set) {
+  std::vector<std::uint32_t> members;
+  for (std::uint32_t b = 0; b < set.size(); ++b) {
+    if (set.test(b)) members.push_back(b);
+  }
+  return members;
+}
+
+}  // namespace
+
+std::vector<UnsearchedStretch> unsearched_stretches(std::span<const Pose> path,
+                                                    std::span<const Body> bodies) {
+  std::vector<UnsearchedStretch> stretches;
+  const std::vector<BodySet> missing = missing_at(path.size(), bodies);
+  if (missing.empty()) return stretches;
+  const std::vector<double> chainage = chainage_of(path);
+  BodySet before;  // of the way that ends at pose i
+  for (std::uint32_t i = 0; i + 1 < path.size(); ++i) {
+    const BodySet set = missing[i] | missing[i + 1];
+    if (set.none()) {
+      before = set;
+      continue;
+    }
+    if (set != before) {
+      stretches.push_back({.first_pose = i,
+                           .chainage_from = chainage[i],
+                           .bodies = members_of(set),
+                           .has_answer = set.count() < bodies.size()});
+    }
+    stretches.back().last_pose = i + 1;
+    stretches.back().chainage_to = chainage[i + 1];
+    before = set;
+  }
+  return stretches;
+}
+
+SearchedLength searched_length(std::span<const Pose> path, std::span<const Body> bodies) {
+  const std::vector<double> chainage = chainage_of(path);
+  SearchedLength length;
+  length.path = chainage.empty() ? 0 : chainage.back();
+  length.whole = length.path;
+  for (const UnsearchedStretch& stretch : unsearched_stretches(path, bodies)) {
+    const double metres = stretch.chainage_to - stretch.chainage_from;
+    length.whole -= metres;
+    if (stretch.has_answer) length.part += metres;
+  }
+  return length;
+}
+
+}  // namespace clearway

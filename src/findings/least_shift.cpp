@@ -1,0 +1,246 @@
+#include "findings/least_shift.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clearway/query.hpp"
+#include "core/geometry/inside.hpp"
+#include "core/geometry/model_tree.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/geometry/predicate.hpp"
+#include "core/geometry/solid_parts.hpp"
+#include "core/geometry/triangle.hpp"
+#include "core/query/body_pose.hpp"
+
+namespace clearway {
+namespace {
+
+/// A shift goes on by at least this much beyond what it left, metres: roundings end there.
+constexpr double kStep = 1e-9;
+
+/// The way of a point in a body's frame while the body is shifted: at `from` before, against `way`
+/// for each metre.
+struct PointWay {
+  Vec3 from, way;
+
+  Vec3 at(double shift) const {
+    return {from.x - shift * way.x, from.y - shift * way.y, from.z - shift * way.z};
+  }
+};
+
+/// The shift at which the point leaves the reach of a model point that it is within at `shift`.
+double leaves(const PointWay& point, const Vec3& m, double radius, double /*shift*/) {
+  const Vec3 w = difference(point.from, m);
+  const double along = rounded_dot(w, point.way), square = rounded_dot(point.way, point.way);
+  const double rest = along * along - square * (rounded_dot(w, w) - radius * radius);
+  return (along + std::sqrt(std::max(0.0, rest))) / square;
+}
+
+/// The same of a triangle. The distance to it is convex along the way, so it is left once.
+double leaves(const PointWay& point, const Triangle& t, double radius, double shift) {
+  const auto within = [&](double at) {
+    return squared_distance(point.at(at), t) < radius * radius;
+  };
+  double inside = shift, outside = shift + radius;
+  while (within(outside)) {
+    inside = outside;
+    outside = shift + 2 * (outside - shift);
+  }
+  while (outside - inside > kStep / 4) {
+    const double middle = inside + (outside - inside) / 2;
+    (within(middle) ? inside : outside) = middle;
+  }
+  return outside;
+}
+
+bool overlap(double a, double b, double lo, double hi) {
+  return std::min(a, b) <= hi && std::max(a, b) >= lo;
+}
+
+/// Into how many parts the way between two poses is divided: half the radius each, at most 64.
+int steps_between(const Pose& a, const Pose& b, double radius) {
+  constexpr double kMostSteps = 64;
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = b.translation[k] - a.translation[k];
+    square += d * d;
+  }
+  return static_cast<int>(std::clamp(std::ceil(2 * std::sqrt(square) / radius), 1.0, kMostSteps));
+}
+
+/// Where model points are that move on straight segments from pose a to pose b: no rotation, but
+/// one that shrinks where the poses turn. Seen from it, places are farther away than they are, so a
+/// shift that follows is never too long.
+Pose between(const Pose& a, const Pose& b, double part) {
+  Pose out{};
+  for (int k = 0; k < 9; ++k) {
+    out.rotation[k] = a.rotation[k] + part * (b.rotation[k] - a.rotation[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    out.translation[k] = a.translation[k] + part * (b.translation[k] - a.translation[k]);
+  }
+  return out;
+}
+
+std::vector<Triangle> triangles_of(const Body& body) {
+  std::vector<Triangle> out;
+  for (const auto& [a, b, c] : body.triangles) {
+    out.emplace_back(body.model.at(a), body.model.at(b), body.model.at(c));
+  }
+  return out;
+}
+
+SolidParts solids_of(const Body& body, int threads) {
+  Query query;
+  if (!body.is_solid()) return {};
+  query.model = body.model;
+  query.triangles = body.triangles;
+  query.solid_of = body.solid_of;
+  return SolidParts(query, threads);
+}
+
+}  // namespace
+
+/// A body in its own frame.
+class LeastShift::Shape {
+ public:
+  Shape(const Body& body, double radius, int threads)
+      : radius_(radius),
+        points_(body.is_surface() ? std::span<const Vec3>() : std::span(body.model), threads),
+        triangles_(triangles_of(body), threads),
+        solids_(solids_of(body, threads)),
+        box_(grown(body.is_surface() ? triangles_.box() : points_.box())) {}
+
+  bool is_empty() const { return points_.size() == 0 && triangles_.size() == 0; }
+
+  /// Whether the point can come within reach at any shift between 0 and `most`.
+  bool may_reach(const PointWay& point, double most) const {
+    const Vec3 end = point.at(most);
+    return overlap(point.from.x, end.x, box_.lo.x, box_.hi.x) &&
+           overlap(point.from.y, end.y, box_.lo.y, box_.hi.y) &&
+           overlap(point.from.z, end.z, box_.lo.z, box_.hi.z);
+  }
+
+  /// The least shift from `shift` on at which the point is free, or one above `most`.
+  double free_from(const PointWay& point, double shift, double most) const {
+    while (shift <= most) {
+      const Vec3 x = point.at(shift);
+      if (!may_reach({x, {0, 0, 0}}, 0)) return shift;
+      const double next = triangles_.size() > 0 ? next_of(triangles_, point, x, shift)
+                                                : next_of(points_, point, x, shift);
+      if (next == shift) return shift;
+      shift = std::max(next, shift + kStep);
+    }
+    return shift;
+  }
+
+ private:
+  template <typename Element>
+  double next_of(const ModelTreeOf<Element>& tree, const PointWay& point, const Vec3& x,
+                 double shift) const {
+    const auto nearest = tree.nearest(x);
+    if (nearest.squared_distance < radius_ * radius_) {
+      return leaves(point, tree.element(nearest.element), radius_, shift);
+    }
+    // Inside a solid the point stays inside until it has come as far as the nearest surface.
+    if (!solids_.ref().contains(x)) return shift;
+    return shift +
+           std::sqrt(nearest.squared_distance) / std::sqrt(rounded_dot(point.way, point.way));
+  }
+
+  Box grown(Box box) const {
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] -= radius_;
+      box.hi[k] += radius_;
+    }
+    return box;
+  }
+
+  double radius_;
+  ModelTreeOf<Vec3> points_;
+  ModelTreeOf<Triangle> triangles_;
+  SolidParts solids_;
+  Box box_;
+};
+
+LeastShift::LeastShift(std::span<const Body> bodies, const std::vector<Pose>& path,
+                       const Vec3& left, double radius, bool ways, int threads)
+    : bodies_(bodies), path_(path), left_(left), radius_(radius), ways_(ways) {
+  for (const Body& body : bodies) {
+    shapes_.push_back(std::make_unique<Shape>(body, radius, threads));
+  }
+}
+
+LeastShift::~LeastShift() = default;
+
+/// Points in the frame of a body at a pose.
+struct LeastShift::Run {
+  const Shape* shape;
+  Vec3 left;  ///< how the body moves in its own frame for each metre of a shift to the left
+  std::size_t begin, end;
+
+  PointWay way(const Vec3& point, double direction) const {
+    return {point, {direction * left.x, direction * left.y, direction * left.z}};
+  }
+};
+
+void LeastShift::add_runs(std::size_t body, const Pose& pose, const Pose& of_path,
+                          std::span<const Vec3> points, double most, std::vector<Run>& runs,
+                          std::vector<Vec3>& seen) const {
+  const double* r = of_path.rotation;
+  const Vec3 left{r[0] * left_.x + r[1] * left_.y + r[2] * left_.z,
+                  r[3] * left_.x + r[4] * left_.y + r[5] * left_.z,
+                  r[6] * left_.x + r[7] * left_.y + r[8] * left_.z};
+  Pose turn = pose;
+  for (double& t : turn.translation) t = 0;
+  Run run{shapes_[body].get(), pulled_back(turn, left), seen.size(), 0};
+  if (!(rounded_dot(run.left, run.left) > 0)) return;  // no rotation
+  for (const Vec3& e : points) {
+    const Vec3 x = pulled_back(pose, e);
+    const PointWay from_right = run.way(PointWay{x, run.left}.at(-most), 1);
+    if (run.shape->may_reach(from_right, 2 * most)) seen.push_back(x);
+  }
+  run.end = seen.size();
+  runs.push_back(run);
+}
+
+SideShifts LeastShift::least(std::span<const Vec3> points, std::uint32_t first, std::uint32_t last,
+                             double most) const {
+  std::vector<Run> runs;
+  std::vector<Vec3> seen;  // of all runs, those that any shift brings within reach
+  for (std::size_t body = 0; body < bodies_.size(); ++body) {
+    if (shapes_[body]->is_empty()) continue;
+    for (std::uint32_t i = first; i <= last; ++i) {
+      const Pose* pose = pose_at(bodies_[body], i);
+      if (pose == nullptr) continue;
+      add_runs(body, *pose, path_[i], points, most, runs, seen);
+      const Pose* next = ways_ && i < last ? pose_at(bodies_[body], i + 1) : nullptr;
+      if (next == nullptr) continue;
+      const int steps = steps_between(*pose, *next, radius_);
+      for (int step = 1; step < steps; ++step) {
+        const double part = static_cast<double>(step) / steps;
+        add_runs(body, between(*pose, *next, part), between(path_[i], path_[i + 1], part), points,
+                 most, runs, seen);
+      }
+    }
+  }
+  const auto to_side = [&](double direction) -> std::optional<double> {
+    double shift = 0;
+    // What was free may be blocked farther on, so all are gone through until nothing moves.
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (const Run& run : runs) {
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+          const double next = run.shape->free_from(run.way(seen[i], direction), shift, most);
+          if (next > most) return std::nullopt;
+          moved = moved || next > shift;
+          shift = next;
+        }
+      }
+    }
+    return shift;
+  };
+  return {to_side(1), to_side(-1)};
+}
+
+}  // namespace clearway

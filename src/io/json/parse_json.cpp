@@ -1,0 +1,134 @@
+#include "io/json/parse_json.hpp"
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace clearway {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Refuses a text that is nested too deep, before anything is built from it.
+void check_nesting(std::string_view text) {
+  std::size_t depth = 0, line = 1, line_begin = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') {
+      ++line;
+      line_begin = i + 1;
+    }
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kMostJsonNesting) {
+        throw JsonError("line " + std::to_string(line) + ", column " +
+                        std::to_string(i - line_begin + 1) +
+                        ": lists and objects are nested too deep, expected at most " +
+                        std::to_string(kMostJsonNesting) + " levels");
+      }
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+}
+
+/// Builds the value. The library's own builder compares each new key with all earlier ones, and
+/// with a callback also visits all earlier elements of a list at each new one.
+class ValueBuilder : public nlohmann::json_sax<ordered_json> {
+ public:
+  ordered_json take() { return std::move(root_); }
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t& value) override { return add(std::move(value)); }
+  bool start_object(std::size_t) override { return open(ordered_json::object()); }
+  bool start_array(std::size_t) override { return open(ordered_json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& name) override {
+    Open& object = open_.back();
+    object.key = name;
+    if (!object.seen.insert(name).second) throw JsonError(place() + ": stands twice");
+    return true;
+  }
+
+  bool parse_error(std::size_t, const std::string&,
+                   const nlohmann::detail::exception& error) override {
+    constexpr std::size_t kMostBytes = 300;  // it repeats the token, which may be a long string
+    std::string what = error.what();  // "[json.exception...] parse error at line 3, column 5: ..."
+    const std::size_t begin = what.find("] ");
+    if (begin != std::string::npos) what.erase(0, begin + 2);
+    if (what.size() > kMostBytes) what = what.substr(0, kMostBytes) + " ...";
+    throw JsonError("is no JSON: " + what);
+  }
+
+ private:
+  /// An object or list whose end has not been read. Nothing is added to what holds it until then,
+  /// so that the pointer stays valid.
+  struct Open {
+    ordered_json* value;
+    std::set<std::string> seen{};
+    std::string key{};
+  };
+
+  ordered_json& append(ordered_json&& value) {
+    if (open_.empty()) return root_ = std::move(value);
+    Open& within = open_.back();
+    if (within.value->is_array()) {
+      auto& list = within.value->get_ref<ordered_json::array_t&>();
+      return list.emplace_back(std::move(value));
+    }
+    auto& object = within.value->get_ref<ordered_json::object_t&>();
+    return object.emplace_back(within.key, std::move(value)).second;
+  }
+  bool add(ordered_json&& value) {
+    append(std::move(value));
+    return true;
+  }
+  bool open(ordered_json&& value) {
+    open_.push_back({&append(std::move(value))});
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  /// "bodies[1].name"
+  std::string place() const {
+    std::string text;
+    for (const Open& within : open_) {
+      if (within.value->is_array()) {
+        text += "[" + std::to_string(within.value->size() - 1) + "]";
+      } else {
+        text += (text.empty() ? "" : ".") + within.key;
+      }
+    }
+    return text;
+  }
+
+  ordered_json root_;
+  std::vector<Open> open_;
+};
+
+}  // namespace
+
+ordered_json parse_json(std::string_view text) {
+  check_nesting(text);
+  ValueBuilder builder;
+  ordered_json::sax_parse(text.begin(), text.end(), &builder);
+  return builder.take();
+}
+
+}  // namespace clearway

@@ -1,0 +1,260 @@
+"""Arguments of the public calls: each is checked by its name before the compiled part gets it.
+
+The compiled part describes a call that does not fit by listing the C++ types of all parameters,
+which names no culprit. So every public call, constructor and property is wrapped here: it takes
+arguments as a Python function of its signature does, converts numbers of any type, and says which
+argument is wrong. A parameter of one name means the same in every call, so that one table serves
+them all. What remains to be said of values and arrays, the library says.
+"""
+
+import difflib
+import functools
+import inspect
+import math
+import operator
+import os
+import reprlib
+
+from . import _clearway
+from ._clearway import UsageError
+
+
+def _found(value):
+    return "found " + reprlib.repr(value)
+
+
+def _number(name, value):
+    try:
+        if isinstance(value, (bool, str, bytes)):
+            raise TypeError
+        return float(value)  # numpy scalars of any width, Decimal and Fraction too
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name}: expected a number, {_found(value)}") from None
+
+
+def _finite(name, value):
+    number = _number(name, value)
+    if not math.isfinite(number):
+        raise UsageError(f"{name}: expected a finite number, {_found(value)}")
+    return number
+
+
+def _at_least_0(name, value):
+    number = _finite(name, value)
+    if number < 0:
+        raise UsageError(f"{name}: expected 0 or a number above it, {_found(value)}")
+    return number
+
+
+def _above_0(name, value):
+    number = _finite(name, value)
+    if not number > 0:
+        raise UsageError(f"{name}: expected a number above 0, {_found(value)}")
+    return number
+
+
+def _or_name(check):
+    """A number of metres, or the name of a unit, which the compiled part knows."""
+    return lambda name, value: value if isinstance(value, str) else check(name, value)
+
+
+def _whole(most, least=0):
+    def check(name, value):
+        try:
+            if isinstance(value, bool):
+                raise TypeError
+            number = int(value) if hasattr(value, "is_integer") and value.is_integer() else (
+                operator.index(value))  # 4e9 is a whole number too
+        except (TypeError, ValueError, OverflowError):
+            raise TypeError(f"{name}: expected a whole number, {_found(value)}") from None
+        if not least <= number <= most:
+            raise UsageError(f"{name}: expected {least} to {most}, {_found(value)}")
+        return number
+    return check
+
+
+def _flag(name, value):
+    if isinstance(value, (str, bytes)) or value not in (False, True):
+        raise TypeError(f"{name}: expected True or False, {_found(value)}")
+    return bool(value)
+
+
+def _text(name, value):
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected a text, {_found(value)}")
+    return value
+
+
+def _path(name, value):
+    try:
+        os.fspath(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected a path, as str, bytes or os.PathLike, "
+                        f"{_found(value)}") from None
+    return value
+
+
+def _paths(name, value):
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return value
+    return _each(_path)(name, value)
+
+
+def _kind(kind):
+    def check(name, value):
+        if not isinstance(value, kind):
+            raise TypeError(f"{name}: expected a clearway.{kind.__name__}, {_found(value)}")
+        return value
+    return check
+
+
+def _each(check):
+    """A list, or anything else that gives its elements, none of which is a text's letter."""
+    def check_all(name, value):
+        try:
+            if isinstance(value, (str, bytes)):
+                raise TypeError
+            elements = list(value)
+        except TypeError:
+            raise TypeError(f"{name}: expected a list, {_found(value)}") from None
+        return [check(f"{name}[{i}]", element) for i, element in enumerate(elements)]
+    return check_all
+
+
+def _tuple_of(count, check, words):
+    def check_all(name, value):
+        elements = _each(check)(name, value)
+        if len(elements) != count:
+            raise UsageError(f"{name}: expected {words}, {_found(value)}")
+        return tuple(elements)
+    return check_all
+
+
+def _callable(name, value):
+    if not callable(value):
+        raise TypeError(f"{name}: expected a function, {_found(value)}")
+    return value
+
+
+def _having(method):
+    def check(name, value):
+        if not callable(getattr(value, method, None)):
+            raise TypeError(f"{name}: expected an object that has {method}(), {_found(value)}")
+        return value
+    return check
+
+
+def _anything(_name, value):
+    """Arrays, which the compiled part converts and refuses by name."""
+    return value
+
+
+_threads = _whole(2**31 - 1)
+_bytes = _whole(2**64 - 1)
+_messages = _each(_kind(_clearway.Message))
+
+_CHECKS = {
+    **dict.fromkeys(("radius", "scale", "regular_size"), _above_0),
+    **dict.fromkeys(("unit", "metres_per_unit"), _or_name(_at_least_0)),
+    "environment_unit": _or_name(_above_0),
+    **dict.fromkeys(("clearance", "profile", "tolerance", "spacing", "field_voxel", "grid_cell", "gap", "split", "journal_interval_seconds"),
+                    _at_least_0),
+    **dict.fromkeys(("above", "at", "chainage_start", "model_above"), _finite),
+    **dict.fromkeys(("threads",), _threads),
+    **dict.fromkeys(("memory_bytes", "device_memory_bytes", "max_points", "min_points",
+                     "model_left_out"), _bytes),
+    **dict.fromkeys(("first_pose", "between_poses", "allow_non_rigid", "vertices_only",
+                     "ignore_crs", "skip_unreadable", "strict", "overwrite", "resume",
+                     "float_precision", "end_gpus", "model_is_cut"), _flag),
+    **dict.fromkeys(("name", "model_as", "format", "angle_unit", "angle_frame", "crs",
+                     "default_crs", "datum", "engine", "device", "forward", "up", "title",
+                     "project", "client", "author", "date", "result_name", "environment_name",
+                     "model_name", "trajectory_name"), _text),
+    **dict.fromkeys(("path", "file", "output"), _path),
+    **dict.fromkeys(("inputs", "parts"), _paths),
+    **dict.fromkeys(("model", "poses", "points", "triangles", "path_pose", "lo", "hi"), _anything),
+    **dict.fromkeys(("progress", "message"), _callable),
+    **dict.fromkeys(("warnings", "input_warnings"), _messages),
+    "stop": _having("is_set"),
+    "messages": _having("append"),
+    "cell_points": _whole(2**32 - 1),
+    "columns": _each(_text),
+    "classes": _each(_finite),
+    "gpus": _each(_whole(2**31 - 1)),
+    "shard": _tuple_of(2, _whole(2**32 - 1), "a pair (i, n)"),
+    "pivots": _tuple_of(2, _finite, "two numbers, the front pivot and the rear one"),
+    "lever_arm": _tuple_of(3, _finite, "three numbers x, y and z"),
+    "ignore_classes": _each(_whole(255)),
+    "ignore_boxes": _each(_kind(_clearway.Box)),
+    "bodies": _each(_kind(_clearway.Body)),
+    "model_box": _kind(_clearway.Box),
+    "labels": _kind(_clearway.PoseLabels),
+    "store": _kind(_clearway.Store),
+    "result": _kind(_clearway.Result),
+    "query": _kind(_clearway.Query),
+}
+# Poses, where elsewhere it is a file.
+_OF_CALL = {("follow", "path"): _anything, ("unsearched_stretches", "path"): _anything}
+
+
+def _check_of(call, name):
+    return _OF_CALL.get((call, name)) or _CHECKS.get(name, _anything)
+
+
+def _refuse_unknown(call, signature, named):
+    known = [n for n in signature.parameters if n != "self"]
+    for name in named:
+        if name in known:
+            continue
+        near = difflib.get_close_matches(name, known, 1)
+        raise TypeError(f"{call}() has no argument '{name}'"
+                        + (f"; did you mean '{near[0]}'?" if near else ""))
+
+
+def _signature_of(function):
+    """As the docstring of the compiled function begins; without one it takes nothing."""
+    text = getattr(function, "__text_signature__", None) or "(self)"
+    scope = {}
+    exec(f"def signature{text}: pass", scope)  # our own text, which holds literals alone
+    return inspect.signature(scope["signature"])
+
+
+def checked(call, function):
+    """The compiled function, which says which argument is wrong. call: its name for people."""
+    signature = _signature_of(function)
+
+    @functools.wraps(function)
+    def wrapped(*args, **named):
+        _refuse_unknown(call, signature, named)
+        try:
+            bound = signature.bind(*args, **named)
+        except TypeError as error:
+            raise TypeError(f"{call}(): {error}") from None
+        for name, value in bound.arguments.items():
+            default = signature.parameters[name].default
+            if name == "self" or (value is None and default is None):
+                continue
+            bound.arguments[name] = _check_of(call, name)(name, value)
+        return function(*bound.args, **bound.kwargs)
+
+    wrapped.__signature__ = signature
+    return wrapped
+
+
+def _checked_property(name, compiled):
+    def assign(self, value):
+        compiled.fset(self, _check_of("", name)(name, value))
+    return property(compiled.fget, assign, doc=compiled.__doc__)
+
+
+def check_class(made):
+    """Checks the constructor, the methods and the properties of a compiled class."""
+    for name, member in list(vars(made).items()):
+        if isinstance(member, property):
+            if member.fset is not None:
+                setattr(made, name, _checked_property(name, member))
+        elif hasattr(member, "__objclass__"):
+            continue  # of a class whose objects only the module makes
+        elif name == "__init__" or (callable(member) and not name.startswith("_")):
+            call = made.__name__ if name == "__init__" else f"{made.__name__}.{name}"
+            setattr(made, name, checked(call, member))

@@ -1,0 +1,121 @@
+// Stretches of the path where bodies of the vehicle have no pose, so that nothing is known of them.
+
+/** Whether any body has shown pose i. */
+function isSearched(i) {
+  return !page.bodyPoses || bodyFacts().some((_, body) => hasPose(i, body));
+}
+
+const hasPose = (i, body) => page.bodyPoses.there[body * page.poses.count + i] !== 0;
+
+/** ": no answer", or which bodies the value of shown pose i leaves out. */
+function unsearchedWords(i) {
+  if (!page.bodyPoses) return "";
+  const missing = bodyFacts().filter((_, body) => !hasPose(i, body)).map(({ name }) => `"${name}"`);
+  if (missing.length === 0) return "";
+  if (!isSearched(i)) return "no answer, as the vehicle has no pose here";
+  return `without ${missing.length === 1 ? "body" : "the bodies"} ${joined(missing)}, no pose here`;
+}
+
+const joined = (words) => words.length < 2 ? words.join("")
+    : `${words.slice(0, -1).join(", ")} and ${words.at(-1)}`;
+
+/** "0.00 to 10.00 m and 90.00 to 100.00 m"; of many stretches the first few. */
+function stretchWords(stretches) {
+  const most = 6, words = stretches.slice(0, most).map(({ chainage_from: from, chainage_to: to }) =>
+      `${station(from).replace(` ${unitSymbol}`, "")} to ${station(to)}`);
+  const more = stretches.length - most;
+  return joined(more > 0 ? [...words, `${plural(more, "more stretch", "more stretches")}`] : words);
+}
+
+const silentStretches = () => page.facts.unsearched.filter((s) => !s.has_answer);
+
+/** The stretches that other bodies were searched on: a list for each set of missing bodies. */
+function partStretches() {
+  const lists = new Map();
+  for (const stretch of page.facts.unsearched.filter((s) => s.has_answer)) {
+    const names = joined(stretch.bodies.map((name) => `"${name}"`));
+    const which = (stretch.bodies.length === 1 ? "body " : "bodies ") + names;
+    lists.set(which, [...lists.get(which) ?? [], stretch]);
+  }
+  return [...lists];
+}
+
+/** Over which part of the path the verdict was found; empty where that is all of it. */
+function searchedSentence() {
+  const { unsearched, inputs: { trajectory } } = page.facts;
+  if (unsearched.length === 0) return "";
+  const { length, searched_length: whole, partly_searched_length: part } = trajectory;
+  const silent = silentStretches(), several = bodyFacts().length > 1;
+  const more = part > 0 ? `, and some of its bodies on ${station(part)} more` : "";
+  const where = silent.length > 0 ? ` At chainage ${stretchWords(silent)} the vehicle has no pose, ` +
+                                    "so nothing is known there." : "";
+  return `${several ? "The whole vehicle" : "The vehicle"} was searched on ${station(whole)} of the ` +
+      `path's ${station(length)}${more}.${where}`;
+}
+
+/** The patterns of the shaded stretches, for the profile and its legend. */
+function unsearchedPatterns() {
+  const pattern = (id, size, ...marks) => make("pattern", { id, width: size, height: size,
+      patternUnits: "userSpaceOnUse" }, make("rect", { width: size, height: size, fill: "#e5e7eb" }), ...marks);
+  const line = (x1, y1, x2, y2) => make("line", { x1, y1, x2, y2, stroke: "#6b7280", "stroke-width": 1 });
+  return [pattern("no-answer", 8, line(0, 0, 8, 8), line(0, 8, 8, 0)),
+          pattern("part-answer", 8, make("circle", { cx: 4, cy: 4, r: 1.3, fill: "#6b7280" }))];
+}
+
+/** The stretches that are in sight, shaded from top to bottom, with words where there is room. */
+function profileUnsearched() {
+  const { top, bottom, height, left, right, width } = profile, out = [];
+  for (const { chainage_from: from, chainage_to: to, has_answer: part } of page.facts.unsearched) {
+    if (to < profile.from || from > profile.to) continue;
+    const x1 = clamp(profileX(from), left, width - right), x2 = clamp(profileX(to), left, width - right);
+    const wide = Math.max(2, x2 - x1), words = part ? "a part only" : "no answer";
+    const middle = x1 + wide / 2, y = (top + height - bottom) / 2;
+    out.push(make("rect", { x: x1, y: top, width: wide, height: height - top - bottom,
+                            class: part ? "part-answer" : "no-answer",
+                            fill: `url(#${part ? "part-answer" : "no-answer"})` }),
+             wide > 16 && make("text", { x: middle, y: y + 4, class: "middle strong halo",
+                 transform: wide > 74 ? null : `rotate(-90 ${middle} ${y})` }, words));
+  }
+  return out.filter(Boolean);
+}
+
+/** What the shading means and where it is, in words below the profile. */
+function unsearchedLegend() {
+  const swatch = (id) => make("svg", { width: 26, height: 14, class: "swatch", "aria-hidden": "true" },
+      make("rect", { width: 26, height: 14, fill: `url(#${id})`, stroke: "#6b7280" }));
+  const rows = partStretches().map(([which, stretches]) => make("li", {}, swatch("part-answer"),
+      ` A part only: without ${which}, which ${which.startsWith("body ") ? "has" : "have"} no pose at ` +
+      `chainage ${stretchWords(stretches)}.`));
+  const silent = silentStretches();
+  if (silent.length > 0) {
+    rows.unshift(make("li", {}, swatch("no-answer"),
+        ` No answer: the vehicle has no pose at chainage ${stretchWords(silent)}.`));
+  }
+  return rows;
+}
+
+/** Dashes on the plan's path where nothing was searched. */
+function drawUnsearchedPath(context, painter, unitSize) {
+  const n = page.poses.count, stride = Math.max(1, Math.floor(n / 3000));
+  context.save();
+  context.strokeStyle = "#fff";
+  context.lineWidth = 2.6 * unitSize;
+  context.setLineDash([5 * unitSize, 5 * unitSize]);
+  for (let first = 0; first < n; ++first) {
+    if (isSearched(first)) continue;
+    let last = first;
+    while (last + 1 < n && !isSearched(last + 1)) ++last;
+    const from = Math.max(0, first - 1), to = Math.min(n - 1, last + 1);
+    context.beginPath();
+    for (let i = from; i <= to; i += i + stride < to || i === to ? stride : to - i) {
+      const at = painter.project(page.path[i]);
+      if (at) context.lineTo(at[0], at[1]);
+    }
+    context.stroke();
+    first = last;
+  }
+  context.restore();
+}
+
+const unsearchedNote = () => silentStretches().length > 0
+    ? " Where the path is dashed, the vehicle has no pose and nothing is known." : "";

@@ -1,0 +1,61 @@
+"""What the test of the guide has to know of its pages: how each is run, what is not, and the files at hand."""
+
+# A page that is followed from top to bottom runs in one folder, which is empty or has the files that
+# stand_ins.py makes. Of any other page each block runs by itself, in a folder with these files.
+FOLLOWED_FROM_NOTHING = {"docs/guide/tutorial.md", "docs/guide/campaigns.md"}
+FOLLOWED = {"docs/guide/vehicles.md"}
+
+# (page, beginning of the command): why the test does not run it.
+NOT_RUN = {
+    ("README.md", "tools/demo.sh"): "builds the program; the tutorial's commands are those of the demo",
+    ("README.md", "tools/test.sh"): "runs all tests",
+    ("README.md", "cmake --preset release &&"): "builds the program and runs all tests",
+    ("docs/guide/tutorial.md", "git clone"): "gets the sources",
+    ("docs/guide/tutorial.md", "cd clearway"): "the test begins in its own folder",
+    ("docs/guide/tutorial.md", "tools/demo.sh"): "builds the program",
+    ("docs/guide/tutorial.md", "export PATH="): "the test names the program",
+    ("docs/guide/tutorial.md", "mkdir demo/tutorial"): "the test begins in its own folder",
+    ("docs/guide/tutorial.md", "cd demo/tutorial"): "the test begins in its own folder",
+    ("docs/guide/campaigns.md", "spring/submit.sh"): "needs Slurm; the test slurm submits campaigns",
+    ("docs/guide/library.md", "cmake"): "builds the library; the test installed_library installs it",
+    ("docs/guide/measuring.md", "tools/evaluate.sh"): "measures for minutes",
+    ("docs/guide/measuring.md", "clearway-bench datasets"): "makes scenes of 800 million points",
+    ("docs/guide/python.md", "(cd build/release && cpack)"): "makes the package; tools/test_package.sh does",
+    ("docs/guide/python.md", "sudo"): "installs the package; tools/test_package.sh does",
+    ("docs/guide/python.md", "cmake"): "builds the program",
+    ("docs/guide/python.md", "clearway scene"): "the test python_guide runs it, with the page's snippets",
+}
+
+# (page, beginning of the snippet): which other test runs it, or why none does.
+SNIPPETS_ELSEWHERE = {
+    ("README.md", "#include"): "the test installed_library builds and runs it",
+    ("docs/guide/library.md", "cmake_minimum_required"): "the test installed_library builds with it",
+    ("docs/guide/library.md", "#include"): "the test installed_library compiles it, and runs the one with main",
+    ("docs/guide/python.md", ""): "the test python_guide runs it",
+    ("docs/guide/campaigns.md", '"vehicles"'): "a part of a campaign's file, with folders of models",
+}
+
+# (page, beginning of the text): why it is not the output of the commands above it.
+SAMPLES = {
+    ("docs/guide/results.md", "conflict: 1,204"): "of a trajectory with names and times",
+}
+
+# (page, beginning of a snippet): the file that the page tells the reader to write.
+WRITTEN = {
+    ("docs/guide/campaigns.md", "{"): "campaign.json",
+    ("docs/guide/vehicles.md", '{"bodies"'): "wagon.json",
+}
+
+# (page, beginning of the command): the exit code, where it is not 0.
+EXIT_CODES = {
+    ("README.md", "clearway compare"): 1,
+    ("docs/guide/tutorial.md", "clearway compare"): 1,
+    ("docs/guide/command-line.md", "clearway compare before.h5"): 1,
+    ("docs/guide/results.md", "clearway compare before.h5"): 1,
+}
+
+# (page, as it stands in a command): what the test has in its place, so that it ends in a second.
+SMALLER = {
+    ("docs/guide/command-line.md", "--points 5000000"): "--points 20000",
+    ("docs/guide/command-line.md", "scene mine -o mine"): "scene mine -o mine --points 20000 --poses 50",
+}

@@ -1,0 +1,68 @@
+"""The files that the pages speak of as the user's: a small hall under these names, and what is made of it."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+
+def _box_stl(path, size):
+    """A closed box of these lengths, whose middle of the floor is the origin."""
+    length, width, height = size
+    corners = [((i & 1) * length - length / 2, (i >> 1 & 1) * width - width / 2, (i >> 2) * height)
+               for i in range(8)]
+    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    lines = ["solid box"]
+    for a, b, c, d in sides:
+        for triangle in ((a, b, c), (a, c, d)):
+            lines += ["facet normal 0 0 0", "outer loop"]
+            lines += ["vertex {} {} {}".format(*corners[corner]) for corner in triangle]
+            lines += ["endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid box"]) + "\n", encoding="utf-8")
+
+
+CAMPAIGN = {"name": "Stand-in", "environments": {"hall": "site.h5"}, "vehicles": {"car": "car.ply"},
+            "routes": {"line": "path.txt"}, "radii": [0.1]}
+
+
+def _positions(trajectory):
+    return [line.split()[3:12:4] for line in trajectory.read_text().splitlines()]
+
+
+def make(folder, clearway):
+    """Makes all of them; `clearway` runs the program with the words that it gets, in the folder."""
+    clearway("scene hall --points 20000 --model-points 2000 --poses 200 -o .".split())
+    (folder / "scans").mkdir()
+    (folder / "environment.las").rename(folder / "scans" / "hall.las")
+    shutil.copy(folder / "scans" / "hall.las", folder / "scan.las")
+    for name in ("car.ply", "body.ply"):
+        shutil.copy(folder / "model.ply", folder / name)
+    for name in ("path.txt", "track.txt", "crane.txt"):
+        shutil.copy(folder / "trajectory.txt", folder / name)
+    (folder / "path.csv").write_text("time,x,y,z,roll,pitch,yaw\n" + "".join(
+        f"{number},{x},{y},{z},0,0,0\n"
+        for number, (x, y, z) in enumerate(_positions(folder / "path.txt"))), encoding="utf-8")
+    _box_stl(folder / "car.stl", (4500, 1900, 1500))
+    _box_stl(folder / "crane.stl", (500, 500, 3000))
+    _box_stl(folder / "bogie.stl", (2, 1.5, 0.8))
+    clearway("model bogie.stl --spacing 0.1 -o bogie.ply".split())
+    clearway("convert scans/ -o site.h5".split())
+    asked = "run --env site.h5 --model car.ply --trajectory path.txt --first-pose".split()
+    clearway([*asked, *"--radius 0.1 --clearance 0.3 --profile 0.5 -o out.h5".split()])
+    clearway([*asked, *"--radius 0.2 -o other.h5".split()])
+    for name, source in (("kdtree", "out"), ("sweep", "out"), ("before", "out"), ("after", "other")):
+        shutil.copy(folder / f"{source}.h5", folder / f"{name}.h5")
+    (folder / "campaign.json").write_text(json.dumps(CAMPAIGN), encoding="utf-8")
+    for name in ("model.ply", "trajectory.txt"):
+        (folder / name).unlink()
+
+
+def lend(made, folder, commands):
+    """The files in a folder of their own, but for those that the commands make."""
+    shutil.copytree(made, folder, copy_function=os.link)
+    for command in commands:
+        for output in re.findall(r"(?:-o|--output)[ =](\S+)", command):
+            if (folder / output).is_file():
+                (folder / output).unlink()

@@ -1,0 +1,163 @@
+// What a conversion warned of, told again by the commands that read its store.
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/convert/convert.hpp"
+#include "io/store/store_reader.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/store_fixture.hpp"
+#include "tools/cli/support/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+std::vector<std::string> codes_of(const json& report) {
+  std::vector<std::string> codes;
+  for (const auto& warning : report["warnings"]) codes.push_back(warning["code"]);
+  return codes;
+}
+
+std::ptrdiff_t count_of(const std::vector<std::string>& codes, const std::string& code) {
+  return std::count(codes.begin(), codes.end(), code);
+}
+
+/// A wall beside a straight path, in metres; some lines of the scan are no finite points.
+struct Wall {
+  explicit Wall(int lost) {
+    std::string points = "x[m],y[m],z[m]\n";
+    for (int i = 0; i < 4000; ++i) {
+      points += std::to_string(0.05 * (i % 200) + 0.000'137 * (i % 89)) + "," +
+                std::to_string(i / 200 * 0.05 + 0.000'113 * (i % 97)) + "," +
+                std::to_string(0.01 * (i % 7) + 0.000'127 * (i % 83)) + "\n";
+    }
+    for (int i = 0; i < lost; ++i) points += "nan,nan,nan\n";
+    put_bytes(folder / "scan.csv", points);
+    put_bytes(folder / "model.xyz", "0 0 0\n0.1 0 0\n");
+    put_bytes(folder / "path.txt", "1 0 0 1 0 1 0 0 0 0 1 0\n1 0 0 1.1 0 1 0 0 0 0 1 0\n");
+  }
+
+  Outcome convert(const std::string& rest = "--force") const {
+    return run_program(folder, "convert --json " + quoted(folder / "scan.csv") + " -o " +
+                                   quoted(folder / "site.h5") + " " + rest);
+  }
+  Outcome run(const std::string& rest, const std::string& output = "out.h5") const {
+    return run_program(
+        folder, "run --force --radius 0.2 --first-pose --env " + quoted(folder / "site.h5") +
+                    " --model " + quoted(folder / "model.xyz") + " --trajectory " +
+                    quoted(folder / "path.txt") + " -o " + quoted(folder / output) + " " + rest);
+  }
+
+  ScratchFolder folder;
+};
+
+}  // namespace
+
+TEST_CASE("run, info, report and merge repeat what the conversion warned of") {
+  const Wall wall(3);
+  REQUIRE(codes_of(json::parse(wall.convert().out)) ==
+          std::vector<std::string>{"non-finite-points"});
+  const std::string code = "store-non-finite-points";
+  const auto program = [&](const std::string& arguments) {
+    return run_program(wall.folder, arguments);
+  };
+  const Outcome run = wall.run("--json");
+  CAPTURE(run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK(count_of(codes_of(json::parse(run.out)), code) == 1);
+  CHECK_THAT(run.err, Contains("3 points"));
+  const Outcome info = program("info --json " + quoted(wall.folder / "site.h5"));
+  CHECK(count_of(codes_of(json::parse(info.out)), code) == 1);
+  CHECK_THAT(program("info " + quoted(wall.folder / "site.h5")).out, Contains(code));
+  CHECK(program("verify " + quoted(wall.folder / "site.h5")).exit_code == 0);
+  const Outcome report = program(
+      "report " + quoted(wall.folder / "out.h5") + " --env " + quoted(wall.folder / "site.h5") +
+      " --model " + quoted(wall.folder / "model.xyz") + " --trajectory " +
+      quoted(wall.folder / "path.txt") + " --json -o " + quoted(wall.folder / "page.html"));
+  CAPTURE(report.err);
+  REQUIRE(report.exit_code == 0);
+  CHECK_THAT(report.out, Contains(code));
+
+  REQUIRE(wall.run("--shard 1/2", "a.h5").exit_code == 0);
+  REQUIRE(wall.run("--shard 2/2", "b.h5").exit_code == 0);
+  const std::string parts = quoted(wall.folder / "a.h5") + " " + quoted(wall.folder / "b.h5");
+  const Outcome merged = program("merge --json " + parts + " -o " + quoted(wall.folder / "all.h5"));
+  CAPTURE(merged.err);
+  REQUIRE(merged.exit_code == 0);
+  CHECK(count_of(codes_of(json::parse(merged.out)), code) == 1);
+}
+
+TEST_CASE("a strict run counts its own warnings, not those of the store") {
+  const Wall wall(3), sound(0);
+  wall.convert();
+  sound.convert();
+  const Outcome without = sound.run("--strict"), with = wall.run("--strict");
+  CAPTURE(without.err, with.err);
+  CHECK(with.exit_code == without.exit_code);
+  CHECK_THAT(with.err, !Contains("strict") || !Contains("(store-"));
+}
+
+TEST_CASE("a store that is there already tells its warnings again") {
+  const Wall wall(3);
+  wall.convert();
+  const Outcome again = wall.convert("--resume");
+  REQUIRE(again.exit_code == 0);
+  const json report = json::parse(again.out);
+  CHECK(report["was_finished"] == true);
+  CHECK(codes_of(report) == std::vector<std::string>{"non-finite-points"});
+  CHECK(wall.convert("--resume --strict").exit_code == 3);
+  const Wall sound(0);
+  sound.convert();
+  CHECK(StoreReader(sound.folder / "site.h5").metadata().warnings.empty());
+  CHECK(sound.convert("--resume --strict").exit_code == 0);
+}
+
+TEST_CASE("a store keeps few and short warnings") {
+  std::vector<Message> many(100,
+                            {Message::Severity::kWarning, "no-points", std::string(5000, 'x')});
+  const std::vector<Message> kept = kept_warnings(many);
+  REQUIRE(kept.size() == 64);
+  CHECK(kept[0].text.size() < 1010);
+  CHECK(kept[63].code == "more-warnings");
+  CHECK(kept[63].numbers[0].second == 37);
+  CHECK(kept_warnings({}).empty());
+}
+
+TEST_CASE("zeros and points beyond the header's bounds are told of small files too") {
+  const ScratchFolder folder;
+  LasBytes las;
+  las.scale = {0.001, 0.001, 0.001};
+  las.offset = {1000, 2000, 0};
+  const auto codes = [&](const std::vector<std::array<std::int32_t, 3>>& points) {
+    las.points = points;
+    std::string bytes = las.build();
+    for (unsigned k = 0; k < 3; ++k) {  // 0 to 10 m beside the offset
+      LasBytes::put(bytes, 179 + 16 * k, las.offset[k] + 10);
+      LasBytes::put(bytes, 187 + 16 * k, las.offset[k]);
+    }
+    put_bytes(folder / "a.las", bytes);
+    const Outcome outcome =
+        run_program(folder, "convert --json --force " + quoted(folder / "a.las") + " -o " +
+                                quoted(folder / "a.h5"));
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return codes_of(json::parse(outcome.out));
+  };
+  std::vector<std::array<std::int32_t, 3>> points;
+  for (std::int32_t i = 0; i < 20; ++i) points.push_back({487 * i + 3, 251 * i + 1, 97 * i});
+  CHECK(codes(points).empty());
+  auto half = points;
+  half.insert(half.end(), 20, {0, 0, 0});
+  CHECK(codes(half) == std::vector<std::string>{"same-place"});
+  auto far = points;
+  far.push_back({5'000, 40'000, 0});
+  CHECK(codes(far) == std::vector<std::string>{"declared-bounds"});
+  auto near = points;
+  near.push_back({5'000, 10'400, 0});
+  CHECK(codes(near).empty());
+}

@@ -1,0 +1,222 @@
+// Scans, paths, models and lengths in feet, and units that nobody named.
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "clearway/file_unit.hpp"
+#include "io/convert/convert.hpp"
+#include "support/bytes/las_bytes.hpp"
+#include "support/store_fixture.hpp"
+#include "tools/cli/support/program.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+std::string text_of(double number) {
+  char digits[40];
+  std::snprintf(digits, sizeof digits, "%.7f", number);
+  return digits;
+}
+
+/// A path along x through state plane coordinates, and posts at growing distances beside it. In
+/// feet of 1,200 / 3,937 m and in those of 0.3048 m it would be 4 m apart.
+struct StatePlane {
+  static constexpr double kEast = 6'500'000, kNorth = 2'100'000, kHeight = 100;
+
+  ScratchFolder folder;
+
+  void write(const std::string& name, const std::string& text) const {
+    put_bytes(folder / name, text);
+  }
+
+  /// unit: what the header says. size: how many of that unit a foot of the scene is.
+  void write_scan(const std::string& name, const std::string& unit, double size) const {
+    std::string text = "x[" + unit + "],y[" + unit + "],z[" + unit + "]\n";
+    for (int i = 0; i < 200; ++i) {
+      text += text_of((kEast + 0.1 * i) * size) + "," +
+              text_of((kNorth + 0.055 + 0.015 * i) * size) + "," + text_of(kHeight * size) + "\n";
+    }
+    write(name, text);
+  }
+  /// unit: "" for none.
+  void write_path(const std::string& name, const std::string& unit, double size) const {
+    const std::string in = unit.empty() ? "" : "[" + unit + "]";
+    std::string text = "x" + in + ",y" + in + ",z" + in + ",qx,qy,qz,qw\n";
+    for (int i = 0; i < 40; ++i) {
+      text += text_of((kEast + 0.5 * i) * size) + "," + text_of(kNorth * size) + "," +
+              text_of(kHeight * size) + ",0,0,0,1\n";
+    }
+    write(name, text);
+  }
+  void write_model(const std::string& name, double size) const {
+    write(name, "0 0 0\n" + text_of(0.25 * size) + " 0 0\n" + text_of(-0.25 * size) + " 0 0\n");
+  }
+
+  void convert(const std::string& scan, const std::string& options = "") const {
+    const Outcome outcome =
+        run_program(folder, "convert " + quoted(folder / scan) + " -o " +
+                                quoted(folder / "site.h5") + " --scale 1e-4 --force " + options);
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+  }
+
+  Outcome run(const std::string& path, const std::string& model, const std::string& rest) const {
+    const Outcome outcome =
+        run_program(folder, "run --json --force --env " + quoted(folder / "site.h5") +
+                                " --trajectory " + quoted(folder / path) + " " + model + " " +
+                                rest + " -o " + quoted(folder / "out.h5"));
+    CAPTURE(path, model, rest, outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return outcome;
+  }
+  std::string model(const std::string& name) const { return "--model " + quoted(folder / name); }
+  static int found(const Outcome& outcome) { return json::parse(outcome.out)["colliding_points"]; }
+};
+
+std::vector<std::string> codes_in(const Outcome& outcome) {
+  std::vector<std::string> codes;
+  const json report = json::parse(outcome.out);
+  for (const auto& warning : report["warnings"]) codes.push_back(warning["code"]);
+  return codes;
+}
+
+bool has(const std::vector<std::string>& codes, const std::string& code) {
+  return std::find(codes.begin(), codes.end(), code) != codes.end();
+}
+
+std::string geo_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
+  std::vector<std::uint16_t> words{1, 1, 0, static_cast<std::uint16_t>(keys.size())};
+  for (const auto& [key, value] : keys) words.insert(words.end(), {key, 0, 1, value});
+  return {reinterpret_cast<const char*>(words.data()), words.size() * 2};
+}
+
+}  // namespace
+
+TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names the feet") {
+  const StatePlane scene;
+  const bool survey = GENERATE(true, false);
+  const double metres = survey ? kMetresPerUsSurveyFoot : kMetresPerFoot;
+  const std::string exact = survey ? "us-ft" : "ift";
+  CAPTURE(exact);
+  scene.write_scan("metres.csv", "m", metres);
+  scene.write_path("metres_path.csv", "m", metres);
+  scene.write_model("metres.xyz", metres);
+  scene.convert("metres.csv");
+  const Outcome in_metres = scene.run("metres_path.csv", scene.model("metres.xyz"),
+                                      "--radius " + text_of(1.004 * metres));
+  const int expected = StatePlane::found(in_metres);
+  REQUIRE(expected > 20);
+  REQUIRE(expected < 100);
+
+  scene.write_scan("feet.csv", exact, 1);
+  scene.convert("feet.csv");
+  scene.write_path("plain.csv", "", 1);
+  scene.write_path("ft.csv", "ft", 1);
+  scene.write_path("exact.csv", exact, 1);
+  scene.write_model("feet.xyz", 1);
+  const std::string plain = scene.model("feet.xyz");
+  CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius 1.004")) == expected);
+  for (const std::string name : {"ft", exact.c_str()}) {
+    CAPTURE(name);
+    const Outcome header =
+        scene.run(name == "ft" ? "ft.csv" : "exact.csv", plain, "--radius 1.004");
+    CHECK(StatePlane::found(header) == expected);
+    CHECK_THAT(header.err, Contains("as the environment is, and are taken as they are"));
+    CHECK(StatePlane::found(scene.run("plain.csv", plain,
+                                      "--radius 1.004 --trajectory-unit " + name)) == expected);
+    CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius 1.004 --model-unit " + name)) ==
+          expected);
+    CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius 1.004" + name)) == expected);
+    CHECK(StatePlane::found(scene.run("plain.csv", plain, "--radius '1.004 " + name + "'")) ==
+          expected);
+    scene.write("car.json", R"({"bodies": [{"name": "car", "model": "feet.xyz", "model_unit": ")" +
+                                name + R"(", "at": "0)" + name + R"("}]})");
+    CHECK(StatePlane::found(scene.run("ft.csv", "--vehicle " + quoted(scene.folder / "car.json"),
+                                      "--radius 1.004")) == expected);
+  }
+  // Metres are still converted, and so is the other foot, which is warned of.
+  CHECK(StatePlane::found(scene.run("metres_path.csv", scene.model("metres.xyz"),
+                                    "--model-unit m --radius " + text_of(1.004 * metres) + "m")) ==
+        expected);
+  const Outcome other =
+      scene.run("plain.csv", plain,
+                "--radius 1.004 --trajectory-unit " + std::string(survey ? "ift" : "us-ft"));
+  CHECK(has(codes_in(other), "two-feet"));
+}
+
+TEST_CASE("a scan in ft is in the foot of the others") {
+  const StatePlane scene;
+  scene.write_scan("a.csv", "ft", 1);
+  scene.write_scan("b.csv", "us-ft", 1);
+  scene.convert("a.csv", quoted(scene.folder / "b.csv"));
+  const Outcome info = run_program(scene.folder, "info --json " + quoted(scene.folder / "site.h5"));
+  CHECK(json::parse(info.out)["length_unit"] == "us-survey-foot");
+}
+
+TEST_CASE("another unit than the metre is warned of where the scan names none") {
+  const StatePlane scene;
+  scene.write_scan("scan.csv", "m", 1);
+  std::string bare = bytes_of(scene.folder / "scan.csv");
+  bare = bare.substr(bare.find('\n') + 1);
+  scene.write("bare.xyz", bare);
+  const Outcome note = run_program(scene.folder, "convert " + quoted(scene.folder / "bare.xyz") +
+                                                     " -o " + quoted(scene.folder / "n.h5"));
+  CHECK_THAT(note.err, Contains("metres are assumed"));
+  scene.convert("bare.xyz");
+  scene.write_path("plain.csv", "", 1);
+  scene.write_path("ft.csv", "ft", 1);
+  scene.write_path("m.csv", "m", 1);
+  scene.write_model("car.xyz", 1);
+  const std::string car = scene.model("car.xyz");
+  const auto warned = [&](const std::string& path, const std::string& rest) {
+    return has(codes_in(scene.run(path, car, rest)), "unit-assumed");
+  };
+  CHECK_FALSE(warned("plain.csv", "--radius 10cm"));
+  CHECK_FALSE(warned("m.csv", "--radius 1"));
+  CHECK(warned("ft.csv", "--radius 1"));
+  CHECK(warned("plain.csv", "--radius 1 --trajectory-unit us-ft"));
+  CHECK(warned("plain.csv", "--radius 1 --model-unit in"));
+  CHECK(warned("plain.csv", "--radius 1ft"));
+  scene.convert("bare.xyz", "--unit m");
+  CHECK_FALSE(warned("ft.csv", "--radius 1"));
+  CHECK_FALSE(warned("plain.csv", "--radius 1ft --model-unit mm"));
+  scene.convert("bare.xyz", "--unit us-ft");
+  CHECK_FALSE(warned("ft.csv", "--radius 1"));
+  const Outcome other =
+      run_program(scene.folder, "convert --unit ft " + quoted(scene.folder / "scan.csv") + " -o " +
+                                    quoted(scene.folder / "n.h5") + " --force");
+  CHECK(other.exit_code == 3);
+  CHECK_THAT(other.err, Contains("its unit of length is metre, but foot was given"));
+}
+
+TEST_CASE("keys and texts that name two units are warned of") {
+  const ScratchFolder folder;
+  LasBytes las;
+  const auto codes = [&](std::vector<LasBytes::Record> records) {
+    las.vlrs = std::move(records);
+    put_bytes(folder / "a.las", las.build());
+    const Outcome outcome =
+        run_program(folder, "convert --json --force " + quoted(folder / "a.las") + " -o " +
+                                quoted(folder / "a.h5"));
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return codes_in(outcome);
+  };
+  const auto keys = [](const std::vector<std::array<std::uint16_t, 2>>& all) {
+    return LasBytes::Record{"LASF_Projection", 34735, geo_keys(all)};
+  };
+  const std::string metre =
+      R"(PROJCS["any",GEOGCS["any",UNIT["degree",0.0174532925199433]],UNIT["metre",1]])";
+  CHECK_FALSE(has(codes({keys({{1024, 1}, {3072, 25832}, {3076, 9001}})}), "units-contradict"));
+  CHECK_FALSE(has(codes({keys({{1024, 1}, {3072, 2230}, {3076, 9003}, {4099, 9003}})}),
+                  "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {3072, 25832}, {3076, 9003}})}), "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {3072, 2230}, {3076, 9001}})}), "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {4099, 9003}})}), "units-contradict"));
+  CHECK(has(codes({keys({{1024, 1}, {3076, 9003}}), {"LASF_Projection", 2112, metre}}),
+            "units-contradict"));
+}

@@ -1,0 +1,175 @@
+#include "cli/run_again.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <string_view>
+
+#include "cli/run_options.hpp"
+#include "cli/support/option_groups.hpp"
+#include "core/util/format.hpp"
+#include "io/result/result.hpp"
+
+namespace clearway::tool {
+namespace {
+
+/// As a shell takes it for one word.
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view kPlain = "_./:=,+@%-";
+  const bool plain = !text.empty() && std::ranges::all_of(text, [&](unsigned char c) {
+    return std::isalnum(c) != 0 || kPlain.find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+std::string shell_word(const std::filesystem::path& path) { return shell_word(path.string()); }
+
+/// The long name of an option with its hyphens; empty for a positional.
+std::string name_of(const CLI::Option& option) {
+  return option.get_lnames().empty() ? "" : "--" + option.get_lnames().front();
+}
+
+/// What the command was given for an option; nothing where it has no such option.
+std::string given(const CLI::App& command, const std::string& name) {
+  const CLI::Option* option = command.get_option_no_throw(name);
+  return option == nullptr || option->empty() ? "" : option->results().front();
+}
+
+/// The options that say how a model and a trajectory are read, as the command was given them.
+std::string reading_options(const CLI::App& command) {
+  CLI::App run;
+  RunOptions unused;
+  add_run_options(run, unused);
+  std::string text;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = name_of(*option);
+    const CLI::Option* same = name.empty() ? nullptr : run.get_option_no_throw(name);
+    if (same == nullptr || option->empty() || name == "--vehicle") continue;
+    constexpr std::array kGroups{OptionGroup::kModel, OptionGroup::kPath, OptionGroup::kUnits};
+    const bool reads = std::ranges::any_of(
+        kGroups, [same](OptionGroup group) { return same->get_group() == title_of(group); });
+    if (!reads) continue;
+    text += " " + name;
+    if (option->get_items_expected_max() == 0) continue;
+    for (const std::string& value : option->results()) text += " " + shell_word(value);
+  }
+  return text;
+}
+
+std::string model_words(const ResultHeader& header, const CLI::App& command) {
+  const bool one = header.bodies.empty();
+  const std::string name = one ? "--model" : "--vehicle";
+  const std::string file = given(command, name);
+  std::string text = " " + name + " " +
+                     (!file.empty() ? shell_word(file)
+                      : one         ? "MODEL"
+                                    : "VEHICLE.json");
+  if (header.model_solids > 0) return text + " --model-as solid";
+  return header.model_triangles == 0 && one ? text + " --model-as points" : text;
+}
+
+std::string ignored_words(const ResultHeader& header) {
+  std::string text;
+  for (const std::uint8_t number : header.ignore_classes) {
+    text += (text.empty() ? " --ignore-class " : ",") + std::to_string(number);
+  }
+  for (const Box& box : header.ignore_boxes) {
+    text += fmt::format(" --ignore-box {},{},{},{},{},{}", format_number(box.lo.x),
+                        format_number(box.lo.y), format_number(box.lo.z), format_number(box.hi.x),
+                        format_number(box.hi.y), format_number(box.hi.z));
+  }
+  return text;
+}
+
+/// A distance that is worth asking for: so many times the radius, in round numbers.
+double times_radius(const ResultHeader& header, double factor) {
+  return std::stod(fmt::format("{:.2g}", factor * header.radius));
+}
+
+/// What the run finds beside the colliding points.
+std::string asked_words(const ResultHeader& header, Remedy missing) {
+  std::string text = " --radius " + format_number(header.radius);
+  const bool first = header.first_pose || missing == Remedy::kAskForFirstPose;
+  double clearance = header.clearance, profile = header.profile;
+  if (missing == Remedy::kAskForClearance) clearance = times_radius(header, 3);
+  if (missing == Remedy::kAskForProfile) profile = times_radius(header, 5);
+  if (first) text += " --first-pose";
+  if (clearance > 0) text += " --clearance " + format_number(clearance);
+  if (profile > 0) text += " --profile " + format_number(profile);
+  if (header.between_poses) text += " --between-poses";
+  return text;
+}
+
+/// What a result can lack, and what the name of a result that has it ends in.
+struct Missing {
+  const char* name;
+  const char* ending;
+};
+
+std::optional<Missing> missing_of(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::kAskForFirstPose:
+      return Missing{"first poses", "-first-poses.h5"};
+    case Remedy::kAskForClearance:
+      return Missing{"clearances", "-clearances.h5"};
+    case Remedy::kAskForProfile:
+      return Missing{"a profile", "-profile.h5"};
+    default:
+      return std::nullopt;
+  }
+}
+
+std::string advice(const Missing& missing, const std::string& run) {
+  const bool has_capitals =
+      run.find(" SITE.h5") != std::string::npos || run.find(" MODEL ") != std::string::npos ||
+      run.find(" VEHICLE.json ") != std::string::npos || run.find(" PATH ") != std::string::npos;
+  return std::string("This command makes a result with ") + missing.name +
+         (has_capitals ? "; give the files of the first run for the words in capitals, "
+                         "and its options of model and path where it had some"
+                       : "") +
+         ":\n  " + run;
+}
+
+}  // namespace
+
+std::string run_again(const ResultReader& result, const CLI::App& command,
+                      const std::filesystem::path& trajectory, Remedy missing) {
+  const ResultHeader& header = result.header();
+  const auto lacking = missing_of(missing);
+  const bool between = header.between_poses && missing != Remedy::kAskForFirstPose;
+  if (!lacking || between) return "";
+  const std::string environment = given(command, "--env");
+  std::filesystem::path output = result.name();
+  output.replace_filename(output.stem().string() + lacking->ending);
+  return "clearway run --env " + (environment.empty() ? "SITE.h5" : shell_word(environment)) +
+         model_words(header, command) + " --trajectory " +
+         (trajectory.empty() ? "PATH" : shell_word(trajectory)) + reading_options(command) +
+         asked_words(header, missing) + ignored_words(header) + " -o " + shell_word(output);
+}
+
+void advising_to_run_again(const CLI::App& command, const std::vector<ReadResult>& results,
+                           const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const UsageError& error) {
+    const auto missing = missing_of(error.remedy());
+    if (!missing) throw;
+    const std::string what = error.what();
+    for (const ReadResult& read : results) {
+      const ResultReader result(read.path);
+      if (!what.starts_with(result.name() + ":")) continue;
+      const std::string run = run_again(result, command, read.trajectory, error.remedy());
+      if (!run.empty()) throw UsageError(what + ". " + advice(*missing, run));
+    }
+    throw;
+  }
+}
+
+}  // namespace clearway::tool
