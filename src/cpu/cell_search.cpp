@@ -51,7 +51,7 @@ template <typename Element>
 QuantumBox CellSearchOf<Element>::box_of(std::uint32_t first, std::uint32_t count) const {
   QuantumBox box = decode_block_box(cell_->box, blocks_[first]);
   for (std::uint32_t i = first + 1; i < first + count; ++i) {
-    box = united(box, decode_block_box(cell_->box, blocks_[i]));
+    box = box.united(decode_block_box(cell_->box, blocks_[i]));
   }
   return box;
 }

@@ -5,16 +5,6 @@
 namespace clearway {
 namespace {
 
-/// Both in steps of the same cell.
-BlockBox united(const BlockBox& a, const BlockBox& b) {
-  BlockBox out;
-  for (int k = 0; k < 3; ++k) {
-    out.lo[k] = std::min(a.lo[k], b.lo[k]);
-    out.hi[k] = std::max(a.hi[k], b.hi[k]);
-  }
-  return out;
-}
-
 std::uint32_t block_count(const Cell& cell) {
   return static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
 }
@@ -38,7 +28,7 @@ BlockBox EnvironmentTree::unite_blocks(std::uint32_t cell, std::uint32_t first,
   if (count == 1) return blocks_[block_index(cell, first)];
   const auto left = static_cast<std::uint32_t>(left_count(count, 1));
   const BlockBox box =
-      united(unite_blocks(cell, first, left), unite_blocks(cell, first + left, count - left));
+      unite_blocks(cell, first, left).united(unite_blocks(cell, first + left, count - left));
   inner_boxes_[inner_index({EnvironmentNode::kInCell, cell, first, count})] = box;
   return box;
 }

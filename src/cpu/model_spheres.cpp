@@ -26,13 +26,6 @@ std::uint64_t spread_bits(std::uint64_t value) {
   return out;
 }
 
-void extend(Box& box, const Vec3& point) {
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::min(box.lo[k], point[k]);
-    box.hi[k] = std::max(box.hi[k], point[k]);
-  }
-}
-
 std::uint64_t grid_key(const Box& box, double edge, const Vec3& point) {
   constexpr double kSteps = std::uint64_t{1} << ModelSpheres::kLevels;
   std::uint64_t key = 0;
@@ -60,9 +53,8 @@ ModelSpheres::ModelSpheres(std::span<const Vec3> model, double leaf_radius)
                      " points, expected fewer than " + std::to_string(kMostPoints));
   }
   box_ = {model[0], model[0]};
-  for (const Vec3& m : model) extend(box_, m);
-  const double edge =
-      std::max({box_.hi.x - box_.lo.x, box_.hi.y - box_.lo.y, box_.hi.z - box_.lo.z});
+  for (const Vec3& m : model) box_.extend(m);
+  const double edge = box_.size()[box_.longest_axis()];
   std::vector<Keyed> points;
   points.reserve(model.size());
   for (const Vec3& m : model) points.push_back({grid_key(box_, edge, m), m});
@@ -108,7 +100,7 @@ ModelSphere ModelSpheres::make_sphere(std::span<const Keyed> points) const {
     return greatest;
   };
   Box box{points[0].point, points[0].point};
-  for (const Keyed& p : points) extend(box, p.point);
+  for (const Keyed& p : points) box.extend(p.point);
   const Vec3 middle{box.lo.x / 2 + box.hi.x / 2, box.lo.y / 2 + box.hi.y / 2,
                     box.lo.z / 2 + box.hi.z / 2};
   const auto nearest =

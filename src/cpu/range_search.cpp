@@ -20,9 +20,7 @@ constexpr double kNodeExtent = 0.5;
 /// Levels of spheres and of halved runs of poses: the deepest stack of point batches.
 constexpr std::size_t kDeepest = ModelSpheres::kLevels + std::bit_width(PoseTree::kMostPoses) + 2;
 
-double greatest_extent(const Box& box) {
-  return std::max({box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z});
-}
+double greatest_extent(const Box& box) { return box.size()[box.longest_axis()]; }
 
 }  // namespace
 

@@ -104,18 +104,11 @@ class SmallPlaces {
     auto next = std::ranges::lower_bound(order_, p.x - longest_ - kSlack, {},
                                          [this](std::size_t i) { return groups_[i].box.lo.x; });
     for (; next != order_.end() && groups_[*next].box.lo.x <= p.x; ++next) {
-      if (holds(groups_[*next].box, p)) marks[*next] = true;
+      if (groups_[*next].box.contains(p)) marks[*next] = true;
     }
   }
 
  private:
-  static bool holds(const Box& box, const Vec3& p) {
-    for (int k = 0; k < 3; ++k) {
-      if (p[k] < box.lo[k] || p[k] > box.hi[k]) return false;
-    }
-    return true;
-  }
-
   const std::vector<SmallGroup>& groups_;
   std::vector<std::size_t> order_;
   static constexpr double kSlack = 1e-3;  // more than differences of coordinates round by

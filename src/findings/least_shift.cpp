@@ -148,13 +148,7 @@ class LeastShift::Shape {
            std::sqrt(nearest.squared_distance) / std::sqrt(rounded_dot(point.way, point.way));
   }
 
-  Box grown(Box box) const {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] -= radius_;
-      box.hi[k] += radius_;
-    }
-    return box;
-  }
+  Box grown(const Box& box) const { return box.grown(radius_); }
 
   double radius_;
   ModelTreeOf<Vec3> points_;

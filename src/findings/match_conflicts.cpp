@@ -19,11 +19,6 @@ struct Candidate {
   }
 };
 
-Box grown(const Box& box, double by) {
-  return {{box.lo.x - by, box.lo.y - by, box.lo.z - by},
-          {box.hi.x + by, box.hi.y + by, box.hi.z + by}};
-}
-
 double common_volume(const Box& a, const Box& b) {
   double volume = 1;
   for (int k = 0; k < 3; ++k) {
@@ -63,13 +58,13 @@ std::vector<Candidate> candidates(const Conflicts& a, const Conflicts& b, double
   for (const Conflict& c : b.listed) longest = std::max(longest, c.box.hi.x - c.box.lo.x);
   std::vector<Candidate> out;
   for (const Conflict& in_a : a.listed) {
-    const Box box = grown(in_a.box, gap);
+    const Box box = in_a.box.grown(gap);
     const double from = box.lo.x - longest - 2 * gap;
     auto next = std::ranges::lower_bound(order, from, {},
                                          [&](std::uint32_t i) { return b.listed[i].box.lo.x; });
     for (; next != order.end(); ++next) {
       const Conflict& in_b = b.listed[*next];
-      const Box other = grown(in_b.box, gap);
+      const Box other = in_b.box.grown(gap);
       if (other.lo.x > box.hi.x) break;
       const double volume = common_volume(box, other);
       const std::optional<double> sides = volume > 0 ? 0 : common_sides(in_a.box, in_b.box);

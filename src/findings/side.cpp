@@ -15,17 +15,10 @@ Vec3 direction_of(Axis axis) {
   return out;
 }
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 /// By Cramer's rule: rotations from text are not quite orthonormal.
 Vec3 in_model_frame(const Vec3& place, const Pose& pose) {
   const double* r = pose.rotation;
-  const double* p = pose.translation;
-  const Vec3 from{place.x - p[0], place.y - p[1], place.z - p[2]};
+  const Vec3 from = place - pose.position();
   const Vec3 x{r[0], r[3], r[6]}, y{r[1], r[4], r[7]}, z{r[2], r[5], r[8]};
   const double volume = dot(x, cross(y, z));
   return {dot(from, cross(y, z)) / volume, dot(x, cross(from, z)) / volume,

@@ -26,11 +26,8 @@ struct Tally {
     add_first(first, p.row);
     latest_first_pose = std::max(latest_first_pose, first);
     last_pose = std::max(last_pose, last);
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p.q[k]);
-      box.hi[k] = std::max(box.hi[k], p.q[k]);
-      sum[k] += p.q[k];
-    }
+    box.extend(p.q);
+    for (int k = 0; k < 3; ++k) sum[k] += p.q[k];
   }
 
   void add(const Tally& other) {
@@ -39,7 +36,7 @@ struct Tally {
     add_first(other.first_pose, other.first_touched);
     latest_first_pose = std::max(latest_first_pose, other.latest_first_pose);
     last_pose = std::max(last_pose, other.last_pose);
-    box = united(box, other.box);
+    box = box.united(other.box);
     for (int k = 0; k < 3; ++k) sum[k] += other.sum[k];
   }
 

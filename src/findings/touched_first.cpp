@@ -29,10 +29,7 @@ void find_touched_first(const CellGrid& grid, const PointGroups& groups,
     const tbb::spin_mutex::scoped_lock held(lock);
     acquire(&lock);
     if (p.row == part.row) part.place = place;
-    for (int k = 0; k < 3; ++k) {
-      part.seen.lo[k] = std::min(part.seen.lo[k], there[k]);
-      part.seen.hi[k] = std::max(part.seen.hi[k], there[k]);
-    }
+    part.seen.extend(there);
     release(&lock);
   };
   const ParallelScope scope;

@@ -106,12 +106,7 @@ std::vector<DrawnBody> drawn_bodies(const std::vector<Vec3>& model, const std::v
 
 Box box_around(std::span<const DrawnBody> bodies) {
   Box box = bodies.front().box;
-  for (const DrawnBody& body : bodies) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], body.box.lo[k]);
-      box.hi[k] = std::max(box.hi[k], body.box.hi[k]);
-    }
-  }
+  for (const DrawnBody& body : bodies) box = box.united(body.box);
   return box;
 }
 

@@ -17,14 +17,9 @@ constexpr std::size_t kMostPlaces = 5'000;
 
 double length(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
-Vec3 corner(const Box& box, unsigned which) {
-  return {(which & 1) != 0 ? box.hi.x : box.lo.x, (which & 2) != 0 ? box.hi.y : box.lo.y,
-          (which & 4) != 0 ? box.hi.z : box.lo.z};
-}
-
 double top_at(const Box& model, const Pose& pose) {
   double top = -std::numeric_limits<double>::infinity();
-  for (unsigned k = 0; k < 8; ++k) top = std::max(top, transform(pose, corner(model, k)).z);
+  for (unsigned k = 0; k < 8; ++k) top = std::max(top, transform(pose, model.corner(k)).z);
   return top;
 }
 
@@ -36,10 +31,7 @@ double path_length(std::span<const Vec3> centres) {
 
 }  // namespace
 
-Vec3 box_centre_at(const Box& model, const Pose& pose) {
-  return transform(pose, {(model.lo.x + model.hi.x) / 2, (model.lo.y + model.hi.y) / 2,
-                          (model.lo.z + model.hi.z) / 2});
-}
+Vec3 box_centre_at(const Box& model, const Pose& pose) { return transform(pose, model.centre()); }
 
 PathPlaces::PathPlaces(std::span<const DrawnBody> bodies) {
   for (const DrawnBody& body : bodies) {

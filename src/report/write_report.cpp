@@ -66,10 +66,7 @@ Box page_box(const PathPlaces& path) {
   if (path.places().empty()) return {};
   Box box{path.places()[0].centre, path.places()[0].centre};
   for (const auto& place : path.places()) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], place.centre[k] - path.reach());
-      box.hi[k] = std::max(box.hi[k], place.centre[k] + path.reach());
-    }
+    box = box.united(Box{place.centre, place.centre}.grown(path.reach()));
   }
   return box;
 }

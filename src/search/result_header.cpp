@@ -33,11 +33,7 @@ Box model_box(const Query& query) {
   for (const Body& body : query.bodies) {
     if (body.model.empty()) continue;
     const Box box = box_of(body.model);
-    if (!all) all = box;
-    for (int k = 0; k < 3; ++k) {
-      all->lo[k] = std::min(all->lo[k], box.lo[k]);
-      all->hi[k] = std::max(all->hi[k], box.hi[k]);
-    }
+    all = all ? all->united(box) : box;
   }
   return all.value_or(Box{});
 }

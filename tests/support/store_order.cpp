@@ -57,7 +57,7 @@ class Structure {
     expect(apart, "top node " + std::to_string(index) + ": its parts overlap");
     expect(a.points + b.points > kMostInBucket || store_.metadata().layout != "adaptive",
            "top node " + std::to_string(index) + " is split although it fits a bucket");
-    return {united(a.box, b.box), a.points + b.points, std::min(a.least_source, b.least_source),
+    return {a.box.united(b.box), a.points + b.points, std::min(a.least_source, b.least_source),
             std::max(a.greatest_source, b.greatest_source)};
   }
 
@@ -67,7 +67,7 @@ class Structure {
       const Cell& cell = store_.cells()[node.first_cell + i];
       expect(i + 1 == node.cell_count || cell.count == store_.cell_points(),
              "a cell before the bucket's last is not full");
-      part.box = united(part.box, cell.box);
+      part.box = part.box.united(cell.box);
       part.points += cell.count;
     }
     for (const StoredPoint& p : points_of_cells(store_, node.first_cell, node.cell_count)) {
@@ -87,8 +87,8 @@ class Structure {
           store_.blocks()[std::size_t{index} * store_.blocks_per_cell() + i / kBlockPoints];
       const QuantumBox own = box_of(points[i]);
       const QuantumBox decoded = decode_block_box(cell.box, block);
-      expect(united(decoded, own) == decoded, "a point lies outside its block's box");
-      box = united(box, own);
+      expect(decoded.united(own) == decoded, "a point lies outside its block's box");
+      box = box.united(own);
     }
     expect(box == cell.box, "the box of cell " + std::to_string(index));
   }
@@ -111,7 +111,7 @@ void order_plainly(std::span<StoredPoint> points, std::uint64_t cell_points,
     std::sort(points.begin(), points.end(), by_source);
     return;
   }
-  const auto axis = static_cast<std::size_t>(longest_side(points, quantisation));
+  const auto axis = static_cast<std::size_t>(points.longest_axis());
   std::sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
     return a.q[axis] != b.q[axis] ? a.q[axis] < b.q[axis] : by_source(a, b);
   });

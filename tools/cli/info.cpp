@@ -190,7 +190,7 @@ ordered_json describe_trajectory(const std::filesystem::path& file) {
     std::vector<Vec3> positions;
     positions.reserve(poses.size());
     for (const Pose& pose : poses) {
-      positions.push_back({pose.translation[0], pose.translation[1], pose.translation[2]});
+      positions.push_back(pose.position());
     }
     bounds = box_json(box_of(positions));
   }

@@ -86,8 +86,7 @@ Path Path::from_pieces(std::span<const PathPiece> pieces, double slope) {
 Path Path::closed_spline(std::span<const Vec3> control) {
   const std::vector<Vec3> line = fine_spline(control);
   double total = 0;
-  for (std::size_t i = 1; i < line.size(); ++i)
-    total += clearway::scene::length(line[i] - line[i - 1]);
+  for (std::size_t i = 1; i < line.size(); ++i) total += clearway::length(line[i] - line[i - 1]);
   const auto intervals = static_cast<std::size_t>(total / kStep);
   const double step = total / static_cast<double>(intervals);
   const std::vector<Vec3> points = resampled(line, intervals, step);

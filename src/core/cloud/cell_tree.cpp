@@ -72,7 +72,7 @@ class Builder {
 
   void close(std::size_t self, std::uint32_t right) {
     nodes_[self].right = right;
-    nodes_[self].box = united(nodes_[self + 1].box, nodes_[right].box);
+    nodes_[self].box = nodes_[self + 1].box.united(nodes_[right].box);
   }
 
   std::span<const TopNode> top_;

@@ -34,8 +34,7 @@ CLEARWAY_HD inline Vec3 pulled_back(const Pose& pose, const Vec3& e) {
                         {minor(3, 7, 4, 6), minor(1, 6, 0, 7), minor(0, 4, 1, 3)}};
   const Vec3 first_column{r[0], r[3], r[6]};
   const double determinant = rounded_dot(rows[0], first_column);
-  const Vec3 from_origin =
-      difference(e, {pose.translation[0], pose.translation[1], pose.translation[2]});
+  const Vec3 from_origin = difference(e, pose.position());
   Vec3 x;
   for (int k = 0; k < 3; ++k) {
     x[k] = rounded_quotient(rounded_dot(rows[k], from_origin), determinant);

@@ -66,7 +66,7 @@ void ModelTreeOf<Element>::divide(const Part& part) {
       box_of(std::span<const Element>(elements_).subspan(part.begin, part.end - part.begin));
   boxes_[part.node] = box;
   if (part.end - part.begin <= kLeafElements) return;
-  const int axis = longest_side(box);
+  const int axis = box.longest_axis();
   std::nth_element(begin + part.begin, begin + part.middle(), begin + part.end,
                    [axis](const Element& a, const Element& b) {
                      return place_along(a, axis) < place_along(b, axis);

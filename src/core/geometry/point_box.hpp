@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "core/geometry/box.hpp"
@@ -10,22 +10,23 @@ namespace clearway {
 /// The box of points, at least one.
 inline Box box_of(std::span<const Vec3> points) {
   Box box{points[0], points[0]};
-  for (const Vec3& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
-    }
-  }
+  for (const Vec3& p : points) box.extend(p);
   return box;
 }
 
-/// The axis of the longest side, the first of equals.
-inline int longest_side(const Box& box) {
-  int longest = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (box.hi[k] - box.lo[k] > box.hi[longest] - box.lo[longest]) longest = k;
+/// The axis-aligned box around a box of the model's frame at a pose, up to roundings.
+inline Box moved(const Box& box, const Pose& pose) {
+  const Vec3 centre = transform(pose, box.centre());
+  Box out{centre, centre};
+  for (int k = 0; k < 3; ++k) {
+    double half = 0;
+    for (int j = 0; j < 3; ++j) {
+      half += std::abs(pose.rotation[3 * k + j]) * (box.hi[j] - box.lo[j]) / 2;
+    }
+    out.lo[k] -= half;
+    out.hi[k] += half;
   }
-  return longest;
+  return out;
 }
 
 }  // namespace clearway

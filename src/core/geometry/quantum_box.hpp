@@ -12,6 +12,22 @@ struct QuantumBox {
   std::int32_t lo[3];
   std::int32_t hi[3];
   friend bool operator==(const QuantumBox&, const QuantumBox&) = default;
+
+  /// Grows the box until it holds q.
+  CLEARWAY_HD void extend(const std::int32_t* q) {
+    for (int k = 0; k < 3; ++k) {
+      if (q[k] < lo[k]) lo[k] = q[k];
+      if (q[k] > hi[k]) hi[k] = q[k];
+    }
+  }
+
+  /// The smallest box around both.
+  CLEARWAY_HD QuantumBox united(const QuantumBox& other) const {
+    QuantumBox out = *this;
+    out.extend(other.lo);
+    out.extend(other.hi);
+    return out;
+  }
 };
 
 /// The box of the positions: exact, because a position is monotone in its integers.
@@ -20,21 +36,22 @@ CLEARWAY_HD inline Box position_box(const Quantisation& quantisation, const Quan
           position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
 }
 
-CLEARWAY_HD inline QuantumBox united(const QuantumBox& a, const QuantumBox& b) {
-  QuantumBox out = a;
-  for (int k = 0; k < 3; ++k) {
-    if (b.lo[k] < out.lo[k]) out.lo[k] = b.lo[k];
-    if (b.hi[k] > out.hi[k]) out.hi[k] = b.hi[k];
-  }
-  return out;
-}
-
 /// A block's box inside its cell's box, in steps of the cell's extent / 65535 per axis, rounded
 /// outwards. 12 bytes a block.
 struct BlockBox {
   std::uint16_t lo[3];
   std::uint16_t hi[3];
   friend bool operator==(const BlockBox&, const BlockBox&) = default;
+
+  /// The smallest box around both, which are in steps of the same cell.
+  CLEARWAY_HD BlockBox united(const BlockBox& other) const {
+    BlockBox out = *this;
+    for (int k = 0; k < 3; ++k) {
+      if (other.lo[k] < out.lo[k]) out.lo[k] = other.lo[k];
+      if (other.hi[k] > out.hi[k]) out.hi[k] = other.hi[k];
+    }
+    return out;
+  }
 };
 
 inline constexpr std::uint64_t kBlockBoxSteps = 65535;

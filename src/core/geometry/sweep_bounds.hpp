@@ -19,11 +19,6 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 CLEARWAY_HD inline double greater_of(double a, double b) { return a < b ? b : a; }
 
-CLEARWAY_HD inline Vec3 centre_of(const Box& box) {
-  return {box.lo.x + 0.5 * (box.hi.x - box.lo.x), box.lo.y + 0.5 * (box.hi.y - box.lo.y),
-          box.lo.z + 0.5 * (box.hi.z - box.lo.z)};
-}
-
 /// At least the true one.
 CLEARWAY_HD inline double half_diagonal(const Box& box) {
   const double x = box.hi.x - box.lo.x, y = box.hi.y - box.lo.y, z = box.hi.z - box.lo.z;

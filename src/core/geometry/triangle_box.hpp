@@ -24,12 +24,7 @@ inline std::vector<Triangle> triangles_of(std::span<const Vec3> vertices,
 inline Box box_of(std::span<const Triangle> triangles) {
   Box box{triangles[0].a, triangles[0].a};
   for (const Triangle& t : triangles) {
-    for (const Vec3* corner : {&t.a, &t.b, &t.c}) {
-      for (int k = 0; k < 3; ++k) {
-        if ((*corner)[k] < box.lo[k]) box.lo[k] = (*corner)[k];
-        if ((*corner)[k] > box.hi[k]) box.hi[k] = (*corner)[k];
-      }
-    }
+    for (const Vec3* corner : {&t.a, &t.b, &t.c}) box.extend(*corner);
   }
   return box;
 }

@@ -90,10 +90,7 @@ struct WideTreeOf<Element>::Part {
   void add(const Part& next) {
     elements = {elements.data(), elements.size() + next.elements.size()};
     facing.add(next.facing);
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], next.box.lo[k]);
-      box.hi[k] = std::max(box.hi[k], next.box.hi[k]);
-    }
+    box = box.united(next.box);
   }
 };
 
@@ -118,7 +115,7 @@ WideTreeOf<Element>::WideTreeOf(const ModelTreeOf<Element>& model) {
   const std::span<const Element> elements(tree.elements, tree.size);
   int depth = 0;
   while ((std::uint64_t{PacketOf<Element>::kMost} << depth) < tree.size) ++depth;
-  origin_ = centre_of(model.box());
+  origin_ = model.box().centre();
   std::vector<std::vector<Part>> levels(1);
   for (std::uint32_t part = 0; part < std::uint32_t{1} << depth; ++part) {
     const std::span<const Element> of = part_of(elements, part, depth);

@@ -20,7 +20,7 @@ GridReach::GridReach(const Query& query, const MotionTree& motion, const ModelTr
 void GridReach::narrow(const Box& box, std::span<const std::uint32_t> nodes,
                        std::vector<std::uint32_t>& out) const {
   out.clear();
-  const Vec3 centre = centre_of(box);
+  const Vec3 centre = box.centre();
   const double rho = half_diagonal(box);
   for (const std::uint32_t node : nodes) narrow_node(centre, rho, node, out);
 }

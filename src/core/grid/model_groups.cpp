@@ -14,7 +14,7 @@ namespace {
 /// Orders the points so that each run of `unit` is compact.
 void sort_by_splits(std::span<Vec3> points, std::uint64_t unit) {
   if (points.size() <= unit) return;
-  const int axis = longest_side(box_of(points));
+  const int axis = box_of(points).longest_axis();
   const std::uint64_t left = left_count(points.size(), unit);
   std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(left), points.end(),
                    [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });

@@ -43,7 +43,7 @@ struct PointBox {
   double rho;  ///< none is farther from the centre
 
   CLEARWAY_HD explicit PointBox(const Box& of)
-      : box(of), centre(centre_of(of)), rho(half_diagonal(of)) {}
+      : box(of), centre(of.centre()), rho(half_diagonal(of)) {}
 };
 
 /// What becomes of a motion node for the points of a box.

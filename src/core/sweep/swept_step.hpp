@@ -52,7 +52,7 @@ class SweptStep {
   CLEARWAY_HD double half_width(const Box& box) const { return stretch_ * half_diagonal(box); }
 
   CLEARWAY_HD bool near(const Vec3& e, double rho, const Box& box, double half_width) const {
-    const Vec3 centre = centre_of(box);
+    const Vec3 centre = box.centre();
     const double squared =
         squared_distance_to_segment(e, transform(from_, centre), transform(to_, centre));
     return !farther(1, squared, radius_ + rho + half_width + rounding_);

@@ -23,7 +23,7 @@ struct Region {
 };
 
 Region region_of(const Box& model, double beyond) {
-  Region region{centre_of(model), {}};
+  Region region{model.centre(), {}};
   for (int k = 0; k < 3; ++k) region.half[k] = (model.hi[k] - model.lo[k]) / 2 + beyond;
   return region;
 }
@@ -32,8 +32,6 @@ Vec3 product(const double (&a)[9], const Vec3& v) {
   return {a[0] * v.x + a[1] * v.y + a[2] * v.z, a[3] * v.x + a[4] * v.y + a[5] * v.z,
           a[6] * v.x + a[7] * v.y + a[8] * v.z};
 }
-
-double length(const Vec3& v) { return std::sqrt(squared_length(v.x, v.y, v.z)); }
 
 /// Where a place that `pose` pulls back to y is pulled back to by `other`.
 Vec3 seen_by(const InversePose& other, const Pose& pose, const Vec3& y) {

@@ -6,19 +6,8 @@
 namespace clearway {
 namespace {
 
-Vec3 place_of(const Pose& pose) {
-  return {pose.translation[0], pose.translation[1], pose.translation[2]};
-}
-
 double distance(const Vec3& a, const Vec3& b) {
   return std::hypot(b.x - a.x, b.y - a.y, b.z - a.z);
-}
-
-/// R^T v: a direction of the world in the model's frame.
-Vec3 in_body(const Pose& pose, const Vec3& v) {
-  const double* r = pose.rotation;
-  return {r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-          r[2] * v.x + r[5] * v.y + r[8] * v.z};
 }
 
 double skew_of(const Pose& pose) {
@@ -48,7 +37,7 @@ BodyAxis axis_of(const Vec3& sums, const Vec3& sizes, double weight) {
 void add_steps(std::span<const Pose> poses, TrajectorySummary& out) {
   std::vector<double> moving;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-    const double step = distance(place_of(poses[i]), place_of(poses[i + 1]));
+    const double step = distance(poses[i].position(), poses[i + 1].position());
     out.length += step;
     if (step > out.largest_step) {
       out.largest_step = step;
@@ -87,7 +76,7 @@ BodyAxis forward_axis(std::span<const Pose> poses, double length) {
   Vec3 sizes{};
   double weight = 0;
   for (const Chord& chord : chords_of(poses, length / kPieces)) {
-    const Vec3 direction = in_body(poses[chord.middle], chord.direction);
+    const Vec3 direction = poses[chord.middle].rotated_back(chord.direction);
     for (int k = 0; k < 3; ++k) {
       sums[k] += chord.length * direction[k];
       sizes[k] += chord.length * std::abs(direction[k]);
@@ -112,8 +101,8 @@ double turn_between(const Pose& a, const Pose& b) {
 std::vector<Chord> chords_of(std::span<const Pose> poses, double least) {
   std::vector<Chord> chords;
   for (std::size_t start = 0, i = 1; i < poses.size(); ++i) {
-    const Vec3 a = place_of(poses[start]);
-    const Vec3 b = place_of(poses[i]);
+    const Vec3 a = poses[start].position();
+    const Vec3 b = poses[i].position();
     const double length = distance(a, b);
     if (!(length >= least) || !(length > 0) || !std::isfinite(length)) continue;
     chords.push_back({{(b.x - a.x) / length, (b.y - a.y) / length, (b.z - a.z) / length},
@@ -128,12 +117,9 @@ TrajectorySummary summarize_trajectory(std::span<const Pose> poses) {
   TrajectorySummary out;
   out.poses = poses.size();
   if (poses.empty()) return out;
-  out.box = {place_of(poses[0]), place_of(poses[0])};
+  out.box = {poses[0].position(), poses[0].position()};
   for (const Pose& pose : poses) {
-    for (int k = 0; k < 3; ++k) {
-      out.box.lo[k] = std::min(out.box.lo[k], pose.translation[k]);
-      out.box.hi[k] = std::max(out.box.hi[k], pose.translation[k]);
-    }
+    out.box.extend(pose.position());
     out.skew = std::max(out.skew, skew_of(pose));
   }
   add_steps(poses, out);

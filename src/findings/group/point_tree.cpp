@@ -11,10 +11,7 @@ QuantumBox box_of_points(std::span<const GridPoint> points) {
   QuantumBox box{{points[0].q[0], points[0].q[1], points[0].q[2]},
                  {points[0].q[0], points[0].q[1], points[0].q[2]}};
   for (const GridPoint& p : points) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p.q[k]);
-      box.hi[k] = std::max(box.hi[k], p.q[k]);
-    }
+    box.extend(p.q);
   }
   return box;
 }

@@ -60,7 +60,7 @@ void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
         box_of(points.subspan(first, std::min<std::size_t>(kBlockPoints, points.size() - first))));
   }
   QuantumBox all = boxes.front();
-  for (const QuantumBox& box : boxes) all = united(all, box);
+  for (const QuantumBox& box : boxes) all = all.united(box);
   cell.cell = {static_cast<std::uint32_t>(points.size()), all};
   for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
 }

@@ -178,7 +178,7 @@ std::unique_ptr<RowSink> make_row_sink(ExportFormat format, const ExportTable& t
 void unite_rows(const ExportTable& table, const ExportRows& rows, bool& any, QuantumBox& box) {
   for (const auto& [x, y, z] : quanta_of(table, rows)) {
     const QuantumBox point{{x, y, z}, {x, y, z}};
-    box = any ? united(box, point) : point;
+    box = any ? box.united(point) : point;
     any = true;
   }
 }

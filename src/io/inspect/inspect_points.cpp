@@ -39,10 +39,7 @@ class Inspection {
   void add(const Vec3& p) {
     Box& box = description_.box;
     if (description_.points++ == 0) box = {p, p};
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
-    }
+    box.extend(p);
     if (kept_.size() < kModelPoints) kept_.push_back(p);
   }
 

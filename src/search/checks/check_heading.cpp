@@ -86,7 +86,7 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
   const Vec3 shares = drive.along_axes();
   if (greatest_share(shares) < kAlongAxis) return;
   const int axis = shares.x >= shares.y && shares.x >= shares.z ? 0 : shares.y >= shares.z ? 1 : 2;
-  const int longest = longest_side(question.model);
+  const int longest = question.model.longest_axis();
   constexpr double kLonger = 1.3;
   const double side = question.model.hi[axis] - question.model.lo[axis];
   const double other = question.model.hi[longest] - question.model.lo[longest];
@@ -141,11 +141,11 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
   const auto& poses = question.query.poses;
   constexpr std::size_t kMany = 10;
   if (poses.size() < kMany) return;
-  const Vec3 first = translation_of(poses.front());
+  const Vec3 first = poses.front().position();
   Box path{first, first};
   for (const Pose& pose : poses) {
-    const Vec3 p = translation_of(pose);
-    path = united(path, {p, p});
+    const Vec3 p = pose.position();
+    path = path.united({p, p});
   }
   const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
   constexpr double kHuge = 200;  // metres: then the model's unit is what is wrong

@@ -23,7 +23,7 @@ constexpr double kMostHigh = 0.75;
 Box inner_body(const Box& model, double metre) {
   constexpr double kInner = 0.6;
   Box body = body_slice(model);
-  const Vec3 centre = centre_of(body);
+  const Vec3 centre = body.centre();
   for (int k = 0; k < 2; ++k) {
     const double half = std::max(kInner * (body.hi[k] - body.lo[k]), kNarrowest * metre) / 2;
     body.lo[k] = centre[k] - half;

@@ -65,7 +65,7 @@ std::uint64_t untouched(const Question& question, const std::vector<Vec3>& point
 /// The axis of the model that it moves along; its longest one where that cannot be told.
 int axis_of_motion(const Question& question) {
   const Drive drive(question);
-  if (!drive.is_one()) return longest_side(question.model);
+  if (!drive.is_one()) return question.model.longest_axis();
   const Vec3 shares = drive.along_axes();
   return shares.x >= shares.y && shares.x >= shares.z ? 0 : shares.y >= shares.z ? 1 : 2;
 }

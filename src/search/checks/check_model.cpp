@@ -23,8 +23,10 @@ struct ModelUnit {
   double metres;
   const char* name;
 };
-constexpr ModelUnit kUnits[] = {
-    {0.001, "millimetres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.3048, "feet"}};
+constexpr ModelUnit kUnits[] = {{kMetresPerMillimetre, "millimetres"},
+                                {kMetresPerCentimetre, "centimetres"},
+                                {kMetresPerInch, "inches"},
+                                {kMetresPerFoot, "feet"}};
 
 /// The model as large as a vehicle is, in the first unit in which it is one.
 std::string unit_guess(const Question& question) {
@@ -70,12 +72,12 @@ bool is_rest(const Pose& pose, double metre) {
   for (int k = 0; k < 9; ++k) {
     if (std::abs(pose.rotation[k] - (k % 4 == 0 ? 1 : 0)) > kNoise) return false;
   }
-  const Vec3 t = translation_of(pose);
+  const Vec3 t = pose.position();
   return std::sqrt(squared_length(t.x, t.y, t.z)) <= kNoise * metre;
 }
 
 void warn_of_origin(const Question& question, MessageLog& log) {
-  const Vec3 centre = centre_of(question.model);
+  const Vec3 centre = question.model.centre();
   const double away = std::sqrt(squared_length(centre.x, centre.y, centre.z));
   const double longest = Sides(question.model).longest;
   if (!(away > 10 * longest + 10 * question.metre)) return;

@@ -9,7 +9,7 @@ namespace {
 /// The box that the model's box sweeps.
 Box swept_box(const Question& question) {
   Box box = moved(question.model, question.query.poses.front());
-  for (const Pose& pose : question.query.poses) box = united(box, moved(question.model, pose));
+  for (const Pose& pose : question.query.poses) box = box.united(moved(question.model, pose));
   return box;
 }
 
@@ -21,7 +21,7 @@ std::string boxes_text(const Question& question, const Box& swept) {
 
 void warn_out_of_reach(const Question& question, const PathCover& cover, const Box& swept,
                        MessageLog& log) {
-  const double apart = gap(swept, question.environment);
+  const double apart = swept.distance(question.environment);
   const std::string where =
       apart > 0 ? "their boxes are " + length_text(apart, question.unit) + " apart"
                 : "the path crosses the environment's box where nothing was scanned";

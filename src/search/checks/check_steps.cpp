@@ -104,7 +104,7 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
   const Pose& a = question.query.poses[worst.pose];
   const Pose& b = question.query.poses[worst.pose + 1];
   const double turned = turn_between(a, b) / kDegree;
-  const double moved = std::sqrt(squared_distance(translation_of(a), translation_of(b)));
+  const double moved = std::sqrt(squared_distance(a.position(), b.position()));
   const std::uint32_t number = question.number_of(worst.pose);
   std::string text =
       "at " + format_count(found.size()) + " of " + counted(steps, "step") +

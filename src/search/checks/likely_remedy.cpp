@@ -110,11 +110,11 @@ class Trial {
   LengthUnit unit() const { return question_.unit; }
 
   Box path_box() const {
-    const Vec3 first = translation_of(question_.query.poses.front());
+    const Vec3 first = question_.query.poses.front().position();
     Box box{first, first};
     for (const Pose& pose : question_.query.poses) {
-      const Vec3 p = translation_of(pose);
-      box = united(box, {p, p});
+      const Vec3 p = pose.position();
+      box = box.united({p, p});
     }
     return box;
   }
@@ -133,8 +133,8 @@ class Trial {
 
   /// A path much shorter than the model fits at any place: that is no hint.
   bool fits_anywhere(Change change) const {
-    const Vec3 lo = translation_of(change(at_corner(path_.lo)));
-    const Vec3 hi = translation_of(change(at_corner(path_.hi)));
+    const Vec3 lo = change(at_corner(path_.lo)).position();
+    const Vec3 hi = change(at_corner(path_.hi)).position();
     const double shorter = half_diagonal({lo, hi});
     const double longest = Sides(question_.model).longest;
     constexpr std::size_t kMany = 10;
@@ -209,8 +209,7 @@ class Trial {
   std::string shift_text() const {
     std::string by;
     for (int k = 0; k < 3; ++k) {
-      by +=
-          (k == 0 ? "" : ", ") + figure(centre_of(question_.environment)[k] - centre_of(path_)[k]);
+      by += (k == 0 ? "" : ", ") + figure(question_.environment.centre()[k] - path_.centre()[k]);
     }
     return by;
   }

@@ -38,23 +38,10 @@ struct Sides {
   double longest, middle, shortest;
 };
 
-/// The axis-aligned box of a box of the model's frame at a pose.
-Box moved(const Box& box, const Pose& pose);
-
-/// The smallest box around two.
-Box united(const Box& a, const Box& b);
-
-/// The distance of two boxes; 0 where they meet.
-double gap(const Box& a, const Box& b);
-
 /// By how much a pose stretches lengths, on average over the axes; 1 for a rigid one.
 double scale_of(const Pose& pose);
 
 /// From pose to pose.
 double path_length(const std::vector<Pose>& poses);
-
-inline Vec3 translation_of(const Pose& pose) {
-  return {pose.translation[0], pose.translation[1], pose.translation[2]};
-}
 
 }  // namespace clearway

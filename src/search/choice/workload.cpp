@@ -11,55 +11,11 @@ namespace {
 
 constexpr std::size_t kSampledPoses = 16;
 
-Box widened(Box box, double by) {
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= by;
-    box.hi[k] += by;
-  }
-  return box;
-}
-
-Vec3 middle_of(const Box& box) {
-  return {(box.lo.x + box.hi.x) / 2, (box.lo.y + box.hi.y) / 2, (box.lo.z + box.hi.z) / 2};
-}
-
-bool overlap(const Box& a, const Box& b) {
-  for (int k = 0; k < 3; ++k) {
-    if (a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k]) return false;
-  }
-  return true;
-}
-
-bool contains(const Box& box, const Vec3& x) { return overlap(box, {x, x}); }
-
-/// Of a box that a pose moves.
-Box moved(const Pose& pose, const Box& box) {
-  std::vector<Vec3> corners;
-  corners.reserve(8);
-  for (int i = 0; i < 8; ++i) {
-    corners.push_back(
-        transform(pose, {(i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
-                         (i & 4) != 0 ? box.hi.z : box.lo.z}));
-  }
-  return box_of(corners);
-}
-
-/// Into the model's frame, of a pose that is rigid.
-Vec3 moved_back(const Pose& pose, const Vec3& e) {
-  Vec3 out{};
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) {
-      out[k] += pose.rotation[3 * i + k] * (e[i] - pose.translation[i]);
-    }
-  }
-  return out;
-}
-
 /// Points of the blocks whose middle is in the model's box at a pose.
 class NearPoints {
  public:
   NearPoints(const PackedCloud& cloud, const Box& model, const Pose& pose)
-      : cloud_(cloud), model_(model), reach_(moved(pose, model)), pose_(pose) {
+      : cloud_(cloud), model_(model), reach_(moved(model, pose)), pose_(pose) {
     if (!cloud.tree().empty()) descend(0);
   }
 
@@ -68,7 +24,7 @@ class NearPoints {
  private:
   void descend(std::uint32_t index) {
     const TreeNode& node = cloud_.tree()[index];
-    if (!overlap(reach_, position_box(cloud_.quantisation(), node.box))) return;
+    if (!reach_.meets(position_box(cloud_.quantisation(), node.box))) return;
     if (node.right == 0) {
       look_at(node.first_cell);
       return;
@@ -83,8 +39,10 @@ class NearPoints {
     const std::size_t first = std::size_t{index} * cloud_.blocks_per_cell();
     for (std::uint32_t block = 0; block < blocks; ++block) {
       const QuantumBox box = decode_block_box(cell.box, cloud_.blocks()[first + block]);
-      const Vec3 middle = middle_of(position_box(cloud_.quantisation(), box));
-      if (!contains(reach_, middle) || !contains(model_, moved_back(pose_, middle))) continue;
+      const Vec3 middle = position_box(cloud_.quantisation(), box).centre();
+      if (!reach_.contains(middle) ||
+          !model_.contains(pose_.rotated_back(middle - pose_.position())))
+        continue;
       count_ += std::min(kBlockPoints, cell.count - block * kBlockPoints);
     }
   }
@@ -99,8 +57,7 @@ class NearPoints {
 double path_length_of(std::span<const Pose> poses) {
   double length = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const double(&from)[3] = poses[i - 1].translation, (&to)[3] = poses[i].translation;
-    length += std::sqrt(squared_length(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+    length += clearway::length(poses[i].position() - poses[i - 1].position());
   }
   return length;
 }
@@ -139,7 +96,7 @@ Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, con
   for (int k = 0; k < 3; ++k) {
     length = std::max(length, model.hi[k] - model.lo[k] + 2 * work.radius);
   }
-  const Box reach = widened(model, work.radius);
+  const Box reach = model.grown(work.radius);
   const std::size_t samples = std::min(kSampledPoses, poses.size());
   double near_points = 0;  // of a pose
   for (std::size_t i = 0; i < samples; ++i) {

@@ -25,7 +25,7 @@ std::uint32_t check_subtree(const std::vector<TreeNode>& tree, std::uint32_t ind
   const TreeNode& node = tree.at(index);
   QuantumBox box = cells.at(node.first_cell).box;
   for (std::uint32_t i = 1; i < node.cell_count; ++i) {
-    box = united(box, cells.at(node.first_cell + i).box);
+    box = box.united(cells.at(node.first_cell + i).box);
   }
   CHECK(node.box == box);
   if (node.right == 0) {

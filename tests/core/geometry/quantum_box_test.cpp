@@ -105,7 +105,7 @@ TEST_CASE("united boxes") {
   const QuantumBox a{{0, -5, 3}, {1, 5, 3}};
   const QuantumBox b{{-1, 0, 4}, {0, 9, 8}};
   const QuantumBox expected{{-1, -5, 3}, {1, 9, 8}};
-  CHECK(united(a, b) == expected);
-  CHECK(united(b, a) == expected);
-  CHECK(united(a, a) == a);
+  CHECK(a.united(b) == expected);
+  CHECK(b.united(a) == expected);
+  CHECK(a.united(a) == a);
 }

@@ -39,7 +39,7 @@ Quanta some_points(std::size_t count, std::int32_t reach) {
 
 void write_las(const fs::path& path, const Quanta& points, const std::string& crs = {}) {
   QuantumBox box{};
-  for (const auto& q : points) box = united(box, {{q[0], q[1], q[2]}, {q[0], q[1], q[2]}});
+  for (const auto& q : points) box = box.united({{q[0], q[1], q[2]}, {q[0], q[1], q[2]}});
   const File file = File::create(path);
   LasWriter writer(
       file,

@@ -147,7 +147,7 @@ QuantumBox box_of(PointReader& reader) {
   constexpr std::int32_t kGreatest = std::numeric_limits<std::int32_t>::max();
   QuantumBox box{{kGreatest, kGreatest, kGreatest}, {kLeast, kLeast, kLeast}};
   for (PointBatch batch; reader.read(batch);) {
-    for (const auto& q : batch.quanta) box = united(box, {{q[0], q[1], q[2]}, {q[0], q[1], q[2]}});
+    for (const auto& q : batch.quanta) box = box.united({{q[0], q[1], q[2]}, {q[0], q[1], q[2]}});
   }
   reader.rewind();
   return box;

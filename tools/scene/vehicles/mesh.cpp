@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "clearway/box.hpp"
+
 namespace clearway::scene {
 
 void Mesh::add_quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -10,13 +12,12 @@ void Mesh::add_quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
 }
 
 void Mesh::add_box(const Vec3& low, const Vec3& high) {
-  const auto corner = [&](int i) {
-    return Vec3{(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
-                (i & 4) != 0 ? high.z : low.z};
+  const Box box{low, high};
+  constexpr unsigned kFaces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                     {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+  for (const auto& f : kFaces) {
+    add_quad(box.corner(f[0]), box.corner(f[1]), box.corner(f[2]), box.corner(f[3]));
   };
-  constexpr int kFaces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
-  for (const auto& f : kFaces) add_quad(corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3]));
 }
 
 void Mesh::add_wheel(const Vec3& centre, double radius, double width) {

@@ -33,8 +33,6 @@ constexpr double kCheapNodes = 1 << 17;
 constexpr double kMostWideNodes = 1 << 18;
 constexpr double kCloseSteps = 2;
 
-double length(const Vec3& v) { return std::sqrt(squared_length(v.x, v.y, v.z)); }
-
 }  // namespace
 
 ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options,
@@ -67,7 +65,7 @@ ModelField::ModelField(Tree tree, const Box& model, double spacing, double radiu
 
 void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOptions& options) {
   const Box& box = model_;
-  const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
+  const Vec3 extent = box.size();
   const double of_points = kVoxelSpacings * spacing;
   const auto nodes_of = [&](double voxel) {
     const double around = 2 * radius + 4 * voxel;
@@ -231,8 +229,7 @@ std::uint32_t make_brick_of(const ModelField& field, std::size_t cell) {
 
 /// Of a node's position and of the root of its square (docs/design/numerics.md, "Model field").
 double ModelField::node_error() const {
-  const Vec3 extent{model_.hi.x - model_.lo.x, model_.hi.y - model_.lo.y,
-                    model_.hi.z - model_.lo.z};
+  const Vec3 extent = model_.size();
   const double of_place = 8 * (length(model_.hi) + length(model_.lo) + margin_);
   const double of_surface = is_surface() ? 161 * length(extent) : 0;
   return kUnitRoundoff * (of_place + of_surface);

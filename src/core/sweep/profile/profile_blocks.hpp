@@ -130,10 +130,10 @@ class ProfileBlocks {
   CLEARWAY_HD Sphere sphere_of(std::uint32_t first, std::uint32_t count) const {
     QuantumBox box = decode_block_box(cell_->box, first_[first]);
     for (std::uint32_t i = first + 1; i < first + count; ++i) {
-      box = united(box, decode_block_box(cell_->box, first_[i]));
+      box = box.united(decode_block_box(cell_->box, first_[i]));
     }
     const Box positions = position_box(quantisation_, box);
-    return {centre_of(positions), half_diagonal(positions)};
+    return {positions.centre(), half_diagonal(positions)};
   }
 
   CLEARWAY_HD bool look_at_open(double delta, std::uint32_t pose, std::uint32_t level,

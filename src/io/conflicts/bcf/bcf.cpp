@@ -23,20 +23,10 @@ constexpr double kLeastDistance = 6;          // metres from camera to conflict
 constexpr double kSizesAway = 1.6;            // and at least so many times the conflict's diagonal
 constexpr std::size_t kPathPoses = 2000;      // beside the nearest one, drawn as a line
 
-Vec3 sum(const Vec3& a, const Vec3& b, double times) {
-  return {a.x + times * b.x, a.y + times * b.y, a.z + times * b.z};
-}
-
-double length_of(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-
 Vec3 unit(const Vec3& v, const Vec3& otherwise) {
-  const double length = length_of(v);
-  if (!(length > 0)) return otherwise;
-  return {v.x / length, v.y / length, v.z / length};
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  const double size = length(v);
+  if (!(size > 0)) return otherwise;
+  return {v.x / size, v.y / size, v.z / size};
 }
 
 /// A direction of the model's frame, in the environment's.
@@ -66,12 +56,12 @@ Camera camera_of(const ConflictFile& file, const Conflict& conflict) {
   const Vec3 ahead = unit(turned(pose, file.options.forward), {1, 0, 0});
   const Vec3 above = unit(turned(pose, file.options.up), {0, 0, 1});
   Camera out;
-  out.direction = unit(sum(ahead, above, -0.6), ahead);
+  out.direction = unit(ahead + -0.6 * above, ahead);
   const Vec3 right = unit(cross(out.direction, above), {0, 1, 0});
   out.up = cross(right, out.direction);
-  const double diagonal = length_of(sum(conflict.box.hi, conflict.box.lo, -1));
+  const double diagonal = length(conflict.box.size());
   const double away = std::max(kLeastDistance / file.metres_per_unit(), kSizesAway * diagonal);
-  out.place = sum(conflict.centroid, out.direction, -away);
+  out.place = conflict.centroid + -away * out.direction;
   return out;
 }
 

@@ -34,17 +34,13 @@ Vec3 in_metres(const ConflictFile& file, const Vec3& v) {
 
 /// The twelve edges of a box.
 std::string edges_of(const Box& box) {
-  const auto corner = [&box](int bits) {
-    return Vec3{(bits & 1) != 0 ? box.hi.x : box.lo.x, (bits & 2) != 0 ? box.hi.y : box.lo.y,
-                (bits & 4) != 0 ? box.hi.z : box.lo.z};
-  };
   std::string out;
-  for (int from = 0; from < 8; ++from) {
-    for (const int axis : {1, 2, 4}) {
+  for (unsigned from = 0; from < 8; ++from) {
+    for (const unsigned axis : {1U, 2U, 4U}) {
       if ((from & axis) != 0) continue;
       out += "    " +
-             element("Line", vector_element("StartPoint", corner(from)) +
-                                 vector_element("EndPoint", corner(from | axis))) +
+             element("Line", vector_element("StartPoint", box.corner(from)) +
+                                 vector_element("EndPoint", box.corner(from | axis))) +
              "\n";
     }
   }

@@ -24,20 +24,6 @@ Box box_of(const FileBox& box, const Quantisation& quantisation) {
           position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
 }
 
-double size_of(const Box& box) {
-  return std::hypot(box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z);
-}
-
-/// The distance of two boxes.
-double gap_of(const Box& a, const Box& b) {
-  double square = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double gap = std::max({0.0, a.lo[k] - b.hi[k], b.lo[k] - a.hi[k]});
-    square += gap * gap;
-  }
-  return std::sqrt(square);
-}
-
 std::string text_of(const Box& box) {
   const auto corner = [](const Vec3& p) {
     return "(" + format_number(std::round(p.x)) + ", " + format_number(std::round(p.y)) + ", " +
@@ -56,7 +42,7 @@ class Inputs {
       if (boxes[i].points == 0) continue;
       numbers_.push_back(i);
       boxes_.push_back(box_of(boxes[i], quantisation));
-      sizes_.push_back(size_of(boxes_.back()));
+      sizes_.push_back(length(boxes_.back().size()));
     }
   }
 
@@ -76,7 +62,7 @@ class Inputs {
     std::optional<std::size_t> other;
     double gap = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double to_i = gap_of(boxes_[lone], boxes_[i]);
+      const double to_i = boxes_[lone].distance(boxes_[i]);
       if (group[i] == group[lone] || (other && to_i >= gap)) continue;
       other = i;
       gap = to_i;
@@ -125,7 +111,7 @@ class Inputs {
     for (std::size_t i = 0; i < group.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         const double near = std::max(kFarLength, kFarSizes * std::max(sizes_[i], sizes_[j]));
-        if (gap_of(boxes_[i], boxes_[j]) <= near) group[root(i)] = root(j);
+        if (boxes_[i].distance(boxes_[j]) <= near) group[root(i)] = root(j);
       }
     }
     for (std::size_t i = 0; i < group.size(); ++i) group[i] = root(i);
@@ -192,11 +178,7 @@ std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation
   for (const FileBox& one : boxes) {
     if (one.points == 0) continue;
     const Box box = box_of(one, quantisation);
-    if (!common) common = box;
-    for (int k = 0; k < 3; ++k) {
-      common->lo[k] = std::min(common->lo[k], box.lo[k]);
-      common->hi[k] = std::max(common->hi[k], box.hi[k]);
-    }
+    common = common ? common->united(box) : box;
   }
   return common;
 }

@@ -18,10 +18,7 @@ void widen(std::optional<Box>& box, std::span<const Vec3> points) {
       box.value_or(Box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
   for (const Vec3& p : points) {
     if (!std::isfinite(p.x + p.y + p.z)) continue;
-    for (int k = 0; k < 3; ++k) {
-      all.lo[k] = std::min(all.lo[k], p[k]);
-      all.hi[k] = std::max(all.hi[k], p[k]);
-    }
+    all.extend(p);
   }
   if (all.lo.x <= all.hi.x) box = all;
 }

@@ -81,7 +81,7 @@ void LasRecordWriter::write(std::span<const std::byte> record) {
   for (unsigned k = 0; k < 3; ++k) {
     at.lo[k] = at.hi[k] = load<std::int32_t>(record.data() + 4 * k);
   }
-  bounds_ = points_ == 0 ? at : united(bounds_, at);
+  bounds_ = points_ == 0 ? at : bounds_.united(at);
   const unsigned number =
       load<std::uint8_t>(record.data() + 14) & (format_.point_format < 6 ? 0x07u : 0x0fu);
   if (number > 0) ++by_return_[number - 1];

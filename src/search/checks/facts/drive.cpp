@@ -67,7 +67,7 @@ Drive::Drive(const Query& query, double length) {
   const auto& poses = query.poses;
   std::size_t from = 0;
   for (std::size_t to = 1; to < poses.size(); ++to) {
-    const Vec3 way = difference(translation_of(poses[to]), translation_of(poses[from]));
+    const Vec3 way = difference(poses[to].position(), poses[from].position());
     const double far = std::sqrt(squared_length(way.x, way.y, way.z));
     if (!(far >= length)) continue;
     const Pose& middle = poses[from + (to - from) / 2];

@@ -29,8 +29,8 @@ std::vector<std::uint32_t> spread_poses(std::size_t poses, std::size_t most) {
 
 Box body_slice(const Box& model) {
   Box slice = model;
-  const int axis = longest_side(model);
-  const Vec3 centre = centre_of(model);
+  const int axis = model.longest_axis();
+  const Vec3 centre = model.centre();
   const double half = Sides(model).middle / 2;
   slice.lo[axis] = centre[axis] - half;
   slice.hi[axis] = centre[axis] + half;

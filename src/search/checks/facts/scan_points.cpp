@@ -26,7 +26,7 @@ class Inverse {
   }
 
   Vec3 operator()(const Vec3& p) const {
-    const Vec3 d = difference(p, translation_of(pose_));
+    const Vec3 d = difference(p, pose_.position());
     const auto& r = rows_;
     return {r[0] * d.x + r[1] * d.y + r[2] * d.z, r[3] * d.x + r[4] * d.y + r[5] * d.z,
             r[6] * d.x + r[7] * d.y + r[8] * d.z};
@@ -34,7 +34,7 @@ class Inverse {
 
   /// The box around a box of the scan.
   Box operator()(const Box& box) const {
-    const Vec3 centre = (*this)(centre_of(box));
+    const Vec3 centre = (*this)(box.centre());
     Box out{centre, centre};
     for (int k = 0; k < 3; ++k) {
       const double* row = rows_.data() + std::ptrdiff_t{3} * k;
@@ -50,11 +50,6 @@ class Inverse {
   const Pose& pose_;
   std::array<double, 9> rows_{};
 };
-
-bool holds(const Box& box, const Vec3& p) {
-  return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y &&
-         p.z >= box.lo.z && p.z <= box.hi.z;
-}
 
 class Visit {
  public:
@@ -87,7 +82,7 @@ class Visit {
 
  private:
   bool may_matter(const Box& box) const {
-    return gap(box, place_) == 0 && gap(inverse_(box), region_) == 0;
+    return box.distance(place_) == 0 && inverse_(box).distance(region_) == 0;
   }
 
   /// A look at a cell checks all of its bytes: once.
@@ -124,7 +119,7 @@ class Visit {
     for (std::uint32_t i = 0; i < count && !stopped_; ++i) {
       const Vec3 p =
           inverse_(position(cloud_.quantisation(), quanta[0][i], quanta[1][i], quanta[2][i]));
-      if (holds(region_, p)) stopped_ = !look_(p);
+      if (region_.contains(p)) stopped_ = !look_(p);
     }
   }
 

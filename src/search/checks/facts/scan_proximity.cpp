@@ -62,7 +62,7 @@ void ScanProximity::look_into(std::uint32_t cell, const Box& box, bool any, Near
   for (std::uint32_t block = 0; block < blocks_of(cloud_.cells()[cell]); ++block) {
     if (!range.meets(cloud_.blocks()[first + block])) continue;
     const Box place = block_box(cell, block);
-    const double distance = gap(place, box);
+    const double distance = place.distance(box);
     if (distance > best.distance || (best.found && distance == best.distance)) continue;
     if (2 * half_diagonal(place) > longest_block_) continue;
     best = {distance, place, true};
@@ -73,7 +73,7 @@ void ScanProximity::look_into(std::uint32_t cell, const Box& box, bool any, Near
 ScanProximity::Nearest ScanProximity::descend(const Box& box, double most, bool any) const {
   const std::span<const TreeNode> tree = cloud_.tree();
   const auto distance_of = [&](std::uint32_t node) {
-    return gap(position_box(cloud_.quantisation(), tree[node].box), box);
+    return position_box(cloud_.quantisation(), tree[node].box).distance(box);
   };
   Nearest best{most};
   std::vector<std::pair<std::uint32_t, double>> open{{0, distance_of(0)}};
@@ -99,7 +99,7 @@ ScanProximity::Nearest ScanProximity::nearest(const Box& box, double most) const
 }
 
 bool ScanProximity::within(const Box& box, double reach) const {
-  if (last_.found && gap(last_.block, box) <= reach) return true;
+  if (last_.found && last_.block.distance(box) <= reach) return true;
   const Nearest found = descend(box, reach, true);
   if (found.found) last_ = found;
   return found.found;
