@@ -27,7 +27,7 @@ void find_collisions(char** argv) {
 
   clearway::Query query;
   std::vector<clearway::Message> warnings;
-  clearway::set_model(query, clearway::read_model_shape(argv[2], {}, &warnings));
+  query.model = clearway::read_model(argv[2], {}, &warnings);
   query.poses = clearway::read_trajectory(argv[3]);
   query.radius = std::atof(argv[4]);
   clearway::SearchOptions options;

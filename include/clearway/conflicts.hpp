@@ -36,7 +36,7 @@ struct ConflictOptions {
   std::optional<Box> model_box = {};
   /// The one model of the search, which outlives the call: for least shifts. Of a vehicle, `bodies`
   /// are. Without either, shifts are not known.
-  const ModelShape* model = nullptr;
+  const Model* model = nullptr;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;  ///< 0: all cores
   ProgressCallback progress = nullptr;

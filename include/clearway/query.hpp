@@ -1,15 +1,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "clearway/body.hpp"
 #include "clearway/box.hpp"
+#include "clearway/model.hpp"
 #include "clearway/pose.hpp"
-#include "clearway/vec3.hpp"
 
 namespace clearway {
 
@@ -39,53 +38,33 @@ struct QueryParameters {
 /// Which points of an environment lie within the search radius of the moving model?
 struct Query : QueryParameters {
   Query() = default;
-  Query(std::vector<Vec3> moved, std::vector<Pose> along, const QueryParameters& parameters)
+  Query(Model moved, std::vector<Pose> along, const QueryParameters& parameters)
       : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
 
-  bool is_surface() const { return !triangles.empty(); }
-  bool is_solid() const { return !solid_of.empty(); }  ///< then it is a surface too
-  /// Itself, or any of its bodies.
-  bool has_solids() const {
-    return is_solid() || std::ranges::any_of(bodies, [](const Body& b) { return b.is_solid(); });
-  }
-
-  std::vector<Vec3> model;  ///< points, or corners of triangles; in the model's own frame, metres
+  Model model;
   std::vector<Pose> poses;  ///< the path, where there are bodies
-  /// Three indices into `model` each: the model is their surface. None: it is its points.
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// The number of each triangle's solid, from 0, or kNoSolid: what is inside collides too. The
-  /// triangles of a solid are closed: each edge is used as often in one direction as in the other,
-  /// by vertices of the same values. None: nothing has an inside.
-  std::vector<std::uint32_t> solid_of = {};
-  /// Metres. The model's points are samples of a mesh, and no place of its surface is farther than
-  /// this from one of them; so the surface may come closer than the radius, by as much, to a point
-  /// that does not collide. The answer says so. 0: the model is no sampled mesh.
-  double model_spacing = 0;
   /// Several models in the place of one, each with poses of its own; then there is no model. A
   /// first pose, a clearance's pose and a pose of the profile are of the path.
   std::vector<Body> bodies = {};
 };
 
-/// Of a surface its triangles, otherwise the model's points.
-inline std::uint64_t element_count(const Query& query) {
-  return query.is_surface() ? query.triangles.size() : query.model.size();
-}
-
-inline std::uint64_t element_count(const Body& body) {
-  return body.is_surface() ? body.triangles.size() : body.model.size();
+/// Whether the query's model has closed parts, or that of any of its bodies.
+inline bool has_solids(const Query& query) {
+  return query.model.is_solid() ||
+         std::ranges::any_of(query.bodies, [](const Body& body) { return body.model.is_solid(); });
 }
 
 /// How many solids the model has, or all bodies together.
 inline std::uint64_t solid_count(const Query& query) {
-  std::uint64_t count = solid_count(query.solid_of);
-  for (const Body& body : query.bodies) count += solid_count(body.solid_of);
+  std::uint64_t count = query.model.solid_count();
+  for (const Body& body : query.bodies) count += body.model.solid_count();
   return count;
 }
 
-/// Query::model_spacing, or the greatest of all bodies.
+/// Model::spacing, or the greatest of all bodies, metres.
 inline double model_spacing(const Query& query) {
-  double spacing = query.model_spacing;
-  for (const Body& body : query.bodies) spacing = std::max(spacing, body.model_spacing);
+  double spacing = query.model.spacing;
+  for (const Body& body : query.bodies) spacing = std::max(spacing, body.model.spacing);
   return spacing;
 }
 

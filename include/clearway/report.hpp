@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,12 +9,12 @@
 #include "clearway/answer.hpp"
 #include "clearway/body.hpp"
 #include "clearway/conflicts.hpp"
+#include "clearway/model.hpp"
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/result.hpp"
 #include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
-#include "clearway/vec3.hpp"
 
 namespace clearway {
 
@@ -30,8 +29,6 @@ struct ReportOptions {
   /// to say; `model` is without them.
   std::optional<double> model_above = {};
   std::uint64_t model_left_out = 0;
-  /// Of a result of a surface: its triangles, whose corners `model` holds.
-  std::vector<std::array<std::uint32_t, 3>> model_triangles = {};
   /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.
   /// The last is at least the radius, and none above it is beyond the clearance asked for. Empty:
   /// the radius, and the clearance where that is larger.
@@ -45,7 +42,6 @@ struct ReportOptions {
   /// warned of need not be among them: it is found again from store, model and poses.
   std::vector<Message> warnings = {};
   bool overwrite = false;
-  std::vector<std::uint32_t> model_solid_of = {};  ///< with solids: as Query has them
   /// Of a vehicle's result: its bodies; then the model is empty.
   std::vector<Body> bodies = {};
 };
@@ -63,7 +59,7 @@ struct ReportSummary {
 /// and poses: those of the search. Throws InputError where model, poses or store are not those of
 /// the result, or one is damaged; UsageError for classes that the result cannot tell apart and for
 /// an existing output; ResourceError; Interrupted when asked to stop.
-ReportSummary write_report(const Result& result, const Store& store, const std::vector<Vec3>& model,
+ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options = {});
 

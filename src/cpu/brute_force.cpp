@@ -20,14 +20,15 @@ std::vector<Element> elements_of(const Query& query);
 
 template <>
 std::vector<Vec3> elements_of(const Query& query) {
-  return query.model;
+  return query.model.vertices;
 }
 
 template <>
 std::vector<Triangle> elements_of(const Query& query) {
   std::vector<Triangle> triangles;
-  for (const auto& [a, b, c] : query.triangles) {
-    triangles.emplace_back(query.model.at(a), query.model.at(b), query.model.at(c));
+  for (const auto& [a, b, c] : query.model.triangles) {
+    triangles.emplace_back(query.model.vertices.at(a), query.model.vertices.at(b),
+                           query.model.vertices.at(c));
   }
   return triangles;
 }
@@ -80,12 +81,12 @@ std::vector<std::uint32_t> first_poses(std::span<const Vec3> environment, const 
 std::vector<std::uint32_t> first_poses_of_ways(std::span<const Vec3> environment,
                                                const Query& query) {
   std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
-  const bool worth_threads = environment.size() * query.model.size() > kPairsWorthThreads;
+  const bool worth_threads = environment.size() * query.model.vertices.size() > kPairsWorthThreads;
   for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
     const bool moves_on = i + 1 < query.poses.size();
-    const std::vector<Vec3> from = moved(query.model, query.poses[i]);
+    const std::vector<Vec3> from = moved(query.model.vertices, query.poses[i]);
     const std::vector<Vec3> to =
-        moves_on ? moved(query.model, query.poses[i + 1]) : std::vector<Vec3>();
+        moves_on ? moved(query.model.vertices, query.poses[i + 1]) : std::vector<Vec3>();
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
       if (first[e] != HitSet::kNever) continue;
@@ -121,8 +122,8 @@ struct SolidTriangles {
   explicit SolidTriangles(const Query& query) {
     std::vector<Vec3> corners;
     const std::vector<Triangle> triangles = elements_of<Triangle>(query);
-    for (std::size_t i = 0; i < query.solid_of.size(); ++i) {
-      const std::uint32_t solid = query.solid_of[i];
+    for (std::size_t i = 0; i < query.model.solid_of.size(); ++i) {
+      const std::uint32_t solid = query.model.solid_of[i];
       if (solid == kNoSolid) continue;
       if (solid >= solids.size()) solids.resize(solid + std::size_t{1});
       solids[solid].push_back(triangles[i]);
@@ -220,23 +221,23 @@ std::vector<NearestPoint> profile_of_solids(std::span<const Vec3> environment, c
 std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environment,
                                                    const Query& query) {
   if (query.between_poses) return first_poses_of_ways(environment, query);
-  if (query.is_solid()) return first_poses_of_solids(environment, query);
-  return query.is_surface() ? first_poses<Triangle>(environment, query)
-                            : first_poses<Vec3>(environment, query);
+  if (query.model.is_solid()) return first_poses_of_solids(environment, query);
+  return query.model.is_surface() ? first_poses<Triangle>(environment, query)
+                                  : first_poses<Vec3>(environment, query);
 }
 
 std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
                                               const Query& query) {
-  if (query.is_solid()) return clearances_of_solids(environment, query);
-  return query.is_surface() ? clearances<Triangle>(environment, query)
-                            : clearances<Vec3>(environment, query);
+  if (query.model.is_solid()) return clearances_of_solids(environment, query);
+  return query.model.is_surface() ? clearances<Triangle>(environment, query)
+                                  : clearances<Vec3>(environment, query);
 }
 
 std::vector<NearestPoint> brute_force_profile(std::span<const Vec3> environment,
                                               const Query& query) {
-  if (query.is_solid()) return profile_of_solids(environment, query);
-  return query.is_surface() ? profile_of<Triangle>(environment, query)
-                            : profile_of<Vec3>(environment, query);
+  if (query.model.is_solid()) return profile_of_solids(environment, query);
+  return query.model.is_surface() ? profile_of<Triangle>(environment, query)
+                                  : profile_of<Vec3>(environment, query);
 }
 
 }  // namespace clearway

@@ -133,7 +133,8 @@ std::uint64_t kdtree_memory_bytes(const PackedCloud& cloud, const Query& query, 
       sizeof(std::uint64_t) + sizeof(BlockBox) +
       (query.first_pose ? (kBlockPoints + 2) * sizeof(std::uint32_t) : 1);
   return blocks * block_bytes + IgnoredEntries::most_bytes(cloud, query) +
-         cloud.tree().size() * sizeof(std::uint32_t) + query.model.size() * kModelPointBytes +
+         cloud.tree().size() * sizeof(std::uint32_t) +
+         query.model.vertices.size() * kModelPointBytes +
          static_cast<unsigned>(threads) * kThreadBytes;
 }
 
@@ -141,14 +142,14 @@ HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const KdTreeOpti
                   Progress& progress, KdTreeStatistics* statistics) {
   check(query);
   KdTreeStatistics counted;
-  counted.searches = std::uint64_t{query.poses.size()} * query.model.size();
+  counted.searches = std::uint64_t{query.poses.size()} * query.model.vertices.size();
   HitSet hits(cloud.entry_count(), query.first_pose);
   progress.begin("search", query.poses.size(), "poses");
   const bool nothing = counted.searches == 0 || cloud.tree().empty() ||
                        !(rounded_product(query.radius, query.radius) > 0);
   if (!nothing) {
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-    const ModelSpheres model(query.model, kLeafRadii * query.radius);
+    const ModelSpheres model(query.model.vertices, kLeafRadii * query.radius);
     const EnvironmentTree environment(cloud, threads);
     ResolvedPoints resolved(environment, hits);
     Tasks tasks(query, model, threads);

@@ -205,7 +205,7 @@ class ConflictSearch {
   /// bodies each has its own frame, so that no one box says on which side a conflict is.
   static std::vector<Box> boxes_of(const Result& result, const ConflictOptions& options) {
     std::vector<Box> boxes;
-    for (const Body& body : options.bodies) boxes.push_back(box_of(body.model));
+    for (const Body& body : options.bodies) boxes.push_back(box_of(body.model.vertices));
     if (!result.bodies().empty()) return boxes;
     const std::optional<Box> box = options.model_box ? options.model_box : result.model_box();
     if (box) boxes.push_back(*box);
@@ -287,13 +287,8 @@ class ConflictSearch {
     std::vector<Body> one;
     std::span<const Body> bodies = options_.bodies;
     if (bodies.empty()) {
-      if (options_.model == nullptr || options_.model->points.empty()) return;
-      one.push_back({"",
-                     options_.model->points,
-                     poses_,
-                     {},
-                     options_.model->triangles,
-                     options_.model->solid_of});
+      if (options_.model == nullptr || options_.model->empty()) return;
+      one.push_back({"", *options_.model, poses_, {}});
       bodies = one;
     }
     const std::vector<std::vector<Vec3>> points = points_to_free(conflict_of_row);

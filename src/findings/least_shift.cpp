@@ -9,7 +9,7 @@
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/solid_parts.hpp"
-#include "core/geometry/triangle.hpp"
+#include "core/geometry/triangle_box.hpp"
 #include "core/query/body_pose.hpp"
 
 namespace clearway {
@@ -82,34 +82,17 @@ Pose between(const Pose& a, const Pose& b, double part) {
   return out;
 }
 
-std::vector<Triangle> triangles_of(const Body& body) {
-  std::vector<Triangle> out;
-  for (const auto& [a, b, c] : body.triangles) {
-    out.emplace_back(body.model.at(a), body.model.at(b), body.model.at(c));
-  }
-  return out;
-}
-
-SolidParts solids_of(const Body& body, int threads) {
-  Query query;
-  if (!body.is_solid()) return {};
-  query.model = body.model;
-  query.triangles = body.triangles;
-  query.solid_of = body.solid_of;
-  return SolidParts(query, threads);
-}
-
 }  // namespace
 
 /// A body in its own frame.
 class LeastShift::Shape {
  public:
-  Shape(const Body& body, double radius, int threads)
+  Shape(const Model& model, double radius, int threads)
       : radius_(radius),
-        points_(body.is_surface() ? std::span<const Vec3>() : std::span(body.model), threads),
-        triangles_(triangles_of(body), threads),
-        solids_(solids_of(body, threads)),
-        box_(grown(body.is_surface() ? triangles_.box() : points_.box())) {}
+        points_(model.is_surface() ? std::span<const Vec3>() : std::span(model.vertices), threads),
+        triangles_(triangles_of(model), threads),
+        solids_(model, threads),
+        box_(grown(model.is_surface() ? triangles_.box() : points_.box())) {}
 
   bool is_empty() const { return points_.size() == 0 && triangles_.size() == 0; }
 
@@ -161,7 +144,7 @@ LeastShift::LeastShift(std::span<const Body> bodies, const std::vector<Pose>& pa
                        const Vec3& left, double radius, bool ways, int threads)
     : bodies_(bodies), path_(path), left_(left), radius_(radius), ways_(ways) {
   for (const Body& body : bodies) {
-    shapes_.push_back(std::make_unique<Shape>(body, radius, threads));
+    shapes_.push_back(std::make_unique<Shape>(body.model, radius, threads));
   }
 }
 

@@ -25,14 +25,10 @@ using namespace py::literals;
 
 PlacedBody make_body(std::string name, const py::object& model, const py::object& poses,
                      const py::object& path_pose) {
-  ModelShape shape = model_of(model_object(model));
   PlacedBody body{{.name = std::move(name),
-                   .model = std::move(shape.points),
+                   .model = model_of(model_object(model)),
                    .poses = poses_of(poses_array(poses, "poses"), "poses"),
-                   .path_pose = {},
-                   .triangles = std::move(shape.triangles),
-                   .solid_of = std::move(shape.solid_of),
-                   .model_spacing = shape.spacing}};
+                   .path_pose = {}}};
   body.has_all_poses = path_pose.is_none();
   if (body.has_all_poses) {
     body.path_pose.resize(body.poses.size());
@@ -68,7 +64,7 @@ void add_body(py::module_& module) {
 Make a body of its own poses.
 
 name: for people, in results and reports; every body of a vehicle has another one.
-model: in the body's own frame: points, n x 3, metres; or a ModelShape.
+model: in the body's own frame: points, n x 3, metres; or a Model.
 poses: n x 4 x 4 or n x 3 x 4; where the body is.
 path_pose: for each of these poses the index of the path's pose at which the body is there,
     ascending. None: the body has as many poses as the path, one for each.)")
@@ -78,12 +74,10 @@ path_pose: for each of these poses the index of the path's pose at which the bod
       .def_property_readonly(
           "model",
           [](const PlacedBody& b) -> py::object {
-            if (b.is_surface() || b.model_spacing > 0) {
-              return py::cast(ModelShape{b.model, b.triangles, b.solid_of, b.model_spacing});
-            }
-            return to_array(b.model);
+            if (b.model.is_surface() || b.model.spacing > 0) return py::cast(b.model);
+            return to_array(b.model.vertices);
           },
-          "The model in the body's own frame: points, n x 3 float64, metres; or a ModelShape.")
+          "The model in the body's own frame: points, n x 3 float64, metres; or a Model.")
       .def_property_readonly(
           "poses", [](const PlacedBody& b) { return to_array(b.poses); },
           "The poses at which the body is searched: n x 4 x 4 float64.")
@@ -91,8 +85,8 @@ path_pose: for each of these poses the index of the path's pose at which the bod
           "path_pose", [](const PlacedBody& b) { return to_array(b.path_pose); },
           "For each pose of the body the index of the path's pose that it belongs to: n uint32.")
       .def("__repr__", [](const PlacedBody& b) {
-        return text("<Body " + b.name + ": " + std::to_string(b.model.size()) + " points, " +
-                    std::to_string(b.poses.size()) + " poses>");
+        return text("<Body " + b.name + ": " + std::to_string(b.model.vertices.size()) +
+                    " points, " + std::to_string(b.poses.size()) + " poses>");
       });
 }
 
@@ -119,7 +113,7 @@ void add_follow(py::module_& module) {
 Place a body of a vehicle at the poses of a path. Returns a Body, for Query(bodies=...).
 
 name: for people, in results and reports; every body of a vehicle has another one.
-model: in the body's own frame, as Query takes it: points, n x 3, metres; or a ModelShape.
+model: in the body's own frame, as Query takes it: points, n x 3, metres; or a Model.
 path: the poses that the vehicle follows, n x 4 x 4: those of the query.
 at: the body has the path's pose so many metres ahead; negative: behind.
 pivots: two places of the body that lie on the path, front and rear, metres ahead: (10, -10).
@@ -140,9 +134,9 @@ model_as: 'auto': meshes as their triangles are, and other models as points.
     'surface': triangles; each body has to be a mesh.
     'points': the surface of a mesh is sampled, which needs a spacing.
     'solid': triangles, and what closed parts enclose; each body has to be a mesh.
-spacing, vertices_only, above: of all models, as read_model_shape() takes them.
-unit: of models without a model_unit, as read_model() takes it.
-environment_unit: into which lengths with a unit are converted, as read_model() takes it.
+spacing, vertices_only, above: of all models, as read_model() takes them.
+unit: of models without a model_unit, as read_model_points() takes it.
+environment_unit: into which lengths with a unit are converted, as read_model_points() takes it.
 format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,
     lever_arm: for trajectories that bodies have of their own, as read_trajectory() takes them.
 messages: a list to which notes and warnings are appended.)";

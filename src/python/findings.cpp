@@ -170,7 +170,7 @@ void add_find_conflicts(py::module_& module) {
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
         const std::vector<Body> placed = bodies_on(bodies, path);
         options.bodies = placed;
-        std::optional<ModelShape> shape;
+        std::optional<Model> shape;
         if (!model.is_none()) shape = model_of(model_object(model));
         if (shape) options.model = &*shape;
         Watch watch(std::move(progress), py::none(), std::move(stop));
@@ -201,7 +201,7 @@ split: metres along the path; longer groups are cut at multiples of it; 0: never
 chainage_start: the chainage of the first pose, metres.
 forward, up: which axes of the model point ahead and up, such as '+x' or '-z'.
 model_box: the Box around the model, where the result does not hold it.
-model: the one model of the search, an n x 3 array or a ModelShape: for shift_left, shift_right.
+model: the one model of the search, an n x 3 array or a Model: for shift_left, shift_right.
 bodies: the bodies of the search, where it was one of a vehicle; sides and offsets are then
     seen from the body that touches.
 memory_bytes, threads, progress, stop: as search() takes them.)");

@@ -39,7 +39,7 @@ std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points)
                          std::string(py::str(array.dtype())));
   }
   if (array.ndim() != 2 || array.shape(1) != 3) {
-    throw UsageError("triangles: expected an array of n x 3 indices of points");
+    throw UsageError("triangles: expected an array of n x 3 indices of vertices");
   }
   const auto indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
   std::vector<Triangle> triangles(static_cast<std::size_t>(indices.shape(0)));
@@ -47,7 +47,7 @@ std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t index = indices.data()[3 * i + k];
       if (index < 0 || static_cast<std::uint64_t>(index) >= points) {
-        throw UsageError("triangles: triangle " + std::to_string(i) + " has the point " +
+        throw UsageError("triangles: triangle " + std::to_string(i) + " has the vertex " +
                          std::to_string(index) + ", expected 0 to " +
                          std::to_string(static_cast<std::int64_t>(points) - 1));
       }
@@ -58,47 +58,47 @@ std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points)
 }
 
 void add_shape(py::module_& module) {
-  py::class_<ModelShape> shapes(
-      module, "ModelShape",
-      "A model: points, or a surface of triangles, which is searched as it is.");
+  py::class_<Model> shapes(
+      module, "Model", "A model: points, or a surface of triangles, which is searched as it is.");
   shapes.attr("NO_SOLID") = kNoSolid;
   shapes
-      .def(py::init([](const py::object& points, const py::object& triangles, double spacing) {
+      .def(py::init([](const py::object& vertices, const py::object& triangles, double spacing) {
              if (!(spacing >= 0) || !std::isfinite(spacing)) {
                throw UsageError("spacing: expected metres from 0");
              }
-             ModelShape shape;
-             shape.points = points_of(points_array(points, "points"), "points");
-             shape.triangles = triangles_of(triangles, shape.points.size());
-             shape.spacing = spacing;
-             return shape;
+             Model model;
+             model.vertices = points_of(points_array(vertices, "vertices"), "vertices");
+             model.triangles = triangles_of(triangles, model.vertices.size());
+             model.spacing = spacing;
+             return model;
            }),
-           "points"_a, "triangles"_a = py::tuple(), "spacing"_a = 0.0,
-           R"(__init__(self, points, triangles=(), spacing=0.0)
+           "vertices"_a, "triangles"_a = py::tuple(), "spacing"_a = 0.0,
+           R"(__init__(self, vertices, triangles=(), spacing=0.0)
 --
 
 Make a model of arrays.
 
-points: n x 3 real numbers, metres, in the model's own frame.
-triangles: m x 3 indices of points. Empty: the points themselves are the model.
-spacing: where the points are samples of a mesh, how far its surface may be from them, metres.)")
+vertices: n x 3 real numbers, metres, in the model's own frame.
+triangles: m x 3 indices of vertices. Empty: the vertices themselves are the model.
+spacing: where the vertices are samples of a mesh, how far its surface may be from them, metres.)")
       .def_property_readonly(
-          "points", [](const ModelShape& s) { return to_array(s.points); },
+          "vertices", [](const Model& s) { return to_array(s.vertices); },
           "The points of the model, or the corners of its triangles: n x 3 float64, metres.")
       .def_property_readonly(
-          "triangles", [](const ModelShape& s) { return triangles_array(s.triangles); },
-          "The triangles, each as three indices of points: n x 3 uint32. Empty where the model is "
+          "triangles", [](const Model& s) { return triangles_array(s.triangles); },
+          "The triangles, each as three indices of vertices: n x 3 uint32. Empty where the model "
+          "is "
           "its points.")
       .def_property_readonly(
-          "solid_of", [](const ModelShape& s) { return to_array(s.solid_of); },
+          "solid_of", [](const Model& s) { return to_array(s.solid_of); },
           "The number of the solid that each triangle belongs to, or NO_SOLID: n uint32. Empty "
           "where "
           "nothing has an inside.")
-      .def_readonly("spacing", &ModelShape::spacing,
-                    "Metres. The points are samples of a mesh, and no place of its surface is "
+      .def_readonly("spacing", &Model::spacing,
+                    "Metres. The vertices are samples of a mesh, and no place of its surface is "
                     "farther than this from one of them. 0 where the model is no sampled mesh.")
-      .def("__repr__", [](const ModelShape& s) {
-        return text("<ModelShape: " + std::to_string(s.points.size()) + " points, " +
+      .def("__repr__", [](const Model& s) {
+        return text("<Model: " + std::to_string(s.vertices.size()) + " vertices, " +
                     std::to_string(s.triangles.size()) + " triangles>");
       });
 }
@@ -112,18 +112,18 @@ void add_read_model(py::module_& module) {
         const ModelOptions options =
             model_options(ModelAs::kPoints, spacing, unit, environment_unit, vertices_only, above);
         return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          return read_model(file, options, noted);
+          return read_model_points(file, options, noted);
         }));
       },
       "path"_a, py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0, "environment_unit"_a = 1.0,
       "vertices_only"_a = false, "above"_a = py::none(), "messages"_a = py::none(),
-      R"(read_model(path, *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
+      R"(read_model_points(path, *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
 --
 
 Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
 
 The surface of a mesh is sampled to points. Returns n x 3 float64, metres, in the model's frame.
-read_model_shape() also keeps how far the surface may be from the points, so that answers say it.
+read_model() also keeps how far the surface may be from the points, so that answers say it.
 
 path: the file.
 spacing: how closely a mesh is sampled, metres: no place of its surface is farther from a point.
@@ -148,40 +148,40 @@ void add_read_model_shape(py::module_& module) {
             model_options(value_of("model_as", kModelAs, model_as), spacing, unit, environment_unit,
                           vertices_only, above);
         return read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          return read_model_shape(file, options, noted);
+          return read_model(file, options, noted);
         });
       },
       "path"_a, "model_as"_a = "auto", py::kw_only(), "spacing"_a = 0.0, "unit"_a = 0.0,
       "environment_unit"_a = 1.0, "vertices_only"_a = false, "above"_a = py::none(),
       "messages"_a = py::none(),
-      R"(read_model_shape(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
+      R"(read_model(path, model_as='auto', *, spacing=0.0, unit=0.0, environment_unit=1.0, vertices_only=False, above=None, messages=None)
 --
 
-Read a model, to be searched as it is. Returns a ModelShape.
+Read a model, to be searched as it is. Returns a Model.
 
 path: the file.
 model_as: 'auto': a mesh as its surface, any other file as its points; with spacing or
     vertices_only a mesh as points.
     'surface': the triangles of the mesh; a file without any is refused.
     'solid': the same, and what its closed parts enclose; a mesh without any is refused.
-    'points': as read_model() reads it.
-spacing, vertices_only: for points, as read_model() takes them.
+    'points': as read_model_points() reads it.
+spacing, vertices_only: for points, as read_model_points() takes them.
 above: cuts the triangles at this height, and leaves out what is below it; metres; not for 'solid'.
-unit, environment_unit, messages: as read_model() takes them.)");
+unit, environment_unit, messages: as read_model_points() takes them.)");
 }
 
 }  // namespace
 
 py::object model_object(const py::handle& object) {
-  if (py::isinstance<ModelShape>(object)) return py::reinterpret_borrow<py::object>(object);
+  if (py::isinstance<Model>(object)) return py::reinterpret_borrow<py::object>(object);
   return points_array(object, "model");
 }
 
-ModelShape model_of(const py::object& object) {
-  if (py::isinstance<ModelShape>(object)) return object.cast<ModelShape>();
-  ModelShape shape;
-  shape.points = points_of(points_array(object, "model"), "model");
-  return shape;
+Model model_of(const py::object& object) {
+  if (py::isinstance<Model>(object)) return object.cast<Model>();
+  Model model;
+  model.vertices = points_of(points_array(object, "model"), "model");
+  return model;
 }
 
 ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
@@ -198,10 +198,10 @@ ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
 }
 
 std::string model_words(const py::object& object) {
-  if (py::isinstance<ModelShape>(object)) {
-    const std::size_t triangles = object.cast<const ModelShape&>().triangles.size();
+  if (py::isinstance<Model>(object)) {
+    const std::size_t triangles = object.cast<const Model&>().triangles.size();
     if (triangles > 0) return std::to_string(triangles) + " model triangles";
-    return std::to_string(object.cast<const ModelShape&>().points.size()) + " model points";
+    return std::to_string(object.cast<const Model&>().vertices.size()) + " model points";
   }
   return std::to_string(py::len(object)) + " model points";
 }

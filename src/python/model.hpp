@@ -8,7 +8,7 @@
 #include "python/python.hpp"
 #include "python/values.hpp"
 
-/// Models of queries and reports: an array of points, or a ModelShape.
+/// Models of queries and reports: an array of points, or a Model.
 namespace clearway::python {
 
 inline constexpr Named<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
@@ -16,11 +16,11 @@ inline constexpr Named<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
                                               {"surface", ModelAs::kSurface},
                                               {"solid", ModelAs::kSolid}};
 
-/// A ModelShape as it is, anything else as points_array() has it.
+/// A Model as it is, anything else as points_array() has it.
 py::object model_object(const py::handle& object);
 
 /// A copy. object: as model_object() has it. Throws InputError for numbers that are not finite.
-ModelShape model_of(const py::object& object);
+Model model_of(const py::object& object);
 
 /// Of the values that Python has for them. Throws UsageError for an unknown unit.
 ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,

@@ -49,7 +49,7 @@ title, project, client, author, date: texts for the head of the page, where noth
     on the time.
 result_name, environment_name, model_name, trajectory_name: names of the files, for the page to
     show.
-model_above, model_left_out: what read_model() left out of the model's file, for the page to say.
+model_above, model_left_out: what read_model_points() left out of the model's file, for the page to say.
 classes: one to three distances, metres, ascending: below these a point is hit, near, or to watch.
 max_points: how many environment points the page shows at the most.
 gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes them.
@@ -85,7 +85,6 @@ void add_write_report(py::module_& module) {
                               std::move(trajectory_name),
                               model_above,
                               model_left_out,
-                              {},
                               std::move(classes),
                               max_points,
                               conflict_options(gap, min_points, split, chainage_start, forward, up,
@@ -95,14 +94,12 @@ void add_write_report(py::module_& module) {
                               overwrite};
         Watch watch(std::move(progress), py::none(), std::move(stop));
         watch.attach(options.conflicts);
-        ModelShape shape = model_of(model);
-        options.model_triangles = std::move(shape.triangles);
-        options.model_solid_of = std::move(shape.solid_of);
+        const Model moved = model_of(model);
         const std::vector<Pose> path = poses_of(poses_array(poses, "poses"), "poses");
         options.bodies = bodies_on(bodies, path);
         return watch.run([&, to = path_of(output)] {
           return in_turn(store, options.conflicts.stop, [&](const Store& own) {
-            return write_report(result, own, shape.points, path, to, options);
+            return write_report(result, own, moved, path, to, options);
           });
         });
       },

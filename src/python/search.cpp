@@ -117,14 +117,14 @@ void add_query(py::module_& module) {
 
 Ask which points the model comes closer to than the radius, on its way along the poses.
 
-model: in its own frame: points, n x 3, metres; or a ModelShape.
+model: in its own frame: points, n x 3, metres; or a Model.
 poses: n x 4 x 4 or n x 3 x 4; the translation, in metres, is the last column.
 radius: metres, above 0; a search needs one. A point strictly closer to the model collides.
 The other arguments are the properties of the same names.)")
       .def_property(
           "model", [](const ArrayQuery& q) { return q.model; },
           [](ArrayQuery& q, const py::object& value) { q.model = model_object(value); },
-          "The model in its own frame: points, n x 3 float64, metres; or a ModelShape.")
+          "The model in its own frame: points, n x 3 float64, metres; or a Model.")
       .def_property(
           "poses", [](const ArrayQuery& q) { return q.poses; },
           [](ArrayQuery& q, const py::object& value) { q.poses = poses_array(value, "poses"); },
@@ -240,9 +240,9 @@ shard: (i, n) searches the i-th of n parts, from 1; the output is a part for mer
 overwrite: replaces an existing result, and the journal of an earlier search.
 resume: goes on from the journal of an earlier search.
 strict: raises InputError where anything is warned of, and searches nothing.
-input_warnings: messages of read_model() and read_trajectory(), which the report then holds too,
+input_warnings: messages of read_model_points() and read_trajectory(), which the report then holds too,
     and which strict counts.
-model_is_cut: says that the model lacks its lowest part, as with above= of read_model(), so that it
+model_is_cut: says that the model lacks its lowest part, as with above= of read_model_points(), so that it
     does not stand on the ground: ignored points that collide are not warned of for their number
     alone.
 end_gpus: says that nothing else in this process uses CUDA, so that it ends with the search.
@@ -255,8 +255,7 @@ stop: an object with is_set(), such as threading.Event. When it is set, Interrup
 }  // namespace
 
 Query query_of(const ArrayQuery& query) {
-  Query asked({}, poses_of(query.poses, "poses"), query.parameters);
-  set_model(asked, model_of(query.model));
+  Query asked(model_of(query.model), poses_of(query.poses, "poses"), query.parameters);
   asked.bodies = bodies_on(query.bodies, asked.poses);
   return asked;
 }

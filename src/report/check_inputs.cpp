@@ -18,8 +18,7 @@ void check_hash(const Result& result, const char* what, std::uint64_t is, std::u
                    remedy);
 }
 
-void check_model(const Result& result, const std::vector<Vec3>& model,
-                 const ReportOptions& options) {
+void check_model(const Result& result, const Model& model, const ReportOptions& options) {
   const ResultHeader& header = result.reader().header();
   if (options.bodies.empty() && !header.bodies.empty()) {
     throw InputError(result.reader().name() +
@@ -29,13 +28,12 @@ void check_model(const Result& result, const std::vector<Vec3>& model,
     check_bodies_of(result.reader(), options.bodies);
     return;
   }
-  check_hash(result, "model", hash_of_model(model, options.model_triangles, options.model_solid_of),
-             header.model_hash, Remedy::kSameModel);
+  check_hash(result, "model", hash_of_model(model), header.model_hash, Remedy::kSameModel);
 }
 
 }  // namespace
 
-void check_report_inputs(const Result& result, const Store& store, const std::vector<Vec3>& model,
+void check_report_inputs(const Result& result, const Store& store, const Model& model,
                          const std::vector<Pose>& poses, const ReportOptions& options) {
   const ResultHeader& header = result.reader().header();
   check_hash(result, "environment", store.reader().metadata().points_hash, header.environment_hash,

@@ -7,7 +7,7 @@
 namespace clearway {
 
 /// Throws InputError where store, model or bodies, or poses are not those of the result.
-void check_report_inputs(const Result& result, const Store& store, const std::vector<Vec3>& model,
+void check_report_inputs(const Result& result, const Store& store, const Model& model,
                          const std::vector<Pose>& poses, const ReportOptions& options);
 
 }  // namespace clearway

@@ -38,19 +38,13 @@ void append_points(std::span<const Vec3> model, std::size_t most, std::uint8_t t
 
 /// For the page to show.
 std::vector<Vec3> surface_points(const DrawnBody& body, std::size_t most) {
-  return drawn_points(
-      {{body.model.begin(), body.model.end()}, {body.triangles.begin(), body.triangles.end()}},
-      static_cast<double>(most));
+  return drawn_points({body.model.vertices, body.model.triangles}, static_cast<double>(most));
 }
 
 /// The square of the greatest depth of a place in the solids of a body at a pose; 0 outside.
 double squared_depth(const DrawnBody& body, const Vec3& place, const Pose& pose) {
-  if (body.solid_of.empty()) return 0;
-  Query own;
-  own.model.assign(body.model.begin(), body.model.end());
-  own.triangles.assign(body.triangles.begin(), body.triangles.end());
-  own.solid_of.assign(body.solid_of.begin(), body.solid_of.end());
-  const SolidParts solids(own);
+  if (!body.model.is_solid()) return 0;
+  const SolidParts solids(body.model);
   const SolidPartsRef ref = solids.ref();
   double deepest = 0;
   const auto look = [&](std::uint32_t solid) {
@@ -80,26 +74,26 @@ double DrawnBody::distance_to(const Vec3& place, std::uint32_t pose) const {
   if (const double inside = squared_depth(*this, place, *there); inside > 0) {
     return -std::sqrt(inside);
   }
-  for (const auto& corners : triangles) {
-    const Triangle triangle{model[corners[0]], model[corners[1]], model[corners[2]]};
+  for (const auto& [a, b, c] : model.triangles) {
+    const Triangle triangle{model.vertices[a], model.vertices[b], model.vertices[c]};
     least = std::min(least, squared_distance(place, transform(*there, triangle)));
   }
-  if (!triangles.empty()) return std::sqrt(least);
-  for (const Vec3& m : model)
+  if (model.is_surface()) return std::sqrt(least);
+  for (const Vec3& m : model.vertices) {
     least = std::min(least, squared_distance(place, transform(*there, m)));
+  }
   return std::sqrt(least);
 }
 
-std::vector<DrawnBody> drawn_bodies(const std::vector<Vec3>& model, const std::vector<Pose>& poses,
+std::vector<DrawnBody> drawn_bodies(const Model& model, const std::vector<Pose>& poses,
                                     const ReportOptions& options) {
   std::vector<DrawnBody> bodies;
   for (const Body& body : options.bodies) {
-    bodies.push_back({body.name, body.model, body.triangles, body.solid_of, body.poses,
-                      body.path_pose, box_of(body.model)});
+    bodies.push_back(
+        {body.name, body.model, body.poses, body.path_pose, box_of(body.model.vertices)});
   }
   if (bodies.empty()) {
-    bodies.push_back(
-        {{}, model, options.model_triangles, options.model_solid_of, poses, {}, box_of(model)});
+    bodies.push_back({{}, model, poses, {}, box_of(model.vertices)});
   }
   return bodies;
 }
@@ -118,8 +112,8 @@ std::vector<PagePoint> points_of_bodies(std::span<DrawnBody> bodies, const PageL
     DrawnBody& body = bodies[i];
     const std::size_t before = out.size();
     std::vector<Vec3> surface;
-    if (!body.triangles.empty()) surface = surface_points(body, of_each);
-    append_points(body.triangles.empty() ? body.model : surface, of_each,
+    if (body.model.is_surface()) surface = surface_points(body, of_each);
+    append_points(body.model.is_surface() ? surface : body.model.vertices, of_each,
                   static_cast<std::uint8_t>(i), lattice, out);
     body.shown_points = out.size() - before;
   }

@@ -13,12 +13,10 @@
 
 namespace clearway {
 
-/// A rigid thing that the page draws: the model, or a body of a vehicle. Owns no points.
+/// A rigid thing that the page draws: the model, or a body of a vehicle.
 struct DrawnBody {
   std::string name;  ///< empty for the model
-  std::span<const Vec3> model;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
-  std::span<const std::uint32_t> solid_of;  ///< as Query has it
+  const Model& model;
   std::span<const Pose> poses;
   std::span<const std::uint32_t> path_pose;  ///< as Body has it; none: poses are the path's
   Box box{};                                 ///< of the model's points
@@ -32,7 +30,7 @@ struct DrawnBody {
 };
 
 /// The bodies of the vehicle, or the model as the only one. All arguments outlive it.
-std::vector<DrawnBody> drawn_bodies(const std::vector<Vec3>& model, const std::vector<Pose>& poses,
+std::vector<DrawnBody> drawn_bodies(const Model& model, const std::vector<Pose>& poses,
                                     const ReportOptions& options);
 
 /// Around all, each in its own frame.

@@ -22,29 +22,27 @@ void write_box(JsonText& json, const char* name, const Box& box) {
   json.key(name).begin('{').field("lo", box.lo).field("hi", box.hi).end('}');
 }
 
-/// Triangles of parts without an inside. of: a body, or the options' model.
-std::uint64_t surface_triangles(std::uint64_t triangles, std::span<const std::uint32_t> solid_of) {
-  if (solid_of.empty()) return triangles;
-  return static_cast<std::uint64_t>(std::ranges::count(solid_of, kNoSolid));
+/// Triangles of parts without an inside.
+std::uint64_t surface_triangles(const Model& model) {
+  if (!model.is_solid()) return model.triangles.size();
+  return static_cast<std::uint64_t>(std::ranges::count(model.solid_of, kNoSolid));
 }
 
-std::uint64_t surface_triangles(const ReportOptions& options) {
-  std::uint64_t count = surface_triangles(options.model_triangles.size(), options.model_solid_of);
-  for (const Body& body : options.bodies) {
-    count += surface_triangles(body.triangles.size(), body.solid_of);
-  }
+std::uint64_t surface_triangles(std::span<const DrawnBody> bodies) {
+  std::uint64_t count = 0;
+  for (const DrawnBody& body : bodies) count += surface_triangles(body.model);
   return count;
 }
 
 void write_bodies(JsonText& json, const ReportFacts& facts) {
   json.key("bodies").begin('[');
-  for (std::size_t i = 0; i < facts.bodies.size(); ++i) {
-    const DrawnBody& body = facts.bodies[i];
-    const std::vector<std::uint32_t>& solid_of = facts.options.bodies[i].solid_of;
-    json.begin('{').field("name", body.name).field("points", std::uint64_t{body.model.size()});
-    json.field("triangles", std::uint64_t{body.triangles.size()});
-    json.field("solids", solid_count(solid_of));
-    json.field("surface_triangles", surface_triangles(body.triangles.size(), solid_of));
+  for (const DrawnBody& body : facts.bodies) {
+    json.begin('{')
+        .field("name", body.name)
+        .field("points", std::uint64_t{body.model.vertices.size()});
+    json.field("triangles", std::uint64_t{body.model.triangles.size()});
+    json.field("solids", body.model.solid_count());
+    json.field("surface_triangles", surface_triangles(body.model));
     json.field("poses", std::uint64_t{body.poses.size()});
     json.field("shown_points", std::uint64_t{body.shown_points});
     write_box(json, "box", body.box);
@@ -80,7 +78,7 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.key("model").begin('{').field("name", options.model_name);
   json.field("points", header.model_points).field("hash", hash_text(header.model_hash));
   json.field("triangles", header.model_triangles).field("solids", header.model_solids);
-  json.field("surface_triangles", surface_triangles(options));
+  json.field("surface_triangles", surface_triangles(facts.bodies));
   json.field("spacing", spacing_of(header));
   write_box(json, "box", facts.model_box);
   json.field("above", options.model_above).field("left_out", options.model_left_out);

@@ -82,7 +82,7 @@ Answer judged(const Result& result, const std::vector<Message>& warnings) {
 /// One call of write_report, step by step.
 class Report {
  public:
-  Report(const Result& result, const Store& store, const std::vector<Vec3>& model,
+  Report(const Result& result, const Store& store, const Model& model,
          const std::vector<Pose>& poses, const ReportOptions& options)
       : result_(result),
         answer_(judged(result, options.warnings)),
@@ -126,8 +126,7 @@ class Report {
     if (result_.parameters().first_pose) {
       ConflictOptions find = options_.conflicts;
       find.bodies = options_.bodies;
-      const ModelShape shape{model_, options_.model_triangles, options_.model_solid_of};
-      if (options_.bodies.empty()) find.model = &shape;
+      if (options_.bodies.empty()) find.model = &model_;
       conflicts = find_conflicts(result_, poses_, find, &conflict_of);
     }
     PointSelection selection{
@@ -241,7 +240,7 @@ class Report {
   const Result& result_;
   const Answer answer_;
   const Store& store_;
-  const std::vector<Vec3>& model_;
+  const Model& model_;
   const std::vector<Pose>& poses_;
   const ReportOptions& options_;
   CallbackProgress progress_;
@@ -265,11 +264,9 @@ class Report {
 namespace {
 
 /// Adds what the search warned of, which follows from the question alone, unless it was given.
-void add_query_warnings(const Result& result, const Store& store, const std::vector<Vec3>& model,
+void add_query_warnings(const Result& result, const Store& store, const Model& model,
                         const std::vector<Pose>& poses, ReportOptions& options) {
   Query query(model, poses, result.parameters());
-  query.triangles = options.model_triangles;
-  query.solid_of = options.model_solid_of;
   query.bodies = options.bodies;
   std::vector<Message> found;
   const MessageCallback quiet;
@@ -288,7 +285,7 @@ void add_query_warnings(const Result& result, const Store& store, const std::vec
 
 }  // namespace
 
-ReportSummary write_report(const Result& result, const Store& store, const std::vector<Vec3>& model,
+ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options) {
   check_report_inputs(result, store, model, poses, options);

@@ -75,20 +75,18 @@ void check_ignored(const QueryParameters& query) {
   }
 }
 
-/// of: a query, or a body.
-template <typename ModelOwner>
-void check_solids(const std::string& what, const ModelOwner& of) {
+void check_solids(const std::string& what, const Model& of) {
   if (!of.is_solid()) return;
   if (of.solid_of.size() != of.triangles.size()) {
     throw InputError(what + " has " + std::to_string(of.triangles.size()) +
                      " triangles and the solids of " + std::to_string(of.solid_of.size()) +
                      ", expected one for each");
   }
-  if (const std::uint64_t solids = solid_count(of.solid_of); solids > of.triangles.size()) {
+  if (const std::uint64_t solids = of.solid_count(); solids > of.triangles.size()) {
     throw InputError(what + " names solid " + std::to_string(solids - 1) +
                      ", expected numbers below that of its triangles");
   }
-  for (const Vec3& corner : of.model) {
+  for (const Vec3& corner : of.vertices) {
     for (int k = 0; k < 3; ++k) {
       if (std::abs(corner[k]) < SolidLattice::kMostSide / 2) continue;
       throw InputError("a corner of " + what + " has the coordinate " + std::to_string(corner[k]) +
@@ -97,12 +95,10 @@ void check_solids(const std::string& what, const ModelOwner& of) {
   }
 }
 
-/// of: a query, or a body.
-template <typename ModelOwner>
-void check_model_size(const std::string& what, const ModelOwner& of) {
-  if (of.model.empty()) throw InputError(what + " has no points");
-  if (of.model.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError(what + " has " + std::to_string(of.model.size()) +
+void check_model_size(const std::string& what, const Model& of) {
+  if (of.empty()) throw InputError(what + " has no points");
+  if (of.vertices.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(what + " has " + std::to_string(of.vertices.size()) +
                      " points, expected fewer than 2^32");
   }
   if (of.triangles.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
@@ -111,10 +107,10 @@ void check_model_size(const std::string& what, const ModelOwner& of) {
   }
   for (std::size_t i = 0; i < of.triangles.size(); ++i) {
     for (const std::uint32_t corner : of.triangles[i]) {
-      if (corner < of.model.size()) continue;
+      if (corner < of.vertices.size()) continue;
       throw InputError("triangle " + std::to_string(i) + " of " + what + " has the corner " +
                        std::to_string(corner) + ", expected one below " +
-                       std::to_string(of.model.size()));
+                       std::to_string(of.vertices.size()));
     }
   }
   check_solids(what, of);
@@ -199,8 +195,8 @@ void check_sizes(const Query& query) {
     throw InputError("the trajectory has " + std::to_string(query.poses.size()) +
                      " poses, expected fewer than " + std::to_string(kEnd));
   }
-  if (query.bodies.empty()) check_model_size("the model", query);
-  for (const Body& body : query.bodies) check_model_size("body " + body.name, body);
+  if (query.bodies.empty()) check_model_size("the model", query.model);
+  for (const Body& body : query.bodies) check_model_size("body " + body.name, body.model);
 }
 
 }  // namespace clearway

@@ -12,17 +12,23 @@ std::uint64_t program_bytes(int threads) {
   return kProgram + kThread * static_cast<std::uint64_t>(threads);
 }
 
+namespace {
+
+std::uint64_t bytes_of(const Model& model) {
+  return model.vertices.size() * sizeof(model.vertices[0]) +
+         model.triangles.size() * sizeof(model.triangles[0]) +
+         model.solid_of.size() * sizeof(model.solid_of[0]);
+}
+
+}  // namespace
+
 std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
-  std::uint64_t bytes = store.allocated_bytes() + query.model.size() * sizeof(Vec3) +
-                        query.triangles.size() * sizeof(query.triangles[0]) +
-                        query.solid_of.size() * sizeof(query.solid_of[0]) +
-                        query.poses.size() * sizeof(Pose);
+  std::uint64_t bytes =
+      store.allocated_bytes() + bytes_of(query.model) + query.poses.size() * sizeof(Pose);
   for (const Body& body : query.bodies) {
     // The search has a copy of them.
-    bytes += 2 * body.model.size() * sizeof(Vec3) +
-             2 * body.triangles.size() * sizeof(body.triangles[0]) +
-             2 * body.solid_of.size() * sizeof(body.solid_of[0]) +
-             body.poses.size() * (2 * sizeof(Pose) + sizeof(std::uint32_t));
+    bytes +=
+        2 * bytes_of(body.model) + body.poses.size() * (2 * sizeof(Pose) + sizeof(std::uint32_t));
   }
   return bytes;
 }
@@ -42,14 +48,14 @@ std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query) {
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {
-  const auto of_model = [](const auto& model) {
+  const auto of_model = [](const Model& model) {
     const std::uint64_t of_solids = 400 * model.solid_of.size();  // each once more, by solid
     return of_solids +
-           (model.is_surface() ? 240 * model.triangles.size() : 52 * model.model.size());
+           (model.is_surface() ? 240 * model.triangles.size() : 52 * model.vertices.size());
   };
-  if (query.bodies.empty()) return of_model(query) + 168 * query.poses.size();
+  if (query.bodies.empty()) return of_model(query.model) + 168 * query.poses.size();
   std::uint64_t bytes = 0;
-  for (const Body& body : query.bodies) bytes += of_model(body) + 168 * body.poses.size();
+  for (const Body& body : query.bodies) bytes += of_model(body.model) + 168 * body.poses.size();
   return bytes;
 }
 

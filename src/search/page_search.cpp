@@ -21,10 +21,10 @@ class SearchedQuery {
     const Stopwatch clock;
     thinned_.emplace(asked);
     report.seconds.thin = clock.seconds();
-    const std::size_t points = get().model.size(), poses = get().poses.size();
+    const std::size_t points = get().model.vertices.size(), poses = get().poses.size();
     report.tolerance = {.model_points_kept = points, .poses_kept = poses, .resolved_by_bounds = 0};
     log.note("tolerance " + format_number(asked.tolerance) + " m: " + format_count(points) +
-             " of " + format_count(asked.model.size()) + " model points and " +
+             " of " + format_count(asked.model.vertices.size()) + " model points and " +
              format_count(poses) + " of " + format_count(asked.poses.size()) +
              " poses are searched");
   }

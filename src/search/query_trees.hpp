@@ -16,9 +16,9 @@ namespace clearway {
 struct QueryTrees {
   /// The query outlives it; clock: started now.
   explicit QueryTrees(const Query& query, int threads = 1, const Stopwatch& clock = {})
-      : model(query.is_surface() ? std::span<const Vec3>() : query.model, threads),
-        triangles(triangles_of(query.model, query.triangles), threads),
-        solids(query, threads),
+      : model(query.model.is_surface() ? std::span<const Vec3>() : query.model.vertices, threads),
+        triangles(triangles_of(query.model), threads),
+        solids(query.model, threads),
         model_seconds(clock.seconds()),
         motion(query.poses, box(), query.between_poses, threads),
         motion_seconds(clock.seconds() - model_seconds) {}

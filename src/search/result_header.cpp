@@ -15,24 +15,24 @@ namespace clearway {
 namespace {
 
 std::uint64_t points_of(const Query& query) {
-  std::uint64_t points = query.model.size();
-  for (const Body& body : query.bodies) points += body.model.size();
+  std::uint64_t points = query.model.vertices.size();
+  for (const Body& body : query.bodies) points += body.model.vertices.size();
   return points;
 }
 
 std::uint64_t triangles_of(const Query& query) {
-  std::uint64_t triangles = query.triangles.size();
-  for (const Body& body : query.bodies) triangles += body.triangles.size();
+  std::uint64_t triangles = query.model.triangles.size();
+  for (const Body& body : query.bodies) triangles += body.model.triangles.size();
   return triangles;
 }
 
 /// Of several bodies that of all, each in its own frame.
 Box model_box(const Query& query) {
-  if (query.bodies.empty()) return query.model.empty() ? Box{} : box_of(query.model);
+  if (query.bodies.empty()) return query.model.empty() ? Box{} : box_of(query.model.vertices);
   std::optional<Box> all;
   for (const Body& body : query.bodies) {
     if (body.model.empty()) continue;
-    const Box box = box_of(body.model);
+    const Box box = box_of(body.model.vertices);
     all = all ? all->united(box) : box;
   }
   return all.value_or(Box{});
@@ -53,28 +53,27 @@ ResultHeader result_header(const StoreReader& store, const Query& query,
   sort_ignored(asked);
   IgnoredPointCounts ignored = count_ignored(store, asked, options.threads);
   const bool by_class = !asked.ignore_classes.empty();
-  ResultHeader header{std::move(asked),
-                      metadata.input_points,
-                      metadata.points_hash,
-                      points_of(query),
-                      query.bodies.empty()
-                          ? hash_of_model(query.model, query.triangles, query.solid_of)
-                          : hash_of_bodies(query.bodies),
-                      query.poses.size(),
-                      hash_of_trajectory(query.poses),
-                      query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
-                      options.float_precision,
-                      metadata.quantisation,
-                      metadata.crs_wkt,
-                      false,
-                      model_box(query),
-                      std::nullopt,
-                      triangles_of(query),
-                      solid_count(query),
-                      std::move(ignored),
-                      by_class ? metadata.classes->hash : 0,
-                      names_of(query),
-                      {model_spacing(query)}};
+  ResultHeader header{
+      std::move(asked),
+      metadata.input_points,
+      metadata.points_hash,
+      points_of(query),
+      query.bodies.empty() ? hash_of_model(query.model) : hash_of_bodies(query.bodies),
+      query.poses.size(),
+      hash_of_trajectory(query.poses),
+      query.tolerance > 0 ? name_of(chosen_engine(options)) : "",
+      options.float_precision,
+      metadata.quantisation,
+      metadata.crs_wkt,
+      false,
+      model_box(query),
+      std::nullopt,
+      triangles_of(query),
+      solid_count(query),
+      std::move(ignored),
+      by_class ? metadata.classes->hash : 0,
+      names_of(query),
+      {model_spacing(query)}};
   header.last_pose = header.first_pose;
   header.version = header.written_version();
   return header;

@@ -397,8 +397,8 @@ SearchReport search(const Store& store, const Query& query, const std::filesyste
                     const SearchOptions& options) {
   check_query(query, options);
   check_bodies(query, options);
-  if (query.is_surface()) check_surface(query, options);
-  if (query.is_solid()) check_solid(query);
+  if (query.model.is_surface()) check_surface(query, options);
+  if (query.model.is_solid()) check_solid(query);
   refuse_overwriting(output, {store.path()});
   return Search(store, query, output, options).run();
 }

@@ -98,7 +98,7 @@ std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t 
 
 /// Inside solids it is below 0.
 bool SearchJournal::is_square(double squared) const {
-  return squared >= 0 || (query_.has_solids() && squared < 0 && std::isfinite(squared));
+  return squared >= 0 || (has_solids(query_) && squared < 0 && std::isfinite(squared));
 }
 
 void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,

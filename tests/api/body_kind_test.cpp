@@ -52,7 +52,7 @@ std::unique_ptr<PageEngineKind> host_kind(const StoreReader& store, const Query&
   std::vector<Query> queries = body_queries(query);
   BodyKind::Kinds kinds;
   for (const Query& body : queries) {
-    if (body.is_surface()) {
+    if (body.model.is_surface()) {
       kinds.push_back(std::make_unique<HostKindOf<Triangle>>(store, body, options));
     } else {
       kinds.push_back(std::make_unique<HostKindOf<Vec3>>(store, body, options));

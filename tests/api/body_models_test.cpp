@@ -49,7 +49,7 @@ TEST_CASE("a vehicle's result knows what its bodies consist of") {
   const Result surfaces(vehicle.folder / "out.h5");
   const ResultHeader header = surfaces.reader().header();
   CHECK(header.model_triangles == 16);
-  for (Body& body : vehicle.query.bodies) body.triangles.clear();
+  for (Body& body : vehicle.query.bodies) body.model.triangles.clear();
   vehicle.run();
   const ResultHeader points = Result(vehicle.folder / "out.h5").reader().header();
   CHECK(points.model_triangles == 0);
@@ -62,7 +62,7 @@ TEST_CASE("a vehicle with a surface has no motion between poses") {
   vehicle.query.between_poses = true;
   CHECK_THROWS_WITH(vehicle.run(),
                     Contains("motion between poses is searched for models of points"));
-  vehicle.query.bodies[2].triangles.back()[1] = 25;
+  vehicle.query.bodies[2].model.triangles.back()[1] = 25;
   vehicle.query.between_poses = false;
   CHECK_THROWS_WITH(vehicle.run(), Contains("of body rear has the corner 25"));
 }

@@ -72,7 +72,7 @@ TEST_CASE("bodies that contradict path or engine are refused by name") {
   refused("a name of at most");
   vehicle.query.bodies[1].name = "two\nlines";
   refused("in one line");
-  vehicle.query.bodies[1].model.clear();
+  vehicle.query.bodies[1].model.vertices.clear();
   refused("body middle has no points");
   vehicle.query.bodies[1].poses.pop_back();
   refused("body middle: has 27 poses");

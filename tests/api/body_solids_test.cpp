@@ -40,8 +40,8 @@ struct SolidVehicle : Vehicle {
     parts.add({{{0, 0, -0.2}, {0.4, 0, -0.2}, {0, 0.4, -0.2}}, {{0, 1, 2}}}, false);
     for (const std::size_t body : {0, 2}) {
       query.bodies[body].model = parts.surface.vertices;
-      query.bodies[body].triangles = parts.surface.triangles;
-      query.bodies[body].solid_of = parts.solid_of;
+      query.bodies[body].model.triangles = parts.surface.triangles;
+      query.bodies[body].model.solid_of = parts.solid_of;
       keep_some_poses(query.bodies[body]);
     }
     if (surface_too) make_surface(1);
@@ -60,7 +60,7 @@ TEST_CASE("bodies of solids and bodies of points or surfaces are searched togeth
     CHECK(vehicle.report.model_solids == 4);
     const auto body = Result(vehicle.folder / "out.h5").first_body();
     for (std::uint32_t i = 0; i < 3; ++i) CHECK(std::ranges::count(body, i) > 0);
-    for (Body& surface : vehicle.query.bodies) surface.solid_of.clear();
+    for (Body& surface : vehicle.query.bodies) surface.model.solid_of.clear();
     vehicle.query.first_pose = false;
     CHECK(vehicle.run().size() < found);
   }
@@ -126,7 +126,7 @@ TEST_CASE("a vehicle's result knows its solids") {
   vehicle.run();
   const ResultHeader header = Result(vehicle.folder / "out.h5").reader().header();
   CHECK(header.model_solids == 4);
-  vehicle.query.bodies[2].solid_of.clear();
+  vehicle.query.bodies[2].model.solid_of.clear();
   vehicle.run();
   const ResultHeader other = Result(vehicle.folder / "out.h5").reader().header();
   CHECK(other.model_solids == 2);
@@ -135,11 +135,11 @@ TEST_CASE("a vehicle's result knows its solids") {
 
 TEST_CASE("solids that are not those of a body are refused by its name") {
   SolidVehicle vehicle(96);
-  vehicle.query.bodies[2].solid_of.pop_back();
+  vehicle.query.bodies[2].model.solid_of.pop_back();
   CHECK_THROWS_WITH(vehicle.run(), Contains("body rear has") && Contains("the solids of"));
-  vehicle.query.bodies[2].solid_of.push_back(1000);
+  vehicle.query.bodies[2].model.solid_of.push_back(1000);
   CHECK_THROWS_WITH(vehicle.run(), Contains("body rear names solid 1000"));
-  vehicle.query.bodies[2].solid_of.back() = kNoSolid;
+  vehicle.query.bodies[2].model.solid_of.back() = kNoSolid;
   vehicle.query.tolerance = 0.01;
   CHECK_THROWS_AS(vehicle.run(), UsageError);
 }

@@ -49,7 +49,8 @@ class Cloud {
     for (const Quantum& q : points) {
       places_.push_back(position(store.quantisation(), q[0], q[1], q[2]));
     }
-    for (int i = 0; i < 12; ++i) query.model.push_back({any(0.2), any(0.2), 0.4 + any(0.4)});
+    for (int i = 0; i < 12; ++i)
+      query.model.vertices.push_back({any(0.2), any(0.2), 0.4 + any(0.4)});
     for (int i = 0; i < 20; ++i) {
       const double turn = any(3.1), c = std::cos(turn), s = std::sin(turn);
       query.poses.push_back(
@@ -81,7 +82,7 @@ class Cloud {
     std::vector<First> first(ignored.size());
     double lowest = std::numeric_limits<double>::max();
     const auto add = [&](const Query& body, const std::vector<std::uint32_t>& path_pose) {
-      for (const Vec3& p : body.model) lowest = std::min(lowest, p.z);
+      for (const Vec3& p : body.model.vertices) lowest = std::min(lowest, p.z);
       const auto poses = brute_force_first_poses(ignored, body);
       for (std::size_t i = 0; i < poses.size(); ++i) {
         if (poses[i] == HitSet::kNever) continue;
@@ -92,10 +93,7 @@ class Cloud {
     };
     if (query.bodies.empty()) add(query, {});
     for (const Body& body : query.bodies) {
-      Query own(body.model, body.poses, query);
-      own.triangles = body.triangles;
-      own.solid_of = body.solid_of;
-      add(own, body.path_pose);
+      add(Query(body.model, body.poses, query), body.path_pose);
     }
     Counts out;
     for (const First& of : first) {
@@ -129,8 +127,8 @@ class Cloud {
 void become_surface(Cloud& cloud, bool solid) {
   const Surface body = tetrahedron({-0.4, -0.3, 0}, {0.4, -0.3, 0}, {0, 0.4, 0}, {0, 0, 0.9});
   cloud.query.model = body.vertices;
-  cloud.query.triangles = body.triangles;
-  if (solid) cloud.query.solid_of.assign(body.triangles.size(), 0);
+  cloud.query.model.triangles = body.triangles;
+  if (solid) cloud.query.model.solid_of.assign(body.triangles.size(), 0);
 }
 
 }  // namespace
@@ -169,7 +167,7 @@ TEST_CASE("ignored points that would collide are counted for all bodies of a veh
     high.path_pose.push_back(i);
   }
   query.bodies = {low, high};
-  query.model.clear();
+  query.model.vertices.clear();
   const Counts expected = cloud.by_hand();
   CHECK(expected.high > 0);
   CHECK(expected.high < expected.colliding);

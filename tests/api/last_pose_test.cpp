@@ -94,7 +94,7 @@ TEST_CASE("last poses of surfaces and solids, and without ignored points") {
   Vehicle vehicle(6);
   vehicle.make_surface(0);
   Query query = one_model(vehicle, false);
-  query.triangles = vehicle.query.bodies[0].triangles;
+  query.model.triangles = vehicle.query.bodies[0].model.triangles;
   check_last_poses(search_of(vehicle, query, {.threads = 2}),
                    last_by_hand(vehicle.places, query, {}));
   Bodies solid;

@@ -137,11 +137,11 @@ TEST_CASE("parts of different runs are refused and named") {
   CHECK_THAT(shards.refusal(parts), Contains("wide2.h5: answers another question than") &&
                                         Contains("part1.h5: radius is 0.2 m, not 0.1 m"));
   shards.scene.query.radius = 0.1;
-  shards.scene.query.model[0].x = 0.01;
+  shards.scene.query.model.vertices[0].x = 0.01;
   parts[1] = shards.parts(2, "moved")[1];
   CHECK_THAT(shards.refusal(parts),
              Contains("moved2.h5: answers another question than") && Contains(": model is"));
-  shards.scene.query.model[0].x = 0;
+  shards.scene.query.model.vertices[0].x = 0;
 
   // The same points in other cells: parts of both would lack points.
   convert({shards.scene.folder / "wall.las"}, shards.scene.folder / "other.h5",

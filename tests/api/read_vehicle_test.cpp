@@ -48,13 +48,9 @@ TEST_CASE("a vehicle's file gives the bodies that follow gives") {
          {"name": "crane", "model": "fin.off", "trajectory": "own.txt"})",
       {}, &told);
   const std::vector<Vec3> line{{0, -1, 1}, {0, 0, 1}, {0, 1, 1}};
-  const ModelShape fin = read_model_shape(files.folder / "fin.off", {.as = ModelAs::kSurface});
+  const Model fin = read_model(files.folder / "fin.off", {.as = ModelAs::kSurface});
   std::vector<Body> expected{{.name = "body", .model = line, .poses = {}, .path_pose = {}},
-                             {.name = "bogie",
-                              .model = fin.points,
-                              .poses = {},
-                              .path_pose = {},
-                              .triangles = fin.triangles}};
+                             {.name = "bogie", .model = fin, .poses = {}, .path_pose = {}}};
   expected[0] = follow(expected[0], files.path, BodyPivots{5, -5}, &expected_told);
   expected[1] = follow(expected[1], files.path, BodyStation{5}, &expected_told);
   REQUIRE(bodies.size() == 4);
@@ -83,8 +79,8 @@ TEST_CASE("options hold for all bodies, and threads change none") {
   options.model.environment_unit = 0.5;  // "1m" is two of these, -1 is one
   CHECK(files.read(bodies, options)[1].path_pose.front() > files.read(bodies)[1].path_pose.front());
   options.model = {.as = ModelAs::kPoints, .spacing = 0.1};
-  CHECK(files.read(bodies, options)[1].triangles.empty());
-  CHECK(files.read(bodies, options)[1].model.size() > 20);
+  CHECK(files.read(bodies, options)[1].model.triangles.empty());
+  CHECK(files.read(bodies, options)[1].model.vertices.size() > 20);
 }
 
 TEST_CASE("errors name the file and the key") {

@@ -196,8 +196,8 @@ TEST_CASE("warnings are values") {
             "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
             "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   std::vector<Message> warnings;
-  CHECK_THROWS_AS(read_model(scene.folder / "mesh.ply"), InputError);
-  CHECK(read_model(scene.folder / "mesh.ply", {.spacing = 1}, &warnings).size() == 3);
+  CHECK_THROWS_AS(read_model_points(scene.folder / "mesh.ply"), InputError);
+  CHECK(read_model_points(scene.folder / "mesh.ply", {.spacing = 1}, &warnings).size() == 3);
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].severity == Message::Severity::kNote);
   CHECK_THAT(warnings[0].text, Catch::Contains("1 triangle,"));

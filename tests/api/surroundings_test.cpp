@@ -108,7 +108,7 @@ void use_all(const ApiScene& scene) {
   }
   CHECK_THROWS_AS(search(store, scene.query, output), UsageError);
   CHECK(Result(output).xyz().size() == Result(output).size());
-  CHECK_THROWS_AS(read_model(output), InputError);
+  CHECK_THROWS_AS(read_model_points(output), InputError);
   CHECK_THROWS_AS(read_trajectory(input), InputError);
   for (const auto& file : {site, output}) {
     const std::string bytes = bytes_of(file);

@@ -60,15 +60,15 @@ struct Vehicle {
   }
   /// The model becomes triangles of three points each.
   void make_surface(std::size_t body) {
-    const auto corners = static_cast<std::uint32_t>(query.bodies[body].model.size());
+    const auto corners = static_cast<std::uint32_t>(query.bodies[body].model.vertices.size());
     for (std::uint32_t i = 0; i + 2 < corners; i += 3) {
-      query.bodies[body].triangles.push_back({i, i + 1, i + 2});
+      query.bodies[body].model.triangles.push_back({i, i + 1, i + 2});
     }
   }
   Query of(std::size_t body) const {
     Query own(query.bodies[body].model, query.bodies[body].poses, query);
-    own.triangles = query.bodies[body].triangles;
-    own.solid_of = query.bodies[body].solid_of;
+    own.model.triangles = query.bodies[body].model.triangles;
+    own.model.solid_of = query.bodies[body].model.solid_of;
     return own;
   }
   /// For brute force: ignored points are far away.

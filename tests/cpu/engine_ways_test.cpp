@@ -22,7 +22,7 @@ struct Earlier {
 
   Earlier(const Vec3& e, const Query& query) {
     for (std::uint32_t i = 0; i < query.poses.size() && pose == kNever; ++i) {
-      for (const Vec3& m : query.model) {
+      for (const Vec3& m : query.model.vertices) {
         const Vec3 a = transform(query.poses[i], m);
         at_pose |= collides(e, a, query.radius);
         const bool inside = i + 1 < query.poses.size() &&
@@ -131,7 +131,7 @@ struct WholeScene {
 
   Query query() const {
     Query out;
-    for (const WholePoint& m : model) out.model.push_back(m.as_double());
+    for (const WholePoint& m : model) out.model.vertices.push_back(m.as_double());
     for (const WholePose& pose : poses) out.poses.push_back(pose.as_pose());
     out.radius = static_cast<double>(quarters) / 4;
     return out;

@@ -63,7 +63,7 @@ TEST_CASE("progress counts every pose once") {
   SECTION("many poses") {}
   SECTION("one pose, its model shared out") { scene.query.poses.resize(1); }
   SECTION("no model") { scene.query.model = {}; }
-  const std::uint64_t searches = scene.query.model.size() * scene.query.poses.size();
+  const std::uint64_t searches = scene.query.model.vertices.size() * scene.query.poses.size();
   run_kdtree(scene.cloud, scene.query, {3}, progress);
   CHECK(progress.begun == 1);
   CHECK(progress.ended == 1);

@@ -26,7 +26,7 @@ struct SurfaceScene : SceneChecks<SurfaceScene> {
 
   Query query() const {
     Query query{surface.vertices, poses, {radius}};
-    query.triangles = surface.triangles;
+    query.model.triangles = surface.triangles;
     return query;
   }
 };
@@ -234,7 +234,7 @@ TEST_CASE("runs of poses take a fraction of the tests that single poses do") {
   const GrazingScene scene(1e-3);
   const Query query = scene.query();
   const MemoryCloud cloud(scene.points, scene.quantisation);
-  const TriangleTree model(triangles_of(query.model, query.triangles));
+  const TriangleTree model(triangles_of(query.model));
   const ModelField field(model, query.radius, {}, 1);
   const MotionTree motion(query.poses, model.box());
   const SweepFilterOf<Triangle> filter(query, motion, model, field, cloud);

@@ -32,7 +32,7 @@ struct Scene {
     query.first_pose = true;
     search(Store(folder / "scan.h5"), query, folder / "out.h5",
            {.device = Device::kCpu, .threads = 2});
-    shape = {query.model, query.triangles, query.solid_of};
+    shape = query.model;
   }
 
   Conflicts conflicts(std::vector<std::uint32_t>* conflict_of = nullptr) const {
@@ -61,7 +61,7 @@ struct Scene {
 
   Query query;
   std::vector<Vec3> points;
-  ModelShape shape;
+  Model shape;
   ScratchFolder folder;
 };
 
@@ -143,7 +143,7 @@ TEST_CASE("a pole that a long load meets in its middle is named with station, si
   for (const bool solid : {true, false}) {
     CAPTURE(solid);
     Query query = solid_box({{-15, -1.5, 0.2}, {15, 1.5, 3}}, poses, 0.1);
-    if (!solid) query.solid_of.clear();
+    if (!solid) query.model.solid_of.clear();
     query.clearance = 0.2;
     const Scene scene(pole(at.x, at.y), query);
     const Conflicts found = scene.conflicts();
@@ -169,7 +169,7 @@ TEST_CASE("what the front of a vehicle meets is in front, whatever it is made of
   }
   for (const bool solid : {true, false}) {
     Query query = solid_box({{-2, -1, 0}, {2, 1, 1.5}}, straight(20), 0.1);
-    if (!solid) query.solid_of.clear();
+    if (!solid) query.model.solid_of.clear();
     query.clearance = 0.2;
     const Conflicts found = Scene(wall, query).conflicts();
     REQUIRE(found.listed.size() == 1);

@@ -13,7 +13,8 @@ std::filesystem::path street(const std::string& name) { return data_folder() / "
 
 /// Those of the colliding points that lie in a part of the street, at the radius.
 Found crop(const Store& store, double radius, const ScratchFolder& folder, const Box& part) {
-  const Query query(read_model(street("beetle.ply")), read_trajectory(street("trajectory.txt")),
+  const Query query(read_model_points(street("beetle.ply")),
+                    read_trajectory(street("trajectory.txt")),
                     {.radius = radius, .first_pose = true});
   search(store, query, folder / "out.h5", {.threads = 2, .overwrite = true});
   const Result result(folder / "out.h5");

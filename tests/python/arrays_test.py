@@ -144,8 +144,8 @@ class Arguments(SceneTest):
         for name, value in (("scale", 0), ("scale", np.nan), ("regular_size", -1), ("threads", -1),
                             ("cell_points", -1), ("memory_bytes", -1)):
             self.refused(clearway.UsageError, name, clearway.convert, scan, store, **{name: value})
-        self.refused(clearway.UsageError, "unit", clearway.read_model, scan, unit=-1)
-        self.refused(clearway.UsageError, "above", clearway.read_model, scan, above=np.nan)
+        self.refused(clearway.UsageError, "unit", clearway.read_model_points, scan, unit=-1)
+        self.refused(clearway.UsageError, "above", clearway.read_model_points, scan, above=np.nan)
         self.refused(clearway.UsageError, "environment_unit", clearway.read_trajectory, scan,
                      environment_unit=0)
         self.refused(clearway.UsageError, r"lever_arm\[1\]", clearway.read_trajectory, scan,
@@ -181,7 +181,7 @@ class Arguments(SceneTest):
         self.refused(TypeError, "inputs: expected a list", clearway.convert, 1, "b.h5")
         self.refused(TypeError, "columns: expected a list", clearway.convert, "a", "b.h5",
                      columns="xyz")
-        self.refused(TypeError, "messages", clearway.read_model, "a.xyz", messages=print)
+        self.refused(TypeError, "messages", clearway.read_model_points, "a.xyz", messages=print)
         self.refused(TypeError, "missing a required argument: 'output'", clearway.search, store,
                      query)
         self.refused(TypeError, "too many", clearway.search, store, query, "a.h5", "sweep")

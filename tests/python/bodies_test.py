@@ -71,10 +71,10 @@ class BodyTest(SceneTest):
         np.testing.assert_array_equal(front.path_pose, followed.path_pose)
         np.testing.assert_array_equal(front.model, self.model)
         np.testing.assert_array_equal(own.poses, self.poses)
-        np.testing.assert_allclose(fin.model.points.max(axis=0), [1, 1, 0])
+        np.testing.assert_allclose(fin.model.vertices.max(axis=0), [1, 1, 0])
         self.assertEqual(len(fin.path_pose), 24)
         sampled = clearway.read_vehicle(str(file), self.poses, "points", spacing=0.1)[2]
-        self.assertGreater(len(sampled.model.points), 20)
+        self.assertGreater(len(sampled.model.vertices), 20)
         feet = clearway.read_vehicle(file, self.poses, environment_unit=clearway.METRES_PER_FOOT)
         self.assertEqual(len(feet[0].poses), 13)  # a metre is 3.28 of these units
 

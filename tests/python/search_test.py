@@ -34,7 +34,7 @@ class FindsWhatBruteForceFinds(SceneTest):
                     self.assertEqual(report.engine, engine)
 
     def test_a_surface(self):
-        square = clearway.ModelShape([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
+        square = clearway.Model([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
                                      [[0, 1, 2], [0, 2, 3]])
         query = clearway.Query(square, self.poses, RADIUS, first_pose=True)
         self.assertIn("2 model triangles", repr(query))
@@ -52,7 +52,7 @@ class FindsWhatBruteForceFinds(SceneTest):
         page = self.folder / "square.html"
         self.assertFalse(clearway.write_report(result, store, square, self.poses, page).clear)
         with self.assertRaises(clearway.InputError):  # its corners alone are another model
-            clearway.write_report(result, store, square.points, self.poses, page, overwrite=True)
+            clearway.write_report(result, store, square.vertices, self.poses, page, overwrite=True)
 
     def test_a_solid(self):
         corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -61,7 +61,7 @@ class FindsWhatBruteForceFinds(SceneTest):
         (self.folder / "box.off").write_text(
             "OFF\n8 12 0\n" + "".join(f"{x} {y} {z}\n" for x, y, z in corners)
             + "".join(f"3 {face}\n" for face in faces))
-        box = clearway.read_model_shape(self.folder / "box.off", "solid")
+        box = clearway.read_model(self.folder / "box.off", "solid")
         np.testing.assert_array_equal(box.solid_of, np.zeros(12))
         query = clearway.Query(box, self.poses, RADIUS, first_pose=True, clearance=0.5)
         report = self.search(query=query)
@@ -80,28 +80,28 @@ class FindsWhatBruteForceFinds(SceneTest):
         page = self.folder / "box.html"
         self.assertFalse(clearway.write_report(result, store, box, self.poses, page).clear)
         with self.assertRaises(clearway.InputError):  # without an inside it is another model
-            clearway.write_report(result, store, clearway.ModelShape(box.points, box.triangles),
+            clearway.write_report(result, store, clearway.Model(box.vertices, box.triangles),
                                   self.poses, page, overwrite=True)
 
     def test_a_surface_of_a_file(self):
         (self.folder / "one.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         noted = []
-        shape = clearway.read_model_shape(self.folder / "one.off", messages=noted)
+        shape = clearway.read_model(self.folder / "one.off", messages=noted)
         np.testing.assert_array_equal(shape.triangles, [[0, 1, 2]])
-        self.assertEqual(shape.points.shape, (3, 3))
+        self.assertEqual(shape.vertices.shape, (3, 3))
         self.assertIn("searched as it is", noted[0].text)
-        sampled = clearway.read_model_shape(self.folder / "one.off", "points", spacing=0.1)
+        sampled = clearway.read_model(self.folder / "one.off", "points", spacing=0.1)
         self.assertEqual(sampled.triangles.shape, (0, 3))
         self.assertIn("model points", repr(clearway.Query(sampled, self.poses, RADIUS)))
 
     def test_triangles_are_checked(self):
         points = np.eye(3)
-        for wrong, said in (([[0, 1, 3]], "the point 3, expected 0 to 2"),
-                            ([[0, 1, -1]], "the point -1"), ([[0, 1]], "n x 3")):
+        for wrong, said in (([[0, 1, 3]], "the vertex 3, expected 0 to 2"),
+                            ([[0, 1, -1]], "the vertex -1"), ([[0, 1]], "n x 3")):
             with self.assertRaisesRegex(clearway.UsageError, said):
-                clearway.ModelShape(points, wrong)
+                clearway.Model(points, wrong)
         with self.assertRaises(TypeError):
-            clearway.ModelShape(points, [[0, 1, 2.5]])
+            clearway.Model(points, [[0, 1, 2.5]])
 
     def test_ignored_boxes(self):
         box = clearway.Box((0, -1, -1), (3, 1, 1))
@@ -326,8 +326,8 @@ class Stores(SceneTest):
 class Inputs(SceneTest):
     def test_model_and_trajectory(self):
         np.savetxt(self.folder / "model.xyz", self.model, "%.17g")
-        np.testing.assert_array_equal(clearway.read_model(self.folder / "model.xyz"), self.model)
-        above = clearway.read_model(self.folder / "model.xyz", above=0.0)
+        np.testing.assert_array_equal(clearway.read_model_points(self.folder / "model.xyz"), self.model)
+        above = clearway.read_model_points(self.folder / "model.xyz", above=0.0)
         np.testing.assert_array_equal(above, self.model[self.model[:, 2] >= 0])
         np.savetxt(self.folder / "path.txt", self.poses[:, :3].reshape(-1, 12), "%.17g")
         read = clearway.read_trajectory(self.folder / "path.txt")

@@ -11,7 +11,7 @@ TEST_CASE("trees built with several threads are those of one") {
   std::uniform_real_distribution<double> unit(0, 1);
   Query query;
   for (int i = 0; i < 20'000; ++i) {
-    query.model.push_back({4 * unit(random), 2 * unit(random), unit(random)});
+    query.model.vertices.push_back({4 * unit(random), 2 * unit(random), unit(random)});
   }
   double x = 0;
   for (int i = 0; i < 5'000; ++i) {

@@ -29,8 +29,8 @@ struct Bodies {
 
   Query query(std::vector<Pose> poses, double radius) const {
     Query query{surface.vertices, std::move(poses), {radius}};
-    query.triangles = surface.triangles;
-    query.solid_of = solid_of;
+    query.model.triangles = surface.triangles;
+    query.model.solid_of = solid_of;
     return query;
   }
 };

@@ -113,14 +113,14 @@ std::string facts_text(const ordered_json& facts) {
   return text;
 }
 
-void write_points(const ModelShape& model, const std::filesystem::path& path) {
+void write_points(const Model& model, const std::filesystem::path& path) {
   const File file = File::create(path);
-  PlyOutput header{.points = model.points.size()};
+  PlyOutput header{.points = model.vertices.size()};
   if (model.spacing > 0) {
     header.comment = std::string(kSpacingComment) + format_number(model.spacing);
   }
   PlyWriter writer(file, header);
-  writer.write(model.points);
+  writer.write(model.vertices);
   writer.finish();
 }
 
@@ -135,9 +135,9 @@ void run_model(const ModelCommand& options) {
   std::vector<Message> messages;
   const bool sampled = output || !input.is_mesh() || options.how.spacing > 0;
   if (sampled) {
-    const ModelShape model = points_of(input, options.how, messages);
+    const Model model = points_of(input, options.how, messages);
     if (model.spacing > 0) facts["spacing"] = model.spacing;
-    facts["points"] = model.points.size();
+    facts["points"] = model.vertices.size();
     if (output) {
       write_points(model, output->partial());
       output->publish();

@@ -69,10 +69,8 @@ void note_left_out(ReportCommand& options, const std::vector<Message>& messages)
 void read_model_again(ReportCommand& options, const Result& result, Query& query) {
   std::vector<Message>& warnings = options.report.warnings;
   if (options.vehicle.empty()) {
-    set_model(query, read_model_shape(options.model,
-                                      model_options_of(result, options.model_options), &warnings));
-    options.report.model_triangles = query.triangles;
-    options.report.model_solid_of = query.solid_of;
+    query.model =
+        read_model(options.model, model_options_of(result, options.model_options), &warnings);
     return;
   }
   query.bodies = read_bodies_of(options.vehicle, options.model_options, options, query.poses,

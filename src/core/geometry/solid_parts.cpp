@@ -9,14 +9,14 @@ namespace clearway {
 namespace {
 
 /// The triangles of each solid.
-std::vector<std::vector<Triangle>> by_solid(const Query& query) {
+std::vector<std::vector<Triangle>> by_solid(const Model& model) {
   std::vector<std::vector<Triangle>> solids;
-  for (std::size_t i = 0; i < query.solid_of.size(); ++i) {
-    const std::uint32_t solid = query.solid_of[i];
+  for (std::size_t i = 0; i < model.solid_of.size(); ++i) {
+    const std::uint32_t solid = model.solid_of[i];
     if (solid == kNoSolid) continue;
     if (solid >= solids.size()) solids.resize(solid + std::size_t{1});
-    const auto& [a, b, c] = query.triangles[i];
-    solids[solid].push_back({query.model[a], query.model[b], query.model[c]});
+    const auto& [a, b, c] = model.triangles[i];
+    solids[solid].push_back({model.vertices[a], model.vertices[b], model.vertices[c]});
   }
   std::erase_if(solids, [](const auto& solid) { return solid.empty(); });
   return solids;
@@ -24,8 +24,8 @@ std::vector<std::vector<Triangle>> by_solid(const Query& query) {
 
 }  // namespace
 
-SolidParts::SolidParts(const Query& query, int threads) {
-  for (const std::vector<Triangle>& solid : by_solid(query)) add(solid, threads);
+SolidParts::SolidParts(const Model& model, int threads) {
+  for (const std::vector<Triangle>& solid : by_solid(model)) add(solid, threads);
   if (!triangles_.empty()) lattice_ = SolidLattice(box_of(std::span<const Triangle>(triangles_)));
 }
 

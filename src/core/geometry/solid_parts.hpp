@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "clearway/query.hpp"
+#include "clearway/model.hpp"
 #include "core/geometry/solid_parts_ref.hpp"
 
 namespace clearway {
@@ -12,8 +12,8 @@ namespace clearway {
 class SolidParts {
  public:
   SolidParts() = default;
-  /// Of a query, whose data may go afterwards. A number of a solid is below that of the triangles.
-  explicit SolidParts(const Query& query, int threads = 1);
+  /// The model may go afterwards. The number of each solid is below the number of triangles.
+  explicit SolidParts(const Model& model, int threads = 1);
 
   /// Valid while they live.
   SolidPartsRef ref() const {

@@ -1,21 +1,19 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "clearway/model.hpp"
 #include "core/geometry/triangle.hpp"
 
 namespace clearway {
 
-/// Of indices into the vertices, all of which there are.
-inline std::vector<Triangle> triangles_of(std::span<const Vec3> vertices,
-                                          std::span<const std::array<std::uint32_t, 3>> indices) {
+/// The triangles of a model, whose indices are all below the number of its vertices.
+inline std::vector<Triangle> triangles_of(const Model& model) {
   std::vector<Triangle> triangles;
-  triangles.reserve(indices.size());
-  for (const auto& [a, b, c] : indices) {
-    triangles.emplace_back(vertices[a], vertices[b], vertices[c]);
+  triangles.reserve(model.triangles.size());
+  for (const auto& [a, b, c] : model.triangles) {
+    triangles.emplace_back(model.vertices[a], model.vertices[b], model.vertices[c]);
   }
   return triangles;
 }

@@ -33,7 +33,7 @@ PoseBound bound_of(const Pose& pose, const Vec3& reach) {
 GridScene::GridScene(const Query& query, const MotionTree& motion, const PackedCloud& cloud,
                      const GridOptions& options)
     : motion_(motion),
-      model_(query.model),
+      model_(query.model.vertices),
       first_pose_(query.first_pose),
       grid_cell_(options.grid_cell > 0 ? options.grid_cell
                                        : cheapest_grid_cell(query.radius, surface_density(cloud))) {

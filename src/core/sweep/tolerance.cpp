@@ -15,7 +15,8 @@ namespace {
 /// need. Below 0 for a tolerance smaller than these.
 double thinning_budget(const Query& query, const Box& model) {
   double errors = 16 * kUnitRoundoff * query.radius + 1e-150;
-  if (query.is_surface()) {  // twice that of a triangle (docs/design/numerics.md, "Triangles")
+  if (query.model
+          .is_surface()) {  // twice that of a triangle (docs/design/numerics.md, "Triangles")
     double stretch = 0;
     for (const Pose& pose : query.poses) stretch = std::max(stretch, greatest_stretch_bound(pose));
     errors += kUnitRoundoff * (16 * query.radius + 322 * stretch * 2 * half_diagonal(model));
@@ -183,16 +184,16 @@ std::vector<std::uint32_t> kept_points(std::span<const Vec3> model, double cover
 }
 
 ThinnedQuery::ThinnedQuery(const Query& query) : query_({}, {}, query) {
-  const Box box = box_of(query.model);
+  const Box box = box_of(query.model.vertices);
   const double half = thinning_budget(query, box) / 2;
   query_.poses = parts_of(query.poses, kept_poses(query.poses, box, half));
-  if (query.is_surface()) {  // whose triangles are few
-    query_.model = query.model;
-    query_.triangles = query.triangles;
+  if (query.model.is_surface()) {  // whose triangles are few
+    query_.model.vertices = query.model.vertices;
+    query_.model.triangles = query.model.triangles;
     return;
   }
   const double cover = cover_of(half, query_.poses, reach_of(box));
-  query_.model = parts_of(query.model, kept_points(query.model, cover));
+  query_.model.vertices = parts_of(query.model.vertices, kept_points(query.model.vertices, cover));
 }
 
 }  // namespace clearway

@@ -40,8 +40,9 @@ class ThinnedQuery {
   /// Valid while this lives.
   const Query& query() const { return query_; }
   std::uint64_t allocated_bytes() const {
-    return query_.poses.capacity() * sizeof(Pose) + query_.model.capacity() * sizeof(Vec3) +
-           query_.triangles.capacity() * sizeof(query_.triangles[0]);
+    return query_.poses.capacity() * sizeof(Pose) +
+           query_.model.vertices.capacity() * sizeof(Vec3) +
+           query_.model.triangles.capacity() * sizeof(query_.model.triangles[0]);
   }
 
  private:

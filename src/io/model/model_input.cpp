@@ -161,8 +161,8 @@ void tell_remarks(ModelInput& input) {
   }
 }
 
-ModelShape sampled(const ModelInput& input, const ModelOptions& options,
-                   std::vector<Message>& messages) {
+Model sampled(const ModelInput& input, const ModelOptions& options,
+              std::vector<Message>& messages) {
   const double spacing = options.spacing > 0 ? options.spacing : default_spacing(options.radius);
   if (spacing == 0) {
     refuse(input.path.string(),
@@ -170,15 +170,15 @@ ModelShape sampled(const ModelInput& input, const ModelOptions& options,
            Remedy::kModelSpacing, 0);
   }
   const TriangleMesh surface = kept_surface(input, options, messages);
-  ModelShape shape{.points = sample_mesh(surface, spacing, input.path.string()), .triangles = {}};
+  Model shape = sample_mesh(surface, spacing, input.path.string());
   shape.spacing = spacing;
   tell_bend(input, spacing, "the spacing", messages);
   tell(messages, input,
-       "a mesh of " + contents_of(input) + ", sampled to " + format_count(shape.points.size()) +
+       "a mesh of " + contents_of(input) + ", sampled to " + format_count(shape.vertices.size()) +
            " points; no place of its surface is farther than " + format_number(spacing) +
            " m from one",
        {{"triangles", static_cast<double>(surface.triangles.size())},
-        {"points", static_cast<double>(shape.points.size())},
+        {"points", static_cast<double>(shape.vertices.size())},
         {"spacing", spacing}});
   return shape;
 }
@@ -206,9 +206,9 @@ void leave_out_below(const ModelInput& input, double above, std::vector<Vec3>& p
 }
 
 /// All vertices of a mesh, or all points of another file.
-ModelShape vertices_of(const ModelInput& input, const ModelOptions& options,
-                       std::vector<Message>& messages) {
-  ModelShape shape{.points = input.mesh.vertices, .triangles = {}};
+Model vertices_of(const ModelInput& input, const ModelOptions& options,
+                  std::vector<Message>& messages) {
+  Model shape = input.mesh.vertices;
   shape.spacing = input.sampled_spacing;
   if (shape.spacing > 0) {
     if (options.above) {
@@ -230,7 +230,7 @@ ModelShape vertices_of(const ModelInput& input, const ModelOptions& options,
              format_brief(shape.spacing) + " m from the nearest vertex",
          {{"spacing", shape.spacing}});
   }
-  if (options.above) leave_out_below(input, *options.above, shape.points, messages);
+  if (options.above) leave_out_below(input, *options.above, shape.vertices, messages);
   return shape;
 }
 
@@ -308,8 +308,8 @@ ModelAs resolved_kind(const ModelInput& input, const ModelOptions& options) {
   return input.is_mesh() && !options.asks_for_points() ? ModelAs::kSurface : ModelAs::kPoints;
 }
 
-ModelShape points_of(const ModelInput& input, const ModelOptions& options,
-                     std::vector<Message>& messages) {
+Model points_of(const ModelInput& input, const ModelOptions& options,
+                std::vector<Message>& messages) {
   messages.insert(messages.end(), input.messages.begin(), input.messages.end());
   return input.is_mesh() ? sampled(input, options, messages)
                          : vertices_of(input, options, messages);

@@ -52,7 +52,7 @@ ModelAs resolved_kind(const ModelInput& input, const ModelOptions& options);
 /// The points of a file as the options ask: samples of a mesh, or all its vertices; with the
 /// spacing of a mesh. Throws InputError as sample_mesh does, and for a mesh without a spacing.
 /// Notes and warnings are appended.
-ModelShape points_of(const ModelInput& input, const ModelOptions& options,
-                     std::vector<Message>& messages);
+Model points_of(const ModelInput& input, const ModelOptions& options,
+                std::vector<Message>& messages);
 
 }  // namespace clearway

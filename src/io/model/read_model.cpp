@@ -7,8 +7,7 @@
 namespace clearway {
 namespace {
 
-ModelShape solids_of(const ModelInput& input, const ModelOptions& options,
-                     std::vector<Message>& told) {
+Model solids_of(const ModelInput& input, const ModelOptions& options, std::vector<Message>& told) {
   if (options.above) {
     throw UsageError(input.path.string() +
                      ": cut at a height, parts of the model are open and no longer solid; search "
@@ -27,19 +26,19 @@ ModelShape solids_of(const ModelInput& input, const ModelOptions& options,
 
 }  // namespace
 
-std::vector<Vec3> read_model(const std::filesystem::path& path, const ModelOptions& options,
-                             std::vector<Message>* messages) {
+std::vector<Vec3> read_model_points(const std::filesystem::path& path, const ModelOptions& options,
+                                    std::vector<Message>* messages) {
   ModelOptions how = options;
   how.as = ModelAs::kPoints;
-  return read_model_shape(path, how, messages).points;
+  return read_model(path, how, messages).vertices;
 }
 
-ModelShape read_model_shape(const std::filesystem::path& path, const ModelOptions& options,
-                            std::vector<Message>* messages) {
+Model read_model(const std::filesystem::path& path, const ModelOptions& options,
+                 std::vector<Message>* messages) {
   check_model_options(options);
   const ModelInput input = read_model_input(path, options);
   std::vector<Message> told;
-  ModelShape shape;
+  Model shape;
   switch (resolved_kind(input, options)) {
     case ModelAs::kSolid:
       shape = solids_of(input, options, told);
@@ -56,8 +55,9 @@ ModelShape read_model_shape(const std::filesystem::path& path, const ModelOption
   return shape;
 }
 
-std::vector<Vec3> read_model(const std::filesystem::path& path, std::vector<Message>* messages) {
-  return read_model(path, ModelOptions{}, messages);
+std::vector<Vec3> read_model_points(const std::filesystem::path& path,
+                                    std::vector<Message>* messages) {
+  return read_model_points(path, ModelOptions{}, messages);
 }
 
 }  // namespace clearway

@@ -9,15 +9,11 @@ namespace clearway {
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Pose) == 12 * sizeof(double));
 
-std::uint64_t hash_of_model(std::span<const Vec3> points) { return xxh64(std::as_bytes(points)); }
-
-std::uint64_t hash_of_model(std::span<const Vec3> points,
-                            std::span<const std::array<std::uint32_t, 3>> triangles,
-                            std::span<const std::uint32_t> solid_of) {
+std::uint64_t hash_of_model(const Model& model) {
   Xxh64Stream hash;
-  hash.update(std::as_bytes(points));
-  hash.update(std::as_bytes(triangles));
-  hash.update(std::as_bytes(solid_of));
+  hash.update(std::as_bytes(std::span(model.vertices)));
+  hash.update(std::as_bytes(std::span(model.triangles)));
+  hash.update(std::as_bytes(std::span(model.solid_of)));
   return hash.digest();
 }
 
@@ -33,7 +29,7 @@ std::uint64_t hash_of_bodies(std::span<const Body> bodies) {
   for (const Body& body : bodies) {
     add(body.name.size());
     hash.update(std::as_bytes(std::span(body.name)));
-    add(hash_of_model(body.model, body.triangles, body.solid_of));
+    add(hash_of_model(body.model));
     add(body.path_pose.size());
     hash.update(std::as_bytes(std::span(body.path_pose)));
     add(hash_of_trajectory(body.poses));

@@ -43,8 +43,8 @@ class VehicleReader {
     Body body{.name = entry.name, .model = {}, .poses = {}, .path_pose = {}};
     ModelOptions how = options_.model;
     if (entry.model_unit.is_known()) how.unit = entry.model_unit;
-    set_model(body, named(entry.at.at("model"),
-                          [&] { return read_model_shape(entry.model, how, warnings_); }));
+    body.model =
+        named(entry.at.at("model"), [&] { return read_model(entry.model, how, warnings_); });
     const auto* station = std::get_if<BodyStation>(&entry.mount);
     if (!entry.trajectory.empty()) {
       read_own(entry, body);

@@ -4,7 +4,7 @@
 
     clearway.convert("scan.las", "site.h5")
     store = clearway.Store("site.h5")
-    model = clearway.read_model_shape("car.ply")
+    model = clearway.read_model("car.ply")
     query = clearway.Query(model, clearway.read_trajectory("path.txt"), radius=0.1, first_pose=True)
     report = clearway.search(store, query, "out.h5")
     print(report, report.warnings)
@@ -38,7 +38,7 @@ from ._clearway import (
     Interrupted,
     MergeReport,
     Message,
-    ModelShape,
+    Model,
     PartWarning,
     PoseLabels,
     Profile,
@@ -61,7 +61,7 @@ from ._clearway import (
     follow,
     merge,
     read_model,
-    read_model_shape,
+    read_model_points,
     read_trajectory,
     read_vehicle,
     search,

@@ -86,26 +86,26 @@ class Store:
     def warnings(self) -> list[Message]: ...
     path: Final[_Path]
 
-class ModelShape:
-    points: Final[_Doubles]
+class Model:
+    vertices: Final[_Doubles]
     triangles: Final[_Poses]
     solid_of: Final[_Poses]
     NO_SOLID: ClassVar[int]
     spacing: Final[float]
     def __init__(
-        self, points: ArrayLike, triangles: ArrayLike = ..., spacing: float = 0.0,
+        self, vertices: ArrayLike, triangles: ArrayLike = ..., spacing: float = 0.0,
     ) -> None: ...
 class Body:
     name: Final[str]
-    model: Final[_Doubles | ModelShape]
+    model: Final[_Doubles | Model]
     poses: Final[_Doubles]
     path_pose: Final[_Poses]
     def __init__(
-        self, name: str, model: ArrayLike | ModelShape, poses: ArrayLike,
+        self, name: str, model: ArrayLike | Model, poses: ArrayLike,
         path_pose: ArrayLike | None = None,
     ) -> None: ...
 def follow(
-    name: str, model: ArrayLike | ModelShape, path: ArrayLike, *, at: float | None = None,
+    name: str, model: ArrayLike | Model, path: ArrayLike, *, at: float | None = None,
     pivots: tuple[float, float] | None = None, messages: list[Message] | None = None,
 ) -> Body: ...
 
@@ -119,7 +119,7 @@ class UnsearchedStretch:
 def unsearched_stretches(path: ArrayLike, bodies: Sequence[Body]) -> list[UnsearchedStretch]: ...
 
 class Query:
-    model: Any  # any array or a ModelShape is taken, and float64 or a ModelShape given
+    model: Any  # any array or a Model is taken, and float64 or a Model given
     poses: Any
     radius: float
     first_pose: bool
@@ -132,7 +132,7 @@ class Query:
     allow_non_rigid: bool
     bodies: list[Body]
     def __init__(
-        self, model: ArrayLike | ModelShape = ..., poses: ArrayLike = ..., radius: float | None = None, *,
+        self, model: ArrayLike | Model = ..., poses: ArrayLike = ..., radius: float | None = None, *,
         first_pose: bool = False, between_poses: bool = False, clearance: float = 0.0,
         profile: float = 0.0, tolerance: float = 0.0, ignore_classes: Sequence[int] = ...,
         ignore_boxes: Sequence[Box] = ..., allow_non_rigid: bool = False,
@@ -322,15 +322,15 @@ class ReportSummary:
     conflicts: Final[Conflicts]
     facts: Final[str]
 
-def read_model(
+def read_model_points(
     path: _AnyPath, *, spacing: float = 0.0, unit: float | str = 0.0, environment_unit: float | str = 1.0,
     vertices_only: bool = False, above: float | None = None, messages: list[Message] | None = None,
 ) -> _Doubles: ...
-def read_model_shape(
+def read_model(
     path: _AnyPath, model_as: Literal["auto", "points", "surface", "solid"] = "auto", *, spacing: float = 0.0,
     unit: float | str = 0.0, environment_unit: float | str = 1.0, vertices_only: bool = False,
     above: float | None = None, messages: list[Message] | None = None,
-) -> ModelShape: ...
+) -> Model: ...
 def read_trajectory(
     path: _AnyPath, *, format: str = "auto", allow_non_rigid: bool = False,
     angle_unit: Literal["declared", "deg", "rad"] = "declared",
@@ -375,11 +375,11 @@ def merge(
 def find_conflicts(
     result: Result, poses: ArrayLike, *, gap: float = 0.3, min_points: int = 10,
     split: float = 25.0, chainage_start: float = 0.0, forward: _Axis = "+x", up: _Axis = "+z",
-    model_box: Box | None = None, model: ArrayLike | ModelShape | None = None,
+    model_box: Box | None = None, model: ArrayLike | Model | None = None,
     bodies: Sequence[Body] = (), memory_bytes: int = 4294967296, threads: int = 0, progress: _Progress | None = None, stop: _Stop | None = None,
 ) -> Conflicts: ...
 def write_report(
-    result: Result, store: Store, model: ArrayLike | ModelShape, poses: ArrayLike, output: _AnyPath, *,
+    result: Result, store: Store, model: ArrayLike | Model, poses: ArrayLike, output: _AnyPath, *,
     title: str = "", project: str = "", client: str = "", author: str = "", date: str = "",
     result_name: str = "", environment_name: str = "", model_name: str = "",
     trajectory_name: str = "", model_above: float | None = None, model_left_out: int = 0,

@@ -10,11 +10,7 @@ namespace clearway {
 inline std::vector<Query> body_queries(const Query& query) {
   std::vector<Query> out;
   out.reserve(query.bodies.size());
-  for (const Body& body : query.bodies) {
-    out.emplace_back(body.model, body.poses, query);
-    out.back().triangles = body.triangles;
-    out.back().solid_of = body.solid_of;
-  }
+  for (const Body& body : query.bodies) out.emplace_back(body.model, body.poses, query);
   return out;
 }
 

@@ -55,7 +55,7 @@ void check_bodies(const Query& query, const SearchOptions& options) {
   if (query.tolerance > 0) {
     throw UsageError("a tolerance and a vehicle of several bodies cannot be combined");
   }
-  if (!query.model.empty() || query.is_surface()) {
+  if (!query.model.empty()) {
     throw InputError("a query has either a model or bodies");
   }
   if (query.bodies.size() > kMostBodies) {
@@ -71,7 +71,7 @@ void check_bodies(const Query& query, const SearchOptions& options) {
   for (const Body& body : query.bodies) {
     check_name(body, names);
     check_poses(body, query);
-    if (body.is_surface()) check_surface(query, options);
+    if (body.model.is_surface()) check_surface(query, options);
   }
 }
 

@@ -33,8 +33,8 @@ std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
   } catch (const InputError&) {
     inside.clear();  // a damaged cell is for the search to meet, where it matters
   }
-  if (asked.is_solid() && !inside.empty()) {
-    const SolidParts solids(asked);
+  if (asked.model.is_solid() && !inside.empty()) {
+    const SolidParts solids(asked.model);
     std::erase_if(inside, [&](const Vec3& p) { return solids.ref().contains(p); });
   }
   return inside;
@@ -43,7 +43,7 @@ std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
 /// Keeps the points that have model points in all six directions.
 void keep_enclosed(const Question& question, double distance, std::vector<Vec3>& points) {
   for (int axis = 0; axis < 3 && points.size() >= kFewInside; ++axis) {
-    const ModelView view(question.query.model, question.model, axis, 2 * distance);
+    const ModelView view(question.query.model.vertices, question.model, axis, 2 * distance);
     std::erase_if(points, [&](const Vec3& p) { return !view.encloses(p, distance); });
   }
 }
@@ -55,7 +55,7 @@ std::uint64_t untouched(const Question& question, const std::vector<Vec3>& point
     some.push_back(points[i]);
   }
   const std::size_t measured = some.size();
-  for (const Vec3& m : question.query.model) {
+  for (const Vec3& m : question.query.model.vertices) {
     std::erase_if(some, [&](const Vec3& p) { return collides(m, p, question.query.radius); });
     if (some.empty()) break;
   }
@@ -91,7 +91,8 @@ void check_inside(const Question& question, const Query& asked, MessageLog& log)
 void check_open_model(const Question& question, MessageLog& log) {
   if (Sides(question.model).middle == 0) return;
   const int axis = axis_of_motion(question);
-  const ModelView view(question.query.model, question.model, axis, 2 * question.query.radius);
+  const ModelView view(question.query.model.vertices, question.model, axis,
+                       2 * question.query.radius);
   const double share = view.open_share();
   if (share < kOpen) return;
   log.warn("open-model",

@@ -92,8 +92,8 @@ void warn_of_origin(const Question& question, MessageLog& log) {
 }
 
 void warn_of_same(const Question& question, MessageLog& log) {
-  if (question.query.model.size() != question.cloud.point_count()) return;
-  if (question.query.model.size() == 1) return;
+  if (question.query.model.vertices.size() != question.cloud.point_count()) return;
+  if (question.query.model.vertices.size() == 1) return;
   for (int k = 0; k < 3; ++k) {
     const double noise =
         2 * question.cloud.quantisation().scale[k] + 1e-6 * std::abs(question.environment.hi[k]);
@@ -101,9 +101,9 @@ void warn_of_same(const Question& question, MessageLog& log) {
     if (std::abs(question.model.hi[k] - question.environment.hi[k]) > noise) return;
   }
   log.warn("model-is-environment",
-           "the model has " + format_count(question.query.model.size()) +
+           "the model has " + format_count(question.query.model.vertices.size()) +
                " points, as many as the environment, and the same box: is it the scan itself?",
-           {{"points", static_cast<double>(question.query.model.size())}});
+           {{"points", static_cast<double>(question.query.model.vertices.size())}});
 }
 
 /// Poses that are not rigid were allowed, perhaps for another reason.

@@ -106,11 +106,11 @@ double largest_spacing(const std::vector<Vec3>& model, const std::vector<Vec3>& 
 
 void check_model_spacing(const Question& question, MessageLog& log) {
   if (Sides(question.model).longest == 0) return;  // one place: a sphere is what is asked about
-  Neighbours neighbours(question.query.model, question.query.radius);
+  Neighbours neighbours(question.query.model.vertices, question.query.radius);
   const std::vector<Vec3> alone = neighbours.find();
   const double share = static_cast<double>(alone.size()) / static_cast<double>(neighbours.size());
   if (share <= kSomeAlone) return;
-  const double largest = largest_spacing(question.query.model, alone);
+  const double largest = largest_spacing(question.query.model.vertices, alone);
   log.warn("model-spacing",
            share_text(share) + " of the model's points are farther than the radius of " +
                length_text(question.query.radius, question.unit) +

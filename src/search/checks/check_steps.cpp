@@ -77,7 +77,7 @@ struct Deviation {
 /// Those that are farther than `least`, and how many steps there are.
 std::vector<Deviation> deviations_above(const Question& question, double least,
                                         std::uint64_t& steps) {
-  const double reach = farthest_from_origin(question.query.model);
+  const double reach = farthest_from_origin(question.query.model.vertices);
   std::vector<Deviation> out;
   for (const auto& run : runs_of(question)) {
     const auto distances = chord_deviations(poses_of(question, run), reach);

@@ -54,7 +54,7 @@ enum class ModelForm { kPoints, kSurface, kCoarseSurface };
 /// Points of the surface, as close as the radius asks for where these are not too many.
 Query sampled(const Query& query, ModelForm& view) {
   constexpr double kMostSamples = 1e5;
-  const TriangleMesh mesh{query.model, query.triangles};
+  const TriangleMesh mesh{query.model.vertices, query.model.triangles};
   const double spacing = std::max(spacing_for(mesh, kMostSamples), query.radius);
   view = spacing > query.radius ? ModelForm::kCoarseSurface : ModelForm::kSurface;
   return {sample_mesh(mesh, spacing, "the model"), query.poses, query};
@@ -78,10 +78,8 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
     return;
   }
   ModelForm form = ModelForm::kPoints;
-  Query own(body.model, body.poses, query);
-  own.triangles = body.triangles;
-  own.solid_of = body.solid_of;
-  const Query points = own.is_surface() ? sampled(own, form) : own;
+  const Query own(body.model, body.poses, query);
+  const Query points = own.model.is_surface() ? sampled(own, form) : own;
   const Question question(store, store.metadata().unit, points, body.path_pose);
   note_sizes(question, log);
   const PathCover cover(question);
@@ -152,7 +150,8 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
 
 void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log) {
   for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
-  if (!query.is_surface()) return warn_of_points(store, query, query, ModelForm::kPoints, log);
+  if (!query.model.is_surface())
+    return warn_of_points(store, query, query, ModelForm::kPoints, log);
   ModelForm view{};
   const Query points = sampled(query, view);
   warn_of_points(store, points, query, view, log);

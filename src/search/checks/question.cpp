@@ -19,7 +19,7 @@ Question::Question(const PackedCloud& environment_points, LengthUnit length_unit
       query(asked),
       path_pose(numbers),
       environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
-      model(box_of(query.model)),
+      model(box_of(query.model.vertices)),
       metre(unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? 1 / kMetresPerFoot
                                                                            : 1) {}
 

@@ -10,8 +10,8 @@ namespace {
 /// Whether the engine kdtree can answer, and its time is known well enough to be compared.
 bool may_be_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options) {
   const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.tolerance > 0 ||
-                              query.between_poses || query.is_surface() || !query.bodies.empty() ||
-                              options.field_voxel > 0;
+                              query.between_poses || query.model.is_surface() ||
+                              !query.bodies.empty() || options.field_voxel > 0;
   return !asks_for_sweep && kdtree_needed_bytes(store, query, options) <= options.memory_bytes;
 }
 

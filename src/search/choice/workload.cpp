@@ -62,25 +62,23 @@ double path_length_of(std::span<const Pose> poses) {
   return length;
 }
 
-/// of: a query, or a body.
-template <typename ModelOwner>
 Workload workload_of_model(const PackedCloud& cloud, const QueryParameters& query,
-                           const ModelOwner& of, std::span<const Pose> poses) {
-  return workload_of(cloud, query, of.model.empty() ? Box{} : box_of(of.model),
-                     points_to_search(of.model.size(), of.triangles.size()), poses);
+                           const Model& model, std::span<const Pose> poses) {
+  return workload_of(cloud, query, model.empty() ? Box{} : box_of(model.vertices),
+                     points_to_search(model.vertices.size(), model.triangles.size()), poses);
 }
 
 }  // namespace
 
 Workload workload_of(const PackedCloud& cloud, const Query& query) {
-  return workload_of_model(cloud, query, query, query.poses);
+  return workload_of_model(cloud, query, query.model, query.poses);
 }
 
 std::vector<Workload> workloads_of(const PackedCloud& cloud, const Query& query) {
   if (query.bodies.empty()) return {workload_of(cloud, query)};
   std::vector<Workload> out;
   for (const Body& body : query.bodies) {
-    out.push_back(workload_of_model(cloud, query, body, body.poses));
+    out.push_back(workload_of_model(cloud, query, body.model, body.poses));
   }
   return out;
 }

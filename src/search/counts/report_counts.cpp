@@ -8,16 +8,16 @@
 namespace clearway {
 void report_sizes(const StoreReader& store, const Query& query, SearchReport& report) {
   report.environment_points = store.point_count();
-  report.model_points = query.model.size();
-  report.model_triangles = query.triangles.size();
+  report.model_points = query.model.vertices.size();
+  report.model_triangles = query.model.triangles.size();
   report.model_solids = solid_count(query);
   report.model_spacing = model_spacing(query);
   report.poses = query.poses.size();
-  report.searches = report.poses * element_count(query);
+  report.searches = report.poses * query.model.element_count();
   for (const Body& body : query.bodies) {
-    report.model_points += body.model.size();
-    report.model_triangles += body.triangles.size();
-    report.searches += body.poses.size() * element_count(body);
+    report.model_points += body.model.vertices.size();
+    report.model_triangles += body.model.triangles.size();
+    report.searches += body.poses.size() * body.model.element_count();
   }
   report.cells_total = store.cells().size();
 }

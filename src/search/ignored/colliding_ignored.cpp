@@ -42,8 +42,8 @@ class Heights {
         any = true;
       }
     };
-    lower_to(query.model);
-    for (const Body& body : query.bodies) lower_to(body.model);
+    lower_to(query.model.vertices);
+    for (const Body& body : query.bodies) lower_to(body.model.vertices);
     limit_ = high_in(store.metadata().unit);
   }
 

@@ -179,10 +179,10 @@ std::unique_ptr<PageEngineKind> cuda_kind(const StoreReader& store, const Query&
   if (chosen_engine(options) == Engine::kGrid) {
     return std::make_unique<CudaGridKind>(store, query, options, std::move(open));
   }
-  if (query.is_solid()) {
+  if (query.model.is_solid()) {
     return std::make_unique<CudaSweepKindOf<SolidTriangle>>(store, query, options, std::move(open));
   }
-  if (query.is_surface()) {
+  if (query.model.is_surface()) {
     return std::make_unique<CudaSweepKindOf<Triangle>>(store, query, options, std::move(open));
   }
   return std::make_unique<CudaSweepKindOf<Vec3>>(store, query, options, std::move(open));

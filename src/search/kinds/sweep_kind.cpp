@@ -119,10 +119,11 @@ template class SweepKindOf<SolidTriangle>;
 
 std::unique_ptr<PageEngineKind> cpu_sweep_kind(const StoreReader& store, const Query& query,
                                                const SearchOptions& options) {
-  if (query.is_solid()) {
+  if (query.model.is_solid()) {
     return std::make_unique<CpuSweepKindOf<SolidTriangle>>(store, query, options);
   }
-  if (query.is_surface()) return std::make_unique<CpuSweepKindOf<Triangle>>(store, query, options);
+  if (query.model.is_surface())
+    return std::make_unique<CpuSweepKindOf<Triangle>>(store, query, options);
   return std::make_unique<CpuSweepKindOf<Vec3>>(store, query, options);
 }
 

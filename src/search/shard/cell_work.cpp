@@ -96,16 +96,16 @@ std::vector<std::uint64_t> cell_work_of(const PackedCloud& cloud, const Query& q
 
 std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
                                      const QueryTrees& trees, int threads) {
-  if (query.is_solid()) return cell_work_of<SolidTriangle>(cloud, query, trees, threads);
-  return query.is_surface() ? cell_work_of<Triangle>(cloud, query, trees, threads)
-                            : cell_work_of<Vec3>(cloud, query, trees, threads);
+  if (query.model.is_solid()) return cell_work_of<SolidTriangle>(cloud, query, trees, threads);
+  return query.model.is_surface() ? cell_work_of<Triangle>(cloud, query, trees, threads)
+                                  : cell_work_of<Vec3>(cloud, query, trees, threads);
 }
 
 std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query) {
   constexpr std::uint64_t kCellBytes = 128;  // with its motion nodes
   // What the filter keeps of model and motion for clearances, at the most.
   const std::uint64_t for_clearances =
-      query.clearance > 0 ? 64 * (element_count(query) + query.poses.size()) : 0;
+      query.clearance > 0 ? 64 * (query.model.element_count() + query.poses.size()) : 0;
   return kFieldBytes + kFieldBytes / 4 + kCellBytes * cloud.cells().size() + for_clearances;
 }
 

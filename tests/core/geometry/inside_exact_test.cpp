@@ -56,7 +56,7 @@ TEST_CASE("signs are right beyond their bound") {
     const CGAL::Side_of_triangle_mesh<Mesh, Kernel> side_of(mesh);
     Bodies bodies;
     bodies.add(body);
-    const SolidParts parts(bodies.query({}, 1));
+    const SolidParts parts(bodies.query({}, 1).model);
     for (int i = 0; i < 60; ++i) {
       Vec3 x = random_place_at(random, body.at(below(random, body.triangles.size())));
       if (i % 4 == 0) x = random_point(random, box);

@@ -23,7 +23,7 @@ int winding(const Surface& body, const Vec3& x) {
   return sum;
 }
 
-SolidParts parts_of(const Bodies& bodies) { return SolidParts(bodies.query({}, 1)); }
+SolidParts parts_of(const Bodies& bodies) { return SolidParts(bodies.query({}, 1).model); }
 
 }  // namespace
 

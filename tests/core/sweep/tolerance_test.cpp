@@ -154,7 +154,7 @@ TEST_CASE("thinning makes distances no larger than the tolerance allows") {
         for (const Vec3& m : model) least = std::min(least, distance(e, transform(pose, m)));
       }
       for (const Pose& pose : query.poses) {
-        for (const Vec3& m : query.model) {
+        for (const Vec3& m : query.model.vertices) {
           least_thinned = std::min(least_thinned, distance(e, transform(pose, m)));
         }
       }
@@ -187,7 +187,7 @@ TEST_CASE("a thinned query spends at most its tolerance") {
         const Vec3 at = transform(poses[below(random, 300)], model[below(random, 800)]);
         long double nearest = HUGE_VALL;
         for (const Pose& pose : query.poses) {
-          for (const Vec3& m : query.model) {
+          for (const Vec3& m : query.model.vertices) {
             nearest = std::min(nearest, distance(at, transform(pose, m)));
           }
         }
@@ -212,7 +212,7 @@ TEST_CASE("model points nearer to each other than a moved one's rounding") {
     for (const Vec3& m : model) {
       const Vec3 at = transform(poses[0], m);
       long double nearest = HUGE_VALL;
-      for (const Vec3& kept : thinned.query().model) {
+      for (const Vec3& kept : thinned.query().model.vertices) {
         nearest = std::min(nearest, distance(at, transform(poses[0], kept)));
         if (nearest == 0) break;
       }

@@ -54,7 +54,7 @@ void read_anything(const std::filesystem::path& path) {
     }
   };
   attempt([&] { read_all(path); });
-  attempt([&] { read_model(path); });
+  attempt([&] { read_model_points(path); });
   if (path.stem() == "scan000") attempt([&] { read_all(path.parent_path() / "scan000.3d"); });
   attempt([&] {
     read_all(

@@ -162,7 +162,7 @@ TEST_CASE("the poses of a 3DTK folder load in the order of their numbers") {
 }
 
 TEST_CASE("the model of the street loads") {
-  const auto model = read_model(data_folder() / "street" / "beetle.ply");
+  const auto model = read_model_points(data_folder() / "street" / "beetle.ply");
   CHECK(model.size() == 46'877);
 }
 

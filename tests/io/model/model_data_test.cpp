@@ -19,7 +19,7 @@ TEST_CASE("the surface of a real vehicle is covered") {
   const auto path = data_folder() / "street" / name;
   const TriangleMesh mesh = read_model_input(path, {}).mesh;
   const double spacing = 0.025;
-  const std::vector<Vec3> points = read_model(path, {.spacing = spacing});
+  const std::vector<Vec3> points = read_model_points(path, {.spacing = spacing});
   const ModelTree tree(points);
   double farthest = 0;
   for_places(mesh, 4, [&](const Vec3& place) {
@@ -33,7 +33,7 @@ TEST_CASE("samples of a real vehicle find what touches its surface") {
   const auto path = data_folder() / "street" / "prius.obj";
   const TriangleMesh mesh = read_model_input(path, {}).mesh;
   const double spacing = 0.025, radius = 0.1;
-  const ModelTree tree(read_model(path, {.spacing = spacing}));
+  const ModelTree tree(read_model_points(path, {.spacing = spacing}));
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> x(-1.3, 1.3), y(-2.6, 2.7), z(-0.1, 1.8);
   int hits = 0;

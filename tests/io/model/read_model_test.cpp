@@ -17,7 +17,7 @@ namespace {
 
 std::string refusal_of_model(const std::filesystem::path& path) {
   try {
-    read_model(path);
+    read_model_points(path);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -28,10 +28,10 @@ std::string refusal_of_model(const std::filesystem::path& path) {
 
 TEST_CASE("a model of integers is placed by scale and offset") {
   ReaderScratch scratch;
-  const auto points = read_model(scratch.write("a.las", LasBytes().build()));
+  const auto points = read_model_points(scratch.write("a.las", LasBytes().build()));
   REQUIRE(points.size() == 3);
   CHECK(points[0] == Vec3{1 * 0.001 + 100, 2 * 0.01 - 200, 3 * 0.1});
-  CHECK(read_model(scratch.write("a.xyz", "1 2 3\n")) == std::vector<Vec3>{{1, 2, 3}});
+  CHECK(read_model_points(scratch.write("a.xyz", "1 2 3\n")) == std::vector<Vec3>{{1, 2, 3}});
 }
 
 TEST_CASE("a model without points or with a point that is not finite is refused") {
@@ -48,19 +48,19 @@ TEST_CASE("a unit that the file or the caller names is converted into the enviro
   const auto feet = scratch.write("a.las", las.build());
   const double x = 1 * 0.001 + 100;
   std::vector<Message> messages;
-  CHECK(read_model(feet, &messages)[0].x == x * 0.3048);
+  CHECK(read_model_points(feet, &messages)[0].x == x * 0.3048);
   REQUIRE(messages.size() == 1);
   CHECK(messages[0].severity == Message::Severity::kNote);
   CHECK_THAT(messages[0].text, Contains("its unit is 0.3048 m"));
-  CHECK(read_model(feet, {.environment_unit = 0.3048})[0].x == x);
-  CHECK(read_model(feet, {.unit = 1})[0].x == x);
+  CHECK(read_model_points(feet, {.environment_unit = 0.3048})[0].x == x);
+  CHECK(read_model_points(feet, {.unit = 1})[0].x == x);
 
   const auto unknown = scratch.write("a.xyz", "914.4 2 3\n");
-  CHECK(read_model(unknown, {.environment_unit = 0.3048})[0].x == 914.4);
-  CHECK(read_model(unknown, {.unit = 0.001})[0].x == 0.9144);
-  CHECK(read_model(unknown, {.unit = 0.001, .environment_unit = 0.3048})[0].x == Approx(3));
-  CHECK_THROWS_AS(read_model(unknown, {.unit = -1}), UsageError);
-  CHECK_THROWS_AS(read_model(unknown, {.environment_unit = 0}), UsageError);
+  CHECK(read_model_points(unknown, {.environment_unit = 0.3048})[0].x == 914.4);
+  CHECK(read_model_points(unknown, {.unit = 0.001})[0].x == 0.9144);
+  CHECK(read_model_points(unknown, {.unit = 0.001, .environment_unit = 0.3048})[0].x == Approx(3));
+  CHECK_THROWS_AS(read_model_points(unknown, {.unit = -1}), UsageError);
+  CHECK_THROWS_AS(read_model_points(unknown, {.environment_unit = 0}), UsageError);
 }
 
 namespace {
@@ -72,11 +72,11 @@ constexpr const char* kPlate = "OFF\n4 2 0\n0 0 0\n4 0 0\n4 3 0\n0 3 0\n3 0 1 2\
 TEST_CASE("a mesh is its surface unless points are asked for, and then has a spacing") {
   ReaderScratch scratch;
   const auto plate = scratch.write("plate.off", kPlate);
-  CHECK(read_model_shape(plate).triangles.size() == 2);
-  CHECK(read_model_shape(plate, {.radius = 0.1}).triangles.size() == 2);
-  CHECK(read_model_shape(plate).spacing == 0);
+  CHECK(read_model(plate).triangles.size() == 2);
+  CHECK(read_model(plate, {.radius = 0.1}).triangles.size() == 2);
+  CHECK(read_model(plate).spacing == 0);
   const auto spacing_of = [&](const ModelOptions& options) {
-    const ModelShape shape = read_model_shape(plate, options);
+    const Model shape = read_model(plate, options);
     CHECK(shape.triangles.empty());
     return shape.spacing;
   };
@@ -84,18 +84,18 @@ TEST_CASE("a mesh is its surface unless points are asked for, and then has a spa
   CHECK(spacing_of({.as = ModelAs::kPoints, .spacing = 0.5, .radius = 0.1}) == 0.5);
   CHECK(spacing_of({.spacing = 0.5}) == 0.5);
   CHECK(spacing_of({.vertices_only = true}) == Approx(2.5));  // the middle of the diagonal
-  CHECK_THROWS_AS(read_model_shape(plate, {.as = ModelAs::kPoints}), InputError);
+  CHECK_THROWS_AS(read_model(plate, {.as = ModelAs::kPoints}), InputError);
   for (const ModelAs as : {ModelAs::kSurface, ModelAs::kSolid}) {
-    CHECK_THROWS_AS(read_model_shape(plate, {.as = as, .spacing = 0.5}), UsageError);
-    CHECK_THROWS_AS(read_model_shape(plate, {.as = as, .vertices_only = true}), UsageError);
+    CHECK_THROWS_AS(read_model(plate, {.as = as, .spacing = 0.5}), UsageError);
+    CHECK_THROWS_AS(read_model(plate, {.as = as, .vertices_only = true}), UsageError);
   }
   const auto cloud = scratch.write("a.xyz", "1 2 3\n");
-  CHECK(read_model_shape(cloud, {.spacing = 0.5}).spacing == 0);
+  CHECK(read_model(cloud, {.spacing = 0.5}).spacing == 0);
   Query query;
-  set_model(query, read_model_shape(plate, {.spacing = 0.5}));
-  CHECK(query.model_spacing == 0.5);
+  query.model = read_model(plate, {.spacing = 0.5});
+  CHECK(query.model.spacing == 0.5);
   query.bodies.resize(1);
-  set_model(query.bodies[0], read_model_shape(plate, {.spacing = 0.75}));
+  query.bodies[0].model = read_model(plate, {.spacing = 0.75});
   CHECK(model_spacing(query) == 0.75);
 }
 
@@ -103,14 +103,14 @@ TEST_CASE("samples above a height cover the surface up to its cut") {
   ReaderScratch scratch;
   const auto wall =
       scratch.write("wall.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 0 3\n0 0 3\n3 0 1 2\n3 0 2 3\n");
-  const ModelShape shape = read_model_shape(wall, {.spacing = 0.5, .above = 1.0});
+  const Model shape = read_model(wall, {.spacing = 0.5, .above = 1.0});
   for (double x = 0; x <= 4; x += 0.01) {
     double nearest = 9;
-    for (const Vec3& p : shape.points) nearest = std::min(nearest, std::hypot(p.x - x, p.z - 1));
+    for (const Vec3& p : shape.vertices) nearest = std::min(nearest, std::hypot(p.x - x, p.z - 1));
     if (nearest > 0.5) FAIL(x << " is " << nearest << " from a sample");
   }
-  for (const Vec3& p : shape.points) CHECK(p.z >= 1);
-  CHECK(read_model_shape(wall, {.vertices_only = true, .above = 1.0}).spacing == 5);
+  for (const Vec3& p : shape.vertices) CHECK(p.z >= 1);
+  CHECK(read_model(wall, {.vertices_only = true, .above = 1.0}).spacing == 5);
 }
 
 TEST_CASE("samples of a mesh keep their spacing, and are not cut") {
@@ -119,9 +119,9 @@ TEST_CASE("samples of a mesh keep their spacing, and are not cut") {
                                   "ply\nformat ascii 1.0\ncomment clearway model spacing 0.5\n"
                                   "element vertex 1\nproperty double x\nproperty double y\n"
                                   "property double z\nend_header\n1 2 3\n");
-  CHECK(read_model_shape(file).spacing == 0.5);
-  CHECK(read_model_shape(file, {.unit = 0.001}).spacing == Approx(0.0005));
-  CHECK_THROWS_AS(read_model_shape(file, {.above = 0.0}), UsageError);
+  CHECK(read_model(file).spacing == 0.5);
+  CHECK(read_model(file, {.unit = 0.001}).spacing == Approx(0.0005));
+  CHECK_THROWS_AS(read_model(file, {.above = 0.0}), UsageError);
 }
 
 TEST_CASE("lines and single points of a mesh are part of every kind of model") {
@@ -129,28 +129,28 @@ TEST_CASE("lines and single points of a mesh are part of every kind of model") {
   const std::string mast = "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 1 1 0\nv 1 1 5\nv 2 2 2\n";
   const auto file = scratch.write("mast.obj", mast + "f 1 2 3\nl 4 5\np 6\n");
   std::vector<Message> told;
-  const ModelShape surface = read_model_shape(file, {}, &told);
+  const Model surface = read_model(file, {}, &told);
   CHECK(surface.triangles.size() == 3);
-  CHECK(surface.points.size() == 6);
+  CHECK(surface.vertices.size() == 6);
   REQUIRE(told.size() == 1);
   CHECK_THAT(told[0].text, Contains("1 triangle, 1 line segment and 1 single point"));
-  const auto reaches = [](const ModelShape& shape, const Vec3& place, double within) {
-    return std::ranges::any_of(shape.points, [&](const Vec3& p) {
+  const auto reaches = [](const Model& shape, const Vec3& place, double within) {
+    return std::ranges::any_of(shape.vertices, [&](const Vec3& p) {
       return std::hypot(p.x - place.x, p.y - place.y, p.z - place.z) <= within;
     });
   };
-  const ModelShape points = read_model_shape(file, {.spacing = 0.25});
+  const Model points = read_model(file, {.spacing = 0.25});
   for (const Vec3& place : {Vec3{1, 1, 5}, Vec3{1, 1, 3.3}, Vec3{2, 2, 2}}) {
     CHECK(reaches(points, place, 0.25));
   }
-  CHECK(read_model_shape(file, {.vertices_only = true}).points.size() == 6);
-  CHECK(read_model_shape(file, {.vertices_only = true}).spacing == Approx(2.5));
-  const ModelShape above = read_model_shape(file, {.above = 2.0});
+  CHECK(read_model(file, {.vertices_only = true}).vertices.size() == 6);
+  CHECK(read_model(file, {.vertices_only = true}).spacing == Approx(2.5));
+  const Model above = read_model(file, {.above = 2.0});
   CHECK(above.triangles.size() == 2);  // the upper part of the mast, and the point
   CHECK(reaches(above, {1, 1, 2}, 0));
   const auto lines = scratch.write("lines.obj", mast + "l 4 5 6\n");
   told.clear();
-  CHECK(read_model_shape(lines, {}, &told).triangles.size() == 2);
+  CHECK(read_model(lines, {}, &told).triangles.size() == 2);
   REQUIRE(told.size() == 2);
   CHECK(told[1].code == "loose-vertices");
   CHECK(told[1].severity == Message::Severity::kWarning);
@@ -158,17 +158,16 @@ TEST_CASE("lines and single points of a mesh are part of every kind of model") {
   CHECK(told[1].numbers.at(0).second == 3);
   const auto dots = scratch.write("dots.obj", mast + "p 1 2 6\n");
   told.clear();
-  CHECK(read_model_shape(dots, {}, &told).points ==
-        std::vector<Vec3>{{0, 0, 0}, {4, 0, 0}, {2, 2, 2}});
+  CHECK(read_model(dots, {}, &told).vertices == std::vector<Vec3>{{0, 0, 0}, {4, 0, 0}, {2, 2, 2}});
   CHECK(told.at(0).code == "loose-vertices");
-  CHECK(read_model_shape(dots, {.vertices_only = true}).points.size() == 6);
+  CHECK(read_model(dots, {.vertices_only = true}).vertices.size() == 6);
 }
 
 TEST_CASE("a mast beside a closed part leaves it solid") {
   ReaderScratch scratch;
   const TriangleMesh cube = unit_cube();
   const auto file = scratch.write("cube.obj", obj_text(cube) + "v 1 1 4\nl 7 9\np 9\n");
-  const ModelShape solid = read_model_shape(file, {.as = ModelAs::kSolid});
+  const Model solid = read_model(file, {.as = ModelAs::kSolid});
   REQUIRE(solid.solid_of.size() == 14);
   for (std::size_t i = 0; i < 12; ++i) CHECK(solid.solid_of[i] == 0);
   CHECK(solid.solid_of[12] == kNoSolid);

@@ -62,7 +62,7 @@ struct Expected {
   Expected(const std::vector<Vec3>& positions, Query query) {
     query.between_poses = false;
     at_poses = brute_force_first_poses(positions, query);
-    if (query.is_surface()) return;
+    if (query.model.is_surface()) return;
     query.between_poses = true;
     between_poses = brute_force_first_poses(positions, query);
   }
@@ -76,7 +76,7 @@ std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uin
   for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
   for (const Engine& engine : engines()) {
     if (query.between_poses && !engine.between_poses) continue;
-    if (query.is_surface() && !engine.surfaces) continue;
+    if (query.model.is_surface() && !engine.surfaces) continue;
     for (const bool first_pose : {false, true}) {
       query.first_pose = first_pose;
       const int threads = next_threads();
@@ -147,7 +147,7 @@ Query with_clearance(Query query, double clearance, bool first_pose) {
 std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Query query) {
   query.between_poses = false;
   const std::uint64_t colliding = check_results(cloud, expected.at_poses, query);
-  if (query.is_surface()) return colliding;
+  if (query.model.is_surface()) return colliding;
   query.between_poses = true;
   CHECK(check_results(cloud, expected.between_poses, query) >= colliding);
   return colliding;
@@ -226,7 +226,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std
   for (std::size_t i = 0; i < ignored.size(); ++i) {
     if (!ignored[i]) continue;
     expected.at_poses[i] = HitSet::kNever;
-    if (!query.is_surface()) expected.between_poses[i] = HitSet::kNever;
+    if (!query.model.is_surface()) expected.between_poses[i] = HitSet::kNever;
     least[i] = {};
   }
   const std::vector<NearestPoint> nearest = nearest_of_searched(environment, ignored, query);

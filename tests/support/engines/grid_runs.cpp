@@ -49,7 +49,7 @@ HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run
 HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 const RunPages& run_pages) {
   if (query.model.empty()) return HitSet(cloud.entry_count(), query.first_pose);
-  const MotionTree motion(query.poses, ModelGroups(query.model).box());
+  const MotionTree motion(query.poses, ModelGroups(query.model.vertices).box());
   const std::vector<PlannedCell> cells = plan_everything(cloud, motion);
   const bool masked = query.ignores_points();
   const std::uint64_t page_bytes = run.cells_a_page * smallest_page_bytes(cloud, cells, masked);

@@ -16,9 +16,9 @@ namespace {
 template <typename Element>
 std::vector<Element> elements_of(const Query& query) {
   if constexpr (kIsTriangle<Element>) {
-    return triangles_of(query.model, query.triangles);
+    return triangles_of(query.model);
   } else {
-    return query.model;
+    return query.model.vertices;
   }
 }
 
@@ -32,19 +32,20 @@ class PreparedModel {
         reach_(reach_of(query)),
         threads_(threads),
         tree_(elements_),
-        solids_(query),
-        solid_of_(query.solid_of),
+        solids_(query.model),
+        solid_of_(query.model.solid_of),
         whole_(whole),
-        field_(
-            tree_, radius_,
-            {.reach = reach_, .by_need = !whole, .solids = query.is_solid() ? &solids_ : nullptr},
-            threads) {}
+        field_(tree_, radius_,
+               {.reach = reach_,
+                .by_need = !whole,
+                .solids = query.model.is_solid() ? &solids_ : nullptr},
+               threads) {}
   PreparedModel(const PreparedModel&) = delete;
   PreparedModel& operator=(const PreparedModel&) = delete;
 
   bool is_for(const Query& query, int threads, bool whole) const {
     return whole_ == whole && radius_ == search_radius(query) && reach_ == reach_of(query) &&
-           threads_ == threads && solid_of_ == query.solid_of &&
+           threads_ == threads && solid_of_ == query.model.solid_of &&
            std::ranges::equal(elements_, elements_of<Element>(query), same_bits);
   }
   const ModelTreeOf<Element>& tree() const { return tree_; }
@@ -111,10 +112,10 @@ SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int thre
 
 SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads,
                        const MakeSweep& make, bool whole_field) {
-  if (query.is_solid()) {
+  if (query.model.is_solid()) {
     return run_sweep_of<SolidTriangle>(cloud, query, threads, make.solids, whole_field);
   }
-  return query.is_surface()
+  return query.model.is_surface()
              ? run_sweep_of<Triangle>(cloud, query, threads, make.triangles, whole_field)
              : run_sweep_of<Vec3>(cloud, query, threads, make.points, whole_field);
 }

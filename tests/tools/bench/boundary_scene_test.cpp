@@ -47,7 +47,7 @@ TEST_CASE("the points lie as many ulps beside the radius as said, and collide wi
   CHECK(read == steps.size());
   CHECK(exact);
   CHECK(as_said);
-  CHECK(read_model(folder / "m.ply") == std::vector<Vec3>{{0, 0, 0}});
+  CHECK(read_model_points(folder / "m.ply") == std::vector<Vec3>{{0, 0, 0}});
   CHECK(read_trajectory(folder / "t.txt", {}).size() == 1);
 }
 

@@ -35,7 +35,7 @@ std::vector<Vec3> thinned(const ScratchFolder& folder, const std::vector<Vec3>& 
                           double voxel) {
   write_ply(folder / "model.ply", points);
   write_thinned_model(folder / "model.ply", folder / "thin.ply", voxel);
-  return read_model(folder / "thin.ply");
+  return read_model_points(folder / "thin.ply");
 }
 
 /// Turns about slanted axes, far from the origin.
@@ -101,9 +101,9 @@ TEST_CASE("a body fills the box of its model and is closed") {
   const ScratchFolder folder;
   write_ply(folder / "model.ply", {{-1, -2, 0}, {3, 2, 1.5}});
   write_body(folder / "model.ply", folder / "body.off", 799);
-  const ModelShape body = read_model_shape(folder / "body.off", {.as = ModelAs::kSurface});
+  const Model body = read_model(folder / "body.off", {.as = ModelAs::kSurface});
   CHECK(body.triangles.size() == 2 * 19 * 19);
-  CHECK(body.points.size() == 19 * 19 + 2);
+  CHECK(body.vertices.size() == 19 * 19 + 2);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& [a, b, c] : body.triangles) {
     for (const auto& edge : {std::pair{a, b}, {b, c}, {c, a}}) ++edges[edge];
@@ -112,7 +112,7 @@ TEST_CASE("a body fills the box of its model and is closed") {
     REQUIRE(count == 1);
     REQUIRE(edges.contains({edge.second, edge.first}));
   }
-  for (const Vec3& corner : body.points) {
+  for (const Vec3& corner : body.vertices) {
     const double x = (corner.x - 1) / 2, y = corner.y / 2, z = (corner.z - 0.75) / 0.75;
     REQUIRE(x * x * x * x + y * y * y * y + z * z * z * z == Approx(1));
   }

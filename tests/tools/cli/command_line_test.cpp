@@ -231,7 +231,7 @@ TEST_CASE("the result is that of brute force") {
   for (const Quantum& q : points_by_source(store)) {
     environment.push_back(position(store.quantisation(), q[0], q[1], q[2]));
   }
-  const auto model = read_model(work.hall.path("model.ply"));
+  const auto model = read_model_points(work.hall.path("model.ply"));
   const auto poses = read_trajectory(work.hall.path("trajectory.txt"), {});
   const auto first = brute_force_first_poses(environment, {model, poses, {0.1, true}});
   ResultRows expected;

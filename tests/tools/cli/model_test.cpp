@@ -61,9 +61,9 @@ TEST_CASE("model says what a mesh is like, and samples nothing without a spacing
 TEST_CASE("run of a mesh is run of the points that model wrote") {
   const Meshes meshes;
   REQUIRE(meshes.model("--unit mm --spacing 0.1 -o " + meshes.work.path("car.ply")).exit_code == 0);
-  const auto points = read_model(meshes.work.folder / "car.ply");
-  CHECK(points ==
-        read_model(meshes.work.folder / "car.stl", {.spacing = 0.1, .unit = kMetresPerMillimetre}));
+  const auto points = read_model_points(meshes.work.folder / "car.ply");
+  CHECK(points == read_model_points(meshes.work.folder / "car.stl",
+                                    {.spacing = 0.1, .unit = kMetresPerMillimetre}));
   // A quarter of the radius is the default.
   const Outcome mesh = meshes.run("car.stl", "mesh.h5", "--model-as points --model-unit mm --json");
   REQUIRE(mesh.exit_code == 0);
@@ -243,7 +243,7 @@ struct Plate {
   Plate() {
     put_bytes(work.folder / "plate.off",
               "OFF\n4 2 0\n-3 -2 0\n3 -2 0\n3 2 0\n-3 2 0\n3 0 1 2\n3 0 2 3\n");
-    const auto samples = read_model(work.folder / "plate.off", {.spacing = 0.025});
+    const auto samples = read_model_points(work.folder / "plate.off", {.spacing = 0.025});
     Vec3 place{};
     double farthest = 0;
     for (int i = 0; i < 100; ++i) {
@@ -362,12 +362,11 @@ TEST_CASE("the surface below a height is cut off") {
   REQUIRE(run.exit_code == 0);
   CHECK_THAT(run.err,
              Contains("2 of 12 triangles are below z = 0.5 m, and are left out; 8 are cut there"));
-  ModelShape cut =
-      read_model_shape(meshes.work.folder / "car.stl",
-                       {.as = ModelAs::kSurface, .unit = kMetresPerMillimetre, .above = 0.5});
+  Model cut = read_model(meshes.work.folder / "car.stl",
+                         {.as = ModelAs::kSurface, .unit = kMetresPerMillimetre, .above = 0.5});
   double lowest = 1e9, area = 0;
   for (const auto& [i, j, k] : cut.triangles) {
-    const Vec3 &a = cut.points[i], &b = cut.points[j], &c = cut.points[k];
+    const Vec3 &a = cut.vertices[i], &b = cut.vertices[j], &c = cut.vertices[k];
     for (const Vec3& p : {a, b, c}) lowest = std::min(lowest, p.z);
     const Vec3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
     area += std::sqrt(std::pow(u.y * v.z - u.z * v.y, 2) + std::pow(u.z * v.x - u.x * v.z, 2) +
@@ -383,7 +382,7 @@ TEST_CASE("the surface below a height is cut off") {
 TEST_CASE("the vertices alone are the model when asked, in the unit of the file") {
   const Meshes meshes;
   REQUIRE(meshes.model("--vertices --unit in -o " + meshes.work.path("v.ply")).exit_code == 0);
-  const auto points = read_model(meshes.work.folder / "v.ply");
+  const auto points = read_model_points(meshes.work.folder / "v.ply");
   CHECK(points.size() == 8);
   for (const Vec3& p : points) CHECK((p.x == 2000 * 0.0254 || p.x == -2000 * 0.0254));
   const Outcome run = meshes.run("car.stl", "v.h5", "--model-vertices --model-unit mm --json");

@@ -28,7 +28,7 @@ struct Inputs {
     for (const Quantum& q : points_by_source(store)) {
       environment.push_back(position(store.quantisation(), q[0], q[1], q[2]));
     }
-    model = read_model(hall.path("model.ply"));
+    model = read_model_points(hall.path("model.ply"));
     poses = read_trajectory(hall.path("trajectory.txt"), {});
   }
   Query query() const { return {model, poses, {0.1, true}}; }

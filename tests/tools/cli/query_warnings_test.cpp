@@ -169,7 +169,7 @@ TEST_CASE("a model in another unit or frame is warned of") {
 
 TEST_CASE("the scan itself as the model is warned of") {
   Asked asked;
-  asked.model = read_model(Scene::hall().folder / "environment.las");
+  asked.model = read_model_points(Scene::hall().folder / "environment.las");
   CHECK_THAT(codes_of(asked.ask()), Contains("model-is-environment"));
 }
 

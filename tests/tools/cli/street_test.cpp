@@ -75,7 +75,7 @@ void write_trajectory_file(const std::filesystem::path& path, const std::vector<
 /// A piece of the street around one of its poses, small enough for brute force.
 struct Crop {
   Crop() {
-    model = thinned(read_model(street("beetle.ply")), 60);
+    model = thinned(read_model_points(street("beetle.ply")), 60);
     poses = thinned(read_trajectory(street("trajectory.txt"), {}), 9);
     const double* centre = poses[poses.size() / 2].translation;
     const auto reader = open_point_file(street("street.las"));

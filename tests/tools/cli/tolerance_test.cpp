@@ -24,7 +24,7 @@ std::vector<double> distances_in(const Hall& hall) {
   for (const Quantum& q : points_by_source(store)) {
     environment.push_back(position(store.quantisation(), q[0], q[1], q[2]));
   }
-  const std::vector<Vec3> model = read_model(hall.path("model.ply"));
+  const std::vector<Vec3> model = read_model_points(hall.path("model.ply"));
   const std::vector<Pose> poses = read_trajectory(hall.path("trajectory.txt"), {});
   std::vector<double> out;
   for (const Clearance& c : brute_force_clearances(environment, {model, poses, {0.1}})) {

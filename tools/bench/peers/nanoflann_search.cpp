@@ -53,7 +53,7 @@ NanoflannSearch::SearchResult NanoflannSearch::run(const Query& query, int threa
     std::vector<std::pair<std::uint32_t, double>> found;
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t i = 0; i < query.poses.size(); ++i) {
-      for (const Vec3& m : query.model) {
+      for (const Vec3& m : query.model.vertices) {
         const Vec3 moved = transform(query.poses[i], m);
         const double position[3] = {moved.x, moved.y, moved.z};
         if (index_->tree.radiusSearch(position, radius_squared, found, unsorted) == 0) ++empty;

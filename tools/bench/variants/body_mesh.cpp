@@ -82,7 +82,7 @@ void write_body(const std::filesystem::path& in, const std::filesystem::path& ou
   if (n < 3) {
     throw UsageError("a body of " + std::to_string(triangles) + " triangles; expected at least 18");
   }
-  const BodyMesh mesh(box_of(read_model(in)), n);
+  const BodyMesh mesh(box_of(read_model_points(in)), n);
   publish(in, out, [&](const File& file) { mesh.write(file); });
 }
 

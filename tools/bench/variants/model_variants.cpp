@@ -47,7 +47,7 @@ void write_thinned_model(const std::filesystem::path& in, const std::filesystem:
   if (!(voxel > 0 && std::isfinite(voxel))) {
     throw UsageError("a voxel of " + shown(voxel) + " m; expected a positive length");
   }
-  const std::vector<Vec3> points = read_model(in);
+  const std::vector<Vec3> points = read_model_points(in);
   const std::vector<bool> kept = one_a_voxel(points, voxel);
   std::vector<Vec3> thinned;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -144,10 +144,11 @@ std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions
   tell(run.vehicle.key, messages);
   std::vector<EstimatedModel> models;
   for (const Body& body : query.bodies) {
-    header.model_points += body.model.size();
-    header.model_triangles += body.triangles.size();
-    models.push_back({box_of(body.model),
-                      points_to_search(body.model.size(), body.triangles.size()), body.poses});
+    header.model_points += body.model.vertices.size();
+    header.model_triangles += body.model.triangles.size();
+    models.push_back({box_of(body.model.vertices),
+                      points_to_search(body.model.vertices.size(), body.model.triangles.size()),
+                      body.poses});
   }
   header.model_hash = hash_of_bodies(query.bodies);
   return named(run.environment.key, [&] { return estimate_.shards(options, models); });
@@ -247,11 +248,10 @@ const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
   return named(run.vehicle.key, [&]() -> const ReadModel& {
     check_is_model(options.model);
     std::vector<Message> messages;
-    const ModelShape shape = read_model_shape(options.model, how, &messages);
+    const Model shape = read_model(options.model, how, &messages);
     tell(run.vehicle.key, messages);
-    return models_[id] = {shape.points.size(), shape.triangles.size(),
-                          hash_of_model(shape.points, shape.triangles, shape.solid_of),
-                          shape.points.empty() ? Box{} : box_of(shape.points)};
+    return models_[id] = {shape.vertices.size(), shape.triangles.size(), hash_of_model(shape),
+                          shape.empty() ? Box{} : box_of(shape.vertices)};
   });
 }
 

@@ -110,14 +110,14 @@ std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const Mod
   return read_vehicle(vehicle, path, all, &warnings);
 }
 
-ModelShape read_model_of(const std::filesystem::path& path, const ModelOptions& options,
-                         const Result& result) {
-  ModelShape shape = read_model_shape(path, model_options_of(result, options));
+Model read_model_of(const std::filesystem::path& path, const ModelOptions& options,
+                    const Result& result) {
+  Model shape = read_model(path, model_options_of(result, options));
   const ResultHeader& header = result.reader().header();
-  const std::uint64_t hash = hash_of_model(shape.points, shape.triangles, shape.solid_of);
-  if (shape.points.size() == header.model_points && hash == header.model_hash) return shape;
+  const std::uint64_t hash = hash_of_model(shape);
+  if (shape.vertices.size() == header.model_points && hash == header.model_hash) return shape;
   refuse(path.string(), "is not the model of " + result.reader().name() + ": it has " +
-                            format_count(shape.points.size()) + " points with the hash " +
+                            format_count(shape.vertices.size()) + " points with the hash " +
                             hash_text(hash) + ", expected " + format_count(header.model_points) +
                             " with the hash " + hash_text(header.model_hash) +
                             "; give the file of the run, with the same options");

@@ -53,7 +53,7 @@ std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const Mod
                                  const Result& result, std::vector<Message>& warnings);
 
 /// The model that a result is of. Throws InputError for another model.
-ModelShape read_model_of(const std::filesystem::path& path, const ModelOptions& options,
-                         const Result& result);
+Model read_model_of(const std::filesystem::path& path, const ModelOptions& options,
+                    const Result& result);
 
 }  // namespace clearway::tool

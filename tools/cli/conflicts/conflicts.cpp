@@ -74,20 +74,20 @@ Outputs open_outputs(const ConflictsCommand& options) {
 constexpr double kDrawnPlaces = 20'000;
 
 /// What is drawn of a model: its points, or places of its triangles.
-std::vector<Vec3> drawn(const std::vector<Vec3>& points,
-                        const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  return triangles.empty() ? points : drawn_points({points, triangles}, kDrawnPlaces);
+std::vector<Vec3> drawn(const Model& model) {
+  if (!model.is_surface()) return model.vertices;
+  return drawn_points({model.vertices, model.triangles}, kDrawnPlaces);
 }
 
 /// What conflicts are seen from: the model, or the bodies of the vehicle.
 struct SeenFrom {
-  ModelShape model;
+  Model model;
   std::vector<Body> bodies;
 
   std::vector<std::vector<Vec3>> drawn_models() const {
     std::vector<std::vector<Vec3>> out;
-    if (!model.points.empty()) out.push_back(drawn(model.points, model.triangles));
-    for (const Body& body : bodies) out.push_back(drawn(body.model, body.triangles));
+    if (!model.empty()) out.push_back(drawn(model));
+    for (const Body& body : bodies) out.push_back(drawn(body.model));
     return out;
   }
 };
@@ -97,7 +97,7 @@ SeenFrom read_seen_from(ConflictsCommand& options, const std::vector<Pose>& pose
   SeenFrom out;
   if (!options.model.empty()) {
     out.model = read_model_of(options.model, options.model_options, result);
-    options.find.model_box = box_of(out.model.points);
+    options.find.model_box = box_of(out.model.vertices);
   }
   if (!options.vehicle.empty()) {
     std::vector<Message> told;
@@ -136,7 +136,7 @@ void run_conflicts(ConflictsCommand& options) {
       read_poses(options.trajectory, options.trajectory_options, result);
   const SeenFrom from = read_seen_from(options, poses, result);
   options.find.bodies = from.bodies;
-  if (!from.model.points.empty()) options.find.model = &from.model;
+  if (!from.model.empty()) options.find.model = &from.model;
   const bool has_pictures = std::ranges::any_of(
       outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
   std::vector<std::uint32_t> conflict_of;

@@ -97,7 +97,7 @@ void write_changed(const ChangeOptions& options, const Change& change) {
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   // No other place of a mesh is farther out than its vertices.
   const Box model =
-      box_of(read_model(options.model, {.unit = options.model_unit, .vertices_only = true}));
+      box_of(read_model_points(options.model, {.unit = options.model_unit, .vertices_only = true}));
   const double motion_before = largest_motion(model, before);
   if (!std::isfinite(motion_before)) {
     throw InputError(options.input.string() +

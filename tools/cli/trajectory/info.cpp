@@ -119,8 +119,8 @@ Description describe(InfoOptions& options) {
   Box model{};
   if (!options.model.empty()) {
     // No other place of a mesh is farther out than its vertices.
-    model =
-        box_of(read_model(options.model, {.unit = options.model_unit,
+    model = box_of(
+        read_model_points(options.model, {.unit = options.model_unit,
                                           .environment_unit = options.trajectory.environment_unit,
                                           .vertices_only = true}));
     what.motion = motion_of(poses, model, options.radius);

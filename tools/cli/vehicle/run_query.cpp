@@ -12,9 +12,7 @@ Query read_query(RunOptions& options, const Store& store, PoseLabels& labels) {
   std::vector<Message>& warnings = options.search.input_warnings;
   const ModelOptions how = model_options_of(options);
   Query query({}, {}, options.query);
-  if (options.vehicle.empty()) {
-    set_model(query, read_model_shape(options.model, how, &warnings));
-  }
+  if (options.vehicle.empty()) query.model = read_model(options.model, how, &warnings);
   options.trajectory_options.default_crs = store.crs_wkt();
   query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings, &labels);
   if (!options.vehicle.empty()) {

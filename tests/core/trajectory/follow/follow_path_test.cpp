@@ -38,8 +38,6 @@ Vec3 column(const Pose& pose, int axis) {
   return {pose.rotation[axis], pose.rotation[3 + axis], pose.rotation[6 + axis]};
 }
 
-double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 FollowedPath follow(const std::vector<Pose>& poses, const BodyMount& mount) {
   return follow_path(PathStations(poses, 2), mount, 2);
 }

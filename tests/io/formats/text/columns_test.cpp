@@ -159,7 +159,7 @@ TEST_CASE("what looks like something else than points is refused with what it lo
     CHECK(refusal.remedy == Remedy::kColumns);
     ReaderScratch scratch;
     try {
-      read_model(scratch.write("model.txt", text));
+      read_model_points(scratch.write("model.txt", text));
       FAIL("read as a model");
     } catch (const InputError& error) {
       CHECK_THAT(error.what(), Contains("looks like") && Contains(what));

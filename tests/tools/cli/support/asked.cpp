@@ -17,7 +17,7 @@ Scene::Scene(const std::string& kind, const std::string& sizes) {
   const Outcome converted =
       run_program(folder, "convert " + quoted(folder / "environment.las") + " -o " + store());
   if (made.exit_code != 0 || converted.exit_code != 0) throw std::runtime_error("no scene");
-  model = read_model(folder / "model.ply");
+  model = read_model_points(folder / "model.ply");
   poses = read_trajectory(folder / "trajectory.txt");
 }
 
