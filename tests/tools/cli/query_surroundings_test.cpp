@@ -1,9 +1,11 @@
 // Questions whose answer would be a silent 0: the path is too low or too high, the scan lacks what
 // could be met, or the model lets things through.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/asked.hpp"
@@ -242,6 +244,33 @@ TEST_CASE("a vehicle that stops for long is judged by its way") {
     return place.along < 50 || place.along > 62 || place.height > 0.5;
   });
   CHECK(codes_of(asked.ask(store)) == "nothing-below");
+}
+
+TEST_CASE("where poses are far apart a note says what can stay unnoticed") {
+  Asked asked;
+  asked.options = "--between-poses";
+  CHECK_THAT(asked.ask().err, !Contains("is looked at every"));
+  std::vector<Pose> few;
+  for (std::size_t i = 0; i < asked.poses.size(); i += 150) few.push_back(asked.poses[i]);
+  asked.poses = few;
+  CHECK_THAT(asked.ask().err, Contains("is looked at every 5.99 m") && Contains("shorter than 12 m"));
+}
+
+TEST_CASE("a scan that was thinned is warned of, also for a wide model") {
+  const ScratchFolder folder;
+  std::set<std::array<long, 3>> filled;
+  const std::string store = Scene::hall().changed_store(folder, [&](const Vec3& p) {
+    return filled.insert({std::lround(p.x / 0.7), std::lround(p.y / 0.7), std::lround(p.z / 0.7)})
+        .second;
+  });
+  Asked asked;
+  asked.radius = "0.05";
+  CHECK(codes_of(asked.ask(store)) == "coarse-scan");
+  const double bottom = bottom_of(asked.model);
+  asked.model = shell({-2.2, -1.3, bottom}, {2.2, 1.3, bottom + 1.5}, true);
+  CHECK_THAT(codes_of(asked.ask(store)), Contains("coarse-scan"));
+  asked.radius = "1";
+  CHECK_THAT(codes_of(asked.ask(store)), !Contains("coarse-scan"));
 }
 
 TEST_CASE("a scan without heights is warned of") {

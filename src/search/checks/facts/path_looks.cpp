@@ -152,7 +152,7 @@ std::vector<Look> looks_every(double apart, const std::vector<Pose>& poses, cons
   return looks;
 }
 
-/// For a model that hardly goes on.
+/// For a model that hardly goes on, and for poses that jump beyond all measure.
 std::vector<Look> looks_by_number(const std::vector<Pose>& poses, const Vec3& point) {
   std::vector<Look> looks;
   Vec3 at = transform(poses.front(), point);
@@ -173,7 +173,8 @@ std::vector<Look> chosen_looks(const Question& question) {
   double apart = std::clamp(longest / kLooksOfModel, kClosestApart * question.metre,
                             kFarthestApart * question.metre);
   std::vector<Look> looks = looks_every(apart, poses, centre);
-  while (looks.size() > kMostLooks) {
+  constexpr double kFarthest = 1e12;  // metres: no path is so long
+  while (looks.size() > kMostLooks && apart < kFarthest) {
     constexpr double kFewer = 1.01;  // so that few rounds are needed
     apart *= kFewer * static_cast<double>(looks.size()) / static_cast<double>(kMostLooks);
     looks = looks_every(apart, poses, centre);
@@ -184,7 +185,8 @@ std::vector<Look> chosen_looks(const Question& question) {
     apart /= 2;
     looks = looks_every(apart, poses, centre);
   }
-  return looks.size() < kFewestLooks ? looks_by_number(poses, centre) : looks;
+  const bool is_usable = looks.size() >= kFewestLooks && looks.size() <= kMostLooks;
+  return is_usable ? looks : looks_by_number(poses, centre);
 }
 
 }  // namespace
