@@ -15,6 +15,7 @@ constexpr double kOneSideOnly = 0.2, kOtherSide = 0.8;
 constexpr double kElsewhere = 0.8;  ///< of those outside the stretches
 /// A stretch without walls is so many times longer than the gaps that are usual on the path.
 constexpr double kUnusuallyLong = 3;
+constexpr double kPartBeside = 0.05;  ///< of the path
 /// Metres of the path. A scanner on a tripod leaves a shadow of up to 4 m, in which a slice of the
 /// model hardly moves, and streets open to side roads.
 constexpr double kLeastBelow = 3, kLeastBeside = 20;
@@ -126,7 +127,8 @@ class Stretches {
 
   /// Beside the path there are gaps, such as side roads. Those of usual length do not count.
   std::vector<LookRun> unusual_runs(const std::function<bool(const Look&)>& holds) const {
-    const double least = kLeastBeside * question_.metre;
+    const double least =
+        std::max(kLeastBeside * question_.metre, kPartBeside * looks_.all().back().along);
     double usual = 0;
     for (const LookRun& run : looks_.runs(0, holds)) {
       if (looks_.length(run) < least) usual = std::max(usual, looks_.length(run));

@@ -16,6 +16,7 @@ constexpr double kLooksOfModel = 4;  ///< while the model goes on by its own len
 // Points: fewer may be noise. A reflecting ground has some far below it.
 constexpr std::uint64_t kSurelyBelow = 10, kFewestBelow = 3;
 constexpr std::uint64_t kSurelyBeside = 3;
+constexpr double kPartOfGround = 1.0 / 32;
 // Metres.
 constexpr double kBesideMargin = 1;  ///< along the way, so that scanned points may be expected
 constexpr double kIntoModel = 0.3;   ///< ground may reach so far above the model's lowest point
@@ -79,13 +80,14 @@ class Looking {
     return cover_.scan().typical_block() / kSpacingsOfBlock / scale_of(pose);
   }
 
-  /// An eighth of the points of a ground that fills the box, for a tunnel's floor may be narrow.
+  /// A part of the points of a ground that fills the box: a tunnel's floor may be narrow, and
+  /// around a scanner that stands still points are scarce where others are dense.
   std::uint64_t surely_below(const Box& ground, const Pose& pose) const {
     const double area = (ground.hi.x - ground.lo.x) * (ground.hi.y - ground.lo.y);
-    const double eighth = area / (8 * spacing(pose) * spacing(pose));
-    return eighth >= kSurelyBelow  // also where points are at one place
+    const double part = kPartOfGround * area / (spacing(pose) * spacing(pose));
+    return part >= kSurelyBelow  // also where points are at one place
                ? kSurelyBelow
-               : std::max(kFewestBelow, static_cast<std::uint64_t>(eighth));
+               : std::max(kFewestBelow, static_cast<std::uint64_t>(part));
   }
 
   /// By `margin` on both sides, and farther where the scan has too few points for such a box.
@@ -118,8 +120,8 @@ class Looking {
   }
 
   Box beside(int side, const Band& band, const Pose& pose) const {
-    Box box = slice_;
     const Box& model = question_.model;
+    Box box = model;
     const int across = model.hi.x - model.lo.x >= model.hi.y - model.lo.y ? 1 : 0;
     const bool upwards = (side > 0) == (across == 1);
     const double near = band.from * metre(pose), far = band.to * metre(pose);
