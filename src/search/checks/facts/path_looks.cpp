@@ -121,7 +121,7 @@ class Looking {
 
   Box beside(int side, const Band& band, const Pose& pose) const {
     const Box& model = question_.model;
-    Box box = model;
+    Box box = slice_;
     const int across = model.hi.x - model.lo.x >= model.hi.y - model.lo.y ? 1 : 0;
     const bool upwards = (side > 0) == (across == 1);
     const double near = band.from * metre(pose), far = band.to * metre(pose);
