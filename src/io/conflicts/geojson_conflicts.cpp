@@ -46,14 +46,16 @@ std::string footprint_json(const Box& box) {
   return R"({"type": "Polygon", "coordinates": [[)" + ring + "]]}";
 }
 
-std::string feature_json(const Conflict& conflict, const ResultHeader& header, const char* shape,
-                         const std::string& geometry) {
+/// number: of the feature in the file. Without one, readers take the property "id", which the two
+/// features of a conflict share.
+std::string feature_json(std::uint64_t number, const Conflict& conflict, const ResultHeader& header,
+                         const char* shape, const std::string& geometry) {
   std::string properties = R"("shape": )" + json_string(shape);
   for (const ConflictField& field : fields_of(conflict, header)) {
     properties += ", " + json_string(field.name) + ": " + json_value(field.value);
   }
-  return R"({"type": "Feature", "geometry": )" + geometry + R"(, "properties": {)" + properties +
-         "}}";
+  return R"({"type": "Feature", "id": )" + std::to_string(number) + R"(, "geometry": )" + geometry +
+         R"(, "properties": {)" + properties + "}}";
 }
 
 }  // namespace
@@ -64,18 +66,18 @@ void write_geojson(const ConflictFile& conflicts, const File& file) {
   out << "{\n  \"type\": \"FeatureCollection\",\n  \"crs\": " << crs_json(wkt)
       << ",\n  \"note\": " << json_string(note_on(wkt)) << ",\n  \"summary\": {\n"
       << summary_json(conflicts) << "\n  },\n  \"features\": [";
-  const char* between = "\n    ";
+  std::uint64_t number = 0;
+  const auto add = [&](const Conflict& of, const char* shape, const std::string& geometry) {
+    ++number;
+    out << (number == 1 ? "\n    " : ",\n    ")
+        << feature_json(number, of, conflicts.header, shape, geometry);
+  };
   for (const Conflict& conflict : conflicts.conflicts.listed) {
-    out << between
-        << feature_json(conflict, conflicts.header, "centroid", point_json(conflict.centroid))
-        << ",\n    "
-        << feature_json(conflict, conflicts.header, "footprint", footprint_json(conflict.box));
-    between = ",\n    ";
+    add(conflict, "centroid", point_json(conflict.centroid));
+    add(conflict, "footprint", footprint_json(conflict.box));
   }
   for (const Conflict& group : small_groups_instead(conflicts.conflicts)) {
-    out << between
-        << feature_json(group, conflicts.header, "small group", point_json(group.centroid));
-    between = ",\n    ";
+    add(group, "small group", point_json(group.centroid));
   }
   out << (conflicts.conflicts.groups == 0 ? "]\n}\n" : "\n  ]\n}\n");
   out.flush();

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "search/checks/told_stretches.hpp"
+
 namespace clearway {
 namespace {
 
@@ -29,11 +31,41 @@ bool holds_for_vehicle(const std::vector<BodyMessages>& bodies, std::string_view
   });
 }
 
-/// Above the ground nothing needs to be beside it.
-bool matters(const std::vector<BodyMessages>& bodies, const Message& message) {
+/// Of a stretch: the ground is missing there below any body. Beside a low one there may be walls
+/// that a high one does not have.
+bool stretch_matters(const std::vector<BodyMessages>& bodies, const Message& message) {
+  return message.code == "nothing-below" || message.code == "floats" ||
+         holds_for_vehicle(bodies, message.code);
+}
+
+/// Of the whole path: above the ground nothing needs to be beside it.
+bool path_matters(const std::vector<BodyMessages>& bodies, const Message& message) {
   return holds_for_vehicle(bodies, message.code) &&
          (message.code != "nothing-beside" || !holds_for_vehicle(bodies, "floats"));
 }
+
+/// What is told of the vehicle, once for each code: what holds for its whole path, or else the
+/// longest stretch of it that a body names.
+struct OfVehicle {
+  const BodyMessages* body = nullptr;
+  const Message* message = nullptr;  ///< nullptr: it does not matter for the vehicle
+
+  OfVehicle(const std::vector<BodyMessages>& bodies, std::string_view code) {
+    for (const BodyMessages& candidate : bodies) {
+      for (const Message& other : candidate.messages) {
+        if (other.code != code || (message != nullptr && !is_better(other))) continue;
+        body = &candidate;
+        message = &other;
+      }
+    }
+    const bool matters = is_of_stretch(*message) ? stretch_matters(bodies, *message)
+                                                 : path_matters(bodies, *message);
+    if (!matters) message = nullptr;
+  }
+
+ private:
+  bool is_better(const Message& other) const { return told_length(other) > told_length(*message); }
+};
 
 void tell(Message message, const std::string& who, MessageLog& log) {
   message.text = who + ": " + message.text;
@@ -66,9 +98,11 @@ void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log) {
     for (const Message& message : bodies[i].messages) {
       if (!is_of_vehicle(message)) {
         tell_alike(bodies, i, message, log);
-      } else if (matters(bodies, message) && std::ranges::find(told, message.code) == told.end()) {
+      } else if (std::ranges::find(told, message.code) == told.end()) {
         told.push_back(message.code);
-        tell(message, "the vehicle, as its body " + bodies[i].name, log);
+        const OfVehicle found(bodies, message.code);
+        if (found.message == nullptr) continue;
+        tell(*found.message, "the vehicle, as its body " + found.body->name, log);
       }
     }
   }

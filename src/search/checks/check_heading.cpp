@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/angle.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
@@ -71,6 +72,28 @@ bool warn_of_tilt(const Drive& drive, MessageLog& log) {
                (other != nullptr ? std::string(". ") + other : ""),
            {{"mean_z", upright}});
   return true;
+}
+
+/// Roads bank by 4 degrees at most, and rails by 7 in curves, to their inner side.
+void warn_of_lean(const Drive& drive, MessageLog& log) {
+  constexpr double kLeans = 4.5, kSteady = 1.5;  // degrees
+  constexpr double kCurve = 0.8;
+  std::vector<double> leans = drive.leans();
+  if (leans.empty()) return;
+  std::sort(leans.begin(), leans.end());
+  const auto at = [&](double share) {
+    return leans[static_cast<std::size_t>(share * static_cast<double>(leans.size() - 1))] / kDegree;
+  };
+  const double lean = at(0.5);
+  if (std::abs(lean) < kLeans || at(0.95) - lean > kSteady || lean - at(0.05) > kSteady) return;
+  const double right = drive.right_turns();
+  if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // in a curve
+  log.warn("leans",
+           "along the whole path the model leans to the " +
+               std::string(lean > 0 ? "right" : "left") + " by " + figure(std::abs(lean)) +
+               " degrees, also where it does not turn: are the poses of a scanner or an inertial "
+               "unit that is mounted askew? If the ground has this slope, this is all right",
+           {{"degrees", lean}});
 }
 
 void warn_of_flat_model(const Question& question, int axis, MessageLog& log) {
@@ -166,6 +189,7 @@ void check_heading(const Question& question, MessageLog& log) {
   const Drive drive(question);
   if (!drive.is_one()) return;
   if (warn_of_tilt(drive, log) || warn_of_rotations(drive, log)) return;
+  warn_of_lean(drive, log);
   warn_sideways(question, drive, log);
   tell_backwards(drive, log);
 }

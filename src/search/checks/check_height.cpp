@@ -1,73 +1,52 @@
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
-#include "clearway/error.hpp"
 #include "search/checks/checks.hpp"
-#include "search/checks/facts/ground.hpp"
-#include "search/checks/facts/path_cover.hpp"
+#include "search/checks/facts/path_looks.hpp"
+#include "search/checks/told_stretches.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {
 namespace {
 
-constexpr std::size_t kHeightPoses = 32;  ///< poses
 // Metres.
 constexpr double kLeast = 0.5;
 constexpr double kSteady = 0.5;
-constexpr double kNarrowest = 1;  ///< a column below a small model holds points of the ground
-/// Of the poses that are high up, and of the heights: the others may be beside vegetation or noise.
+constexpr double kSteadyRest = 0.25;  ///< where only a stretch is high up
+constexpr double kLeastFloating = 5;  ///< of a stretch: longer than the shadow below a scanner
+/// Of the looks that are high up, and of the heights: the others may be beside vegetation or noise.
 constexpr double kMostHigh = 0.75;
 
-/// The inner part of a slice of the model, so that walls and kerbs beside it do not count, nor
-/// wires that its upper part meets.
-Box inner_body(const Box& model, double metre) {
-  constexpr double kInner = 0.6;
-  Box body = body_slice(model);
-  const Vec3 centre = body.centre();
-  for (int k = 0; k < 2; ++k) {
-    const double half = std::max(kInner * (body.hi[k] - body.lo[k]), kNarrowest * metre) / 2;
-    body.lo[k] = centre[k] - half;
-    body.hi[k] = centre[k] + half;
-  }
-  body.hi.z = body.lo.z + (body.hi.z - body.lo.z) / 3;
-  return body;
-}
-
-/// The heights above ground of the poses, ascending; empty as soon as too few are high up.
-std::vector<double> heights_of(const Question& question) {
-  const Ground ground(question.cloud);
-  const Box body = inner_body(question.model, question.metre);
-  const auto poses = spread_poses(question.query.poses.size(), kHeightPoses);
-  const auto may_be_low =
-      static_cast<std::size_t>((1 - kMostHigh) * static_cast<double>(poses.size()));
-  std::vector<double> heights;
-  std::size_t low = 0;
-  for (const std::uint32_t i : poses) {
-    const auto height = ground.height_of(body, question.query.poses[i]);
-    if (height && *height >= kLeast * question.metre) {
-      heights.push_back(*height);
-    } else if (++low > may_be_low) {
-      return {};
+/// Heights above ground, of which a part do not exceed at(part).
+class Heights {
+ public:
+  explicit Heights(const std::vector<Look>& looks) {
+    for (const Look& look : looks) {
+      if (look.height) sorted_.push_back(*look.height);
     }
+    std::sort(sorted_.begin(), sorted_.end());
   }
-  std::sort(heights.begin(), heights.end());
-  return heights;
-}
 
-}  // namespace
-
-bool check_height(const Question& question, MessageLog& log) {
-  std::vector<double> heights;
-  try {
-    heights = heights_of(question);
-  } catch (const InputError&) {
-    return false;  // a damaged cell is for the search to meet, where it matters
+  bool empty() const { return sorted_.empty(); }
+  double at(double share) const {
+    return sorted_[static_cast<std::size_t>(share * static_cast<double>(sorted_.size() - 1))];
   }
-  if (heights.size() < 2) return false;
-  const auto at = [&](double share) {
-    return heights[static_cast<std::size_t>(share * static_cast<double>(heights.size() - 1))];
-  };
-  const double usual = at(0.5), spread = at(0.75) - at(0.25);
+  double spread() const { return at(0.75) - at(0.25); }
+
+ private:
+  std::vector<double> sorted_;
+};
+
+bool stays_above_ground(const Question& question, const PathLooks& looks, MessageLog& log) {
+  std::vector<Look> high;
+  for (const Look& look : looks.all()) {
+    if (look.height && *look.height >= kLeast * question.metre) high.push_back(look);
+  }
+  const auto all = static_cast<double>(looks.all().size());
+  if (high.size() < 2 || static_cast<double>(high.size()) < kMostHigh * all) return false;
+  const Heights heights(high);
+  const double usual = heights.at(0.5), spread = heights.spread();
   if (spread > std::max(kSteady * question.metre, usual / 4)) return false;
   log.warn("floats",
            "along the path the model stays " + length_text(usual, question.unit) +
@@ -75,6 +54,36 @@ bool check_height(const Question& question, MessageLog& log) {
                "not, its heights have another zero: an antenna's, an ellipsoid's, or the model's",
            {{"height", usual}, {"spread", spread}});
   return true;
+}
+
+/// On a part of the path the model is higher above the ground than on the rest, where it keeps its
+/// height. Which of the two parts is right does not matter.
+void check_stretches_above(const Question& question, const PathLooks& looks, MessageLog& log) {
+  const double low = looks.usual_height() + kLeast * question.metre;
+  const std::vector<LookRun> runs = looks.runs(
+      kLeastFloating * question.metre, [&](const Look& l) { return l.height && *l.height >= low; });
+  const Heights rest(looks.rest(runs));
+  if (runs.empty() || rest.empty() || rest.spread() > kSteadyRest * question.metre) return;
+  const ToldStretches told(question, looks, runs);
+  const Heights here(looks.of(told.longest));
+  auto numbers = told.numbers;
+  numbers.insert(numbers.end(), {{"height", here.at(0.5)}, {"height_elsewhere", rest.at(0.5)}});
+  log.warn("floats",
+           told.where + " the model is " + length_text(here.at(0.5), question.unit) +
+               " above the highest point below it, and on the rest of the path " +
+               length_text(rest.at(0.5), question.unit) +
+               ": a part of the scan may be registered at another height, the ground may be "
+               "missing there, or the path leaves it. Compare the heights of path and scan there" +
+               told.others,
+           numbers);
+}
+
+}  // namespace
+
+bool check_height(const Question& question, const PathLooks& looks, MessageLog& log) {
+  if (stays_above_ground(question, looks, log)) return true;
+  check_stretches_above(question, looks, log);
+  return false;
 }
 
 }  // namespace clearway

@@ -37,12 +37,24 @@ void warn_of_fine_radius(const Question& question, MessageLog& log) {
            {{"radius", radius}, {"step", step}});
 }
 
-void warn_of_coarse_scan(const Question& question, MessageLog& log) {
+/// Between its points a scan says nothing. A radius bridges gaps in walls and ground, not those in
+/// which a post stands.
+void check_coarse_scan(const Question& question, MessageLog& log) {
   const ScanProximity scan(question.cloud, 0);
   const double spacing = scan.typical_block() / kSpacingsOfBlock;
-  const double radius = std::max(question.query.radius, question.query.clearance);
+  const double radius = question.query.radius, metre = question.metre;
   const double width = Sides(question.model).middle;
-  if (spacing <= 5 * radius || spacing <= width / 5) return;
+  // Metres.
+  constexpr double kTold = 0.1, kWide = 0.3, kVeryWide = 0.5;
+  const bool is_wide = spacing > 5 * radius && spacing > std::min(width / 5, kWide * metre);
+  const bool is_very_wide = spacing > 2 * radius && spacing > kVeryWide * metre;
+  if (!is_wide && !is_very_wide) {
+    if (spacing > 2 * radius && spacing > kTold * metre) {
+      log.note("the scan's points are typically " + length_text(spacing, question.unit) +
+               " apart: what is narrower can stand between them, where the scan does not show it");
+    }
+    return;
+  }
   log.warn("coarse-scan",
            "the scan's points are typically " + length_text(spacing, question.unit) +
                " apart. The radius is " + length_text(question.query.radius, question.unit) +
@@ -57,7 +69,7 @@ void warn_of_coarse_scan(const Question& question, MessageLog& log) {
 void check_radius(const Question& question, MessageLog& log) {
   warn_of_large_radius(question, log);
   warn_of_fine_radius(question, log);
-  if (question.cloud.point_count() >= kBlockPoints) warn_of_coarse_scan(question, log);
+  if (question.cloud.point_count() >= kBlockPoints) check_coarse_scan(question, log);
 }
 
 }  // namespace clearway

@@ -39,7 +39,9 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
   const std::uint32_t first = question.number_of(cover.first_outside());
   const std::uint32_t last = question.number_of(cover.last_outside());
   std::string text = "nothing was scanned within " + length_text(cover.reach(), question.unit) +
-                     " of the model at " + share_text(share) + " of the poses, between pose " +
+                     " of the model at " + share_text(share) + " of the poses, on " +
+                     length_text(cover.length_outside(), question.unit) + " of the " +
+                     length_text(cover.length(), question.unit) + " of the path, between pose " +
                      std::to_string(first) + " and pose " + std::to_string(last) +
                      ": there the result says nothing. ";
   constexpr double kWrongFrame = 0.5;
@@ -48,9 +50,15 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
   } else {
     text += "Scan the rest of the way, or leave these poses out";
   }
-  log.warn(
-      "leaves-scan", text,
-      {{"share", share}, {"reach", cover.reach()}, {"first_pose", first}, {"last_pose", last}});
+  log.warn("leaves-scan", text,
+           {{"share", share},
+            {"reach", cover.reach()},
+            {"length", cover.length_outside()},
+            {"path_length", cover.length()},
+            {"first_pose", first},
+            {"last_pose", last},
+            {"chainage_from", question.chainage(cover.first_outside())},
+            {"chainage_to", question.chainage(cover.last_outside())}});
 }
 
 }  // namespace

@@ -1,151 +1,210 @@
 #include <algorithm>
-#include <array>
 
-#include "clearway/error.hpp"
 #include "search/checks/checks.hpp"
-#include "search/checks/facts/path_cover.hpp"
-#include "search/checks/facts/scan_points.hpp"
+#include "search/checks/facts/path_looks.hpp"
+#include "search/checks/told_stretches.hpp"
 #include "search/checks/words.hpp"
 
 namespace clearway {
 namespace {
 
-constexpr std::size_t kSurroundedPoses = 32;
-// Points: fewer may be noise. A reflecting ground has some far below it.
-constexpr std::uint64_t kSurelyBelow = 10;
-constexpr std::uint64_t kSurelyBeside = 3;
-// Metres.
-constexpr double kMargin = 1;       ///< beside wheels, where ground that was cleared away remains
-constexpr double kIntoModel = 0.3;  ///< ground may reach so far above the model's lowest point
-constexpr double kBeside = 20;
-constexpr double kAbove = 3;
-// Shares of the poses.
+// Shares of the looks.
 constexpr double kMissing = 0.5;
 constexpr double kNowhere = 0.1;
 constexpr double kOneSideOnly = 0.2, kOtherSide = 0.8;
+constexpr double kElsewhere = 0.8;  ///< of those outside the stretches
+/// A stretch without walls is so many times longer than the gaps that are usual on the path.
+constexpr double kUnusuallyLong = 3;
+constexpr double kPartBeside = 0.05;  ///< of the path
+/// Metres of the path. A scanner on a tripod leaves a shadow of up to 4 m, in which a slice of the
+/// model hardly moves, and streets open to side roads.
+constexpr double kLeastBelow = 3, kLeastBeside = 20;
+constexpr double kFloats = 0.5;  ///< metres above what is usual: then another warning tells it
 
-/// Shares of the poses where something was scanned.
-struct Surroundings {
-  double below = 0, left = 0, right = 0;
-};
+bool has_below(const Look& look) { return look.below; }
+bool has_left(const Look& look) { return look.left; }
+bool has_right(const Look& look) { return look.right; }
+bool has_either(const Look& look) { return look.left || look.right; }
+bool has_both(const Look& look) { return look.left && look.right; }
 
-class Look {
- public:
-  Look(const Question& question, const PathCover& cover)
-      : question_(question), cover_(cover), points_(question.cloud) {}
-
-  /// Of the poses that the scan covers; none where it covers too few.
-  std::optional<Surroundings> around_path() const {
-    const Box slice = body_slice(question_.model);
-    const auto poses = spread_poses(question_.query.poses.size(), kSurroundedPoses);
-    std::array<std::size_t, 3> found{};
-    std::size_t looked = 0;
-    for (const std::uint32_t i : poses) {
-      const Pose& pose = question_.query.poses[i];
-      if (!cover_.covers(moved(slice, pose))) continue;
-      ++looked;
-      found[0] += points_.has(below(pose), pose, kSurelyBelow) ? 1 : 0;
-      found[1] += points_.has(beside(1, pose), pose, kSurelyBeside) ? 1 : 0;
-      found[2] += points_.has(beside(-1, pose), pose, kSurelyBeside) ? 1 : 0;
-    }
-    if (2 * looked < poses.size()) return std::nullopt;
-    const auto share = [&](std::size_t k) {
-      return static_cast<double>(found[k]) / static_cast<double>(looked);
-    };
-    return Surroundings{share(0), share(1), share(2)};
-  }
-
- private:
-  /// In the model's frame.
-  double metre(const Pose& pose) const { return question_.metre / scale_of(pose); }
-
-  /// Longer and wider than the model, so that scanned points may be expected there.
-  void widen(Box& box, int axis, const Pose& pose) const {
-    const double half = (box.hi[axis] - box.lo[axis]) / 2;
-    const double expected = cover_.scan().typical_block() / 4 / scale_of(pose);
-    const double margin = std::max(kMargin * metre(pose), expected - half);
-    box.lo[axis] -= margin;
-    box.hi[axis] += margin;
-  }
-
-  Box below(const Pose& pose) const {
-    Box box = question_.model;
-    for (int k = 0; k < 2; ++k) widen(box, k, pose);
-    box.lo.z = points_.bottom_of_scan(box, pose);
-    box.hi.z = question_.model.lo.z + kIntoModel * metre(pose);
-    return box;
-  }
-
-  /// side: 1 is left of a model whose longer side is forward, -1 right.
-  Box beside(int side, const Pose& pose) const {
-    Box box = question_.model;
-    const int across = box.hi.x - box.lo.x >= box.hi.y - box.lo.y ? 1 : 0;
-    const bool upwards = (side > 0) == (across == 1);
-    const double edge = upwards ? box.hi[across] : box.lo[across];
-    box.lo[across] = upwards ? edge : edge - kBeside * metre(pose);
-    box.hi[across] = upwards ? edge + kBeside * metre(pose) : edge;
-    widen(box, 1 - across, pose);
-    box.lo.z += kIntoModel * metre(pose);
-    box.hi.z += kAbove * metre(pose);
-    return box;
-  }
-
-  const Question& question_;
-  const PathCover& cover_;
-  ScanPoints points_;
-};
-
-void warn_nothing_below(const Surroundings& around, MessageLog& log) {
-  log.warn("nothing-below",
-           "at " + share_text(1 - around.below) +
-               " of the poses nothing was scanned below the model. Does the path run below the "
-               "ground, or is it in another place? Did the scanner leave out what was near it? If "
-               "you removed the ground on purpose, this is all right",
-           {{"share", 1 - around.below}});
+std::string beside_text(const Question& question) {
+  return "within " + length_text(kLooksBeside * question.metre, question.unit) +
+         " and at its height";
 }
 
-void warn_nothing_beside(const Question& question, const Surroundings& around, MessageLog& log) {
-  const double share = 1 - std::max(around.left, around.right);
+void warn_nothing_below(const PathLooks& looks, MessageLog& log) {
+  const double share = 1 - looks.share(has_below);
+  log.warn("nothing-below",
+           "on " + share_text(share) +
+               " of the path nothing was scanned below the model. Does the path run below the "
+               "ground, or is it in another place? Did the scanner leave out what was near it? If "
+               "you removed the ground on purpose, this is all right",
+           {{"share", share}});
+}
+
+void warn_nothing_beside(const Question& question, const PathLooks& looks, MessageLog& log) {
+  const double share = 1 - std::max(looks.share(has_left), looks.share(has_right));
   log.warn("nothing-beside",
-           "at " + share_text(share) +
-               " of the poses nothing was scanned beside the model, within " +
-               length_text(kBeside * question.metre, question.unit) +
-               " and at its height. Was only the ground scanned, or does the path run above a "
+           "on " + share_text(share) + " of the path nothing was scanned beside the model, " +
+               beside_text(question) +
+               ". Was only the ground scanned, or does the path run above a "
                "roof? Compare the heights of path and scan",
            {{"share", share}});
 }
 
-void warn_one_side(const Question& question, const Surroundings& around, MessageLog& log) {
-  const bool left_is_empty = around.left < around.right;
-  const double empty = 1 - std::min(around.left, around.right);
+void warn_one_side(const Question& question, const PathLooks& looks, MessageLog& log) {
+  const double left = looks.share(has_left), right = looks.share(has_right);
+  const std::string side = left < right ? "left" : "right";
+  const double empty = 1 - std::min(left, right);
   log.warn("one-side",
-           "at " + share_text(empty) + " of the poses nothing was scanned on the " +
-               (left_is_empty ? "left" : "right") + " of the model, within " +
-               length_text(kBeside * question.metre, question.unit) +
-               " and at its height. On the other side there is something. Was the " +
-               (left_is_empty ? "left" : "right") + " side scanned?",
-           {{"share", empty}, {"left", around.left}, {"right", around.right}});
+           "on " + share_text(empty) + " of the path nothing was scanned on the " + side +
+               " of the model, " + beside_text(question) +
+               ". On the other side there is something. Was the " + side + " side scanned?",
+           {{"share", empty}, {"left", left}, {"right", right}});
+}
+
+/// Looks for what a stretch of the path lacks and the rest has. What is missing below explains what
+/// is missing beside; so do heights, which "floats" tells of.
+class Stretches {
+ public:
+  Stretches(const Question& question, const PathLooks& looks)
+      : question_(question),
+        looks_(looks),
+        high_(looks.usual_height() + kFloats * question.metre) {}
+
+  void check_below(MessageLog& log) const {
+    const auto runs = runs_of(kLeastBelow, [](const Look& look) { return !look.below; });
+    if (runs.empty()) return;
+    const ToldStretches told(question_, looks_, runs);
+    log.warn("nothing-below",
+             told.where +
+                 " nothing was scanned below the model, though there is ground below it on the "
+                 "rest of the path: the scan may have a hole there, or a part of it may be "
+                 "registered at another height. Then what stands there is missing too. If you "
+                 "removed the ground on purpose, this is all right" +
+                 told.others,
+             told.numbers);
+  }
+
+  void check_beside(MessageLog& log) const {
+    const auto runs =
+        unusual_runs([&](const Look& look) { return is_on_ground(look) && !has_either(look); });
+    if (runs.empty() || !is_usual(has_either, runs)) return;
+    const ToldStretches told(question_, looks_, runs);
+    log.warn("nothing-beside",
+             told.where + " nothing was scanned beside the model, " + beside_text(question_) +
+                 ", though there is something on the rest of the path. Was only the ground "
+                 "scanned there? If the site is open there, this is all right" +
+                 told.others,
+             told.numbers);
+  }
+
+  void check_sides(MessageLog& log) const {
+    const std::vector<LookRun> left = empty_sides(has_left, has_right);
+    const std::vector<LookRun> right = empty_sides(has_right, has_left);
+    const bool left_is_longer = length(left) >= length(right);
+    const std::vector<LookRun>& runs = left_is_longer ? left : right;
+    std::vector<LookRun> all = left;
+    all.insert(all.end(), right.begin(), right.end());
+    std::ranges::sort(all, {}, &LookRun::first);
+    if (all.empty() || !is_usual(has_both, all)) return;
+    const ToldStretches told(question_, looks_, runs);
+    const std::string side = left_is_longer ? "left" : "right";
+    log.warn("one-side",
+             told.where + " nothing was scanned on the " + side + " of the model, " +
+                 beside_text(question_) +
+                 ". On the other side there is something, and on the rest of the path on both "
+                 "sides. Was the " +
+                 side + " side scanned there? If the site is open there, this is all right" +
+                 told.others,
+             told.numbers);
+  }
+
+ private:
+  std::vector<LookRun> runs_of(double least, const std::function<bool(const Look&)>& holds) const {
+    return looks_.runs(least * question_.metre, holds);
+  }
+
+  /// Beside the path there are gaps, such as side roads. Those of usual length do not count.
+  std::vector<LookRun> unusual_runs(const std::function<bool(const Look&)>& holds) const {
+    const double least =
+        std::max(kLeastBeside * question_.metre, kPartBeside * looks_.all().back().along);
+    double usual = 0;
+    for (const LookRun& run : looks_.runs(0, holds)) {
+      if (looks_.length(run) < least) usual = std::max(usual, looks_.length(run));
+    }
+    return looks_.runs(std::max(least, kUnusuallyLong * usual), holds);
+  }
+
+  /// Where nothing is on one side, and mostly something on the other.
+  std::vector<LookRun> empty_sides(bool (*one)(const Look&), bool (*other)(const Look&)) const {
+    std::vector<LookRun> runs =
+        unusual_runs([&](const Look& look) { return is_on_ground(look) && !one(look); });
+    std::erase_if(runs, [&](const LookRun& run) {
+      const std::vector<Look> looks = looks_.of(run);
+      return static_cast<double>(std::ranges::count_if(looks, other)) <
+             kOtherSide * static_cast<double>(looks.size());
+    });
+    return runs;
+  }
+
+  bool is_on_ground(const Look& look) const {
+    return look.below && !(look.height && *look.height >= high_);
+  }
+
+  double length(const std::vector<LookRun>& runs) const {
+    double sum = 0;
+    for (const LookRun& run : runs) sum += looks_.length(run);
+    return sum;
+  }
+
+  /// Whether it is remarkable that a stretch lacks it.
+  bool is_usual(bool (*has)(const Look&), const std::vector<LookRun>& runs) const {
+    std::vector<Look> rest = looks_.rest(runs);
+    std::erase_if(rest, [](const Look& look) { return !look.covered; });
+    return static_cast<double>(std::ranges::count_if(rest, has)) >=
+           kElsewhere * static_cast<double>(rest.size());
+  }
+
+  const Question& question_;
+  const PathLooks& looks_;
+  double high_;
+};
+
+/// What a stretch needs to be noticed, where the path is long or its poses are far apart.
+void tell_resolution(const Question& question, const PathLooks& looks, MessageLog& log) {
+  const double longest = Sides(question.model).longest;
+  const double resolved = 2 * looks.apart();
+  if (!(resolved > std::max(kLeastBelow * question.metre, longest))) return;
+  log.note("the scan below and beside the model is looked at every " +
+           length_text(looks.apart(), question.unit) +
+           " of the path: a stretch that is not scanned and shorter than " +
+           length_text(resolved, question.unit) + " can stay without a warning");
 }
 
 }  // namespace
 
-void check_surroundings(const Question& question, const PathCover& cover, bool floats,
+void check_surroundings(const Question& question, const PathLooks& looks, bool floats,
                         MessageLog& log) {
-  std::optional<Surroundings> around;
-  try {
-    around = Look(question, cover).around_path();
-  } catch (const InputError&) {
-    return;  // a damaged cell is for the search to meet, where it matters
+  if (2 * looks.covered() < looks.all().size()) return;
+  const double left = looks.share(has_left), right = looks.share(has_right);
+  const double less = std::min(left, right), more = std::max(left, right);
+  const Stretches stretches(question, looks);
+  tell_resolution(question, looks, log);
+  if (looks.share(has_below) < kMissing) {
+    warn_nothing_below(looks, log);
+    return;
   }
-  if (!around) return;
-  const double less = std::min(around->left, around->right);
-  const double more = std::max(around->left, around->right);
-  if (around->below < kMissing) {
-    warn_nothing_below(*around, log);
-  } else if (more < kNowhere && !floats) {
-    warn_nothing_beside(question, *around, log);
-  } else if (less < kOneSideOnly && more > kOtherSide) {
-    warn_one_side(question, *around, log);
+  stretches.check_below(log);
+  if (more < kNowhere && !floats) {
+    warn_nothing_beside(question, looks, log);
+    return;
+  }
+  if (!floats) stretches.check_beside(log);
+  if (less < kOneSideOnly && more > kOtherSide) {
+    warn_one_side(question, looks, log);
+  } else if (!floats) {
+    stretches.check_sides(log);
   }
 }
 

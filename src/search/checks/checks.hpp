@@ -5,6 +5,7 @@
 
 #include "core/util/message_log.hpp"
 #include "search/checks/facts/path_cover.hpp"
+#include "search/checks/facts/path_looks.hpp"
 #include "search/checks/question.hpp"
 
 /// Each looks for one kind of misunderstanding and warns of it, at most once a code. None changes
@@ -14,13 +15,14 @@ namespace clearway {
 /// The path passes where nothing was scanned: "out-of-reach", "leaves-scan".
 void check_reach(const Question& question, const PathCover& cover, MessageLog& log);
 
-/// The model never comes down to the ground: "floats". Reads a few points. Returns whether it
-/// warned.
-bool check_height(const Question& question, MessageLog& log);
+/// The model never comes down to the ground, or not on a stretch of the path: "floats". Returns
+/// whether it warned of the whole path.
+bool check_height(const Question& question, const PathLooks& looks, MessageLog& log);
 
-/// What was scanned below and beside the model: "nothing-below", "nothing-beside", "one-side".
-/// Reads a few points. `floats`: the model is known to be above the ground.
-void check_surroundings(const Question& question, const PathCover& cover, bool floats,
+/// What was scanned below and beside the model, on the whole path or on stretches of it:
+/// "nothing-below", "nothing-beside", "one-side". `floats`: the model is known to be above the
+/// ground.
+void check_surroundings(const Question& question, const PathLooks& looks, bool floats,
                         MessageLog& log);
 
 /// Unit and frame of the model: "model-size", "model-origin", "model-is-environment".
@@ -56,7 +58,7 @@ class StepChecks {
 };
 
 /// The way that the model goes, against its own axes: "tilted", "rotations", "sideways",
-/// "flat-model", "scaled-poses", "tiny-path".
+/// "leans", "flat-model", "scaled-poses", "tiny-path".
 void check_heading(const Question& question, MessageLog& log);
 
 }  // namespace clearway

@@ -153,12 +153,12 @@ class Trial {
   }
 
   bool meets_ground(Change change) const {
-    const Ground ground(question_.cloud);
+    const ScanPoints points(question_.cloud);
     const Box body = body_slice(question_.model);
     constexpr double kHigh = 1;  // metres
     try {
       return most_of([&](const Pose& pose) {
-        const auto height = ground.height_of(body, change(pose));
+        const auto height = height_above_ground(points, body, change(pose));
         return height && *height < kHigh * question_.metre;
       });
     } catch (const InputError&) {

@@ -1,8 +1,12 @@
 #include "search/checks/query_warnings.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <span>
 #include <utility>
 
+#include "clearway/error.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "io/model/sample_mesh.hpp"
 #include "search/checks/body_messages.hpp"
 #include "search/checks/checks.hpp"
@@ -70,9 +74,23 @@ void check_model_itself(const Question& question, const Query& asked, ModelForm 
   if (view == ModelForm::kPoints) check_model_spacing(question, log);
 }
 
+/// What was scanned below and beside the model. Reads points.
+void check_what_is_around(const Question& question, const PathCover& cover, bool of_body,
+                          MessageLog& log) {
+  std::optional<PathLooks> looks;
+  try {
+    looks.emplace(question, cover);
+  } catch (const InputError&) {
+    return;  // a damaged cell is for the search to meet, where it matters
+  }
+  const bool floats = check_height(question, *looks, log);
+  // Of a body, what is beside it is told in any case: other bodies may stand on the ground.
+  check_surroundings(question, *looks, floats && !of_body, log);
+}
+
 /// What can be said of one body. Whether that matters depends on the others.
-void warn_of_body(const StoreReader& store, const Body& body, const Query& query, StepChecks& steps,
-                  MessageLog& log) {
+void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
+                  std::span<const double> chainage, StepChecks& steps, MessageLog& log) {
   if (body.poses.empty()) {
     log.warn("no-poses", "has no poses: it cannot collide");
     return;
@@ -80,12 +98,11 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   ModelForm form = ModelForm::kPoints;
   const Query own(body.model, body.poses, query);
   const Query points = own.model.is_surface() ? sampled(own, form) : own;
-  const Question question(store, store.metadata().unit, points, body.path_pose);
+  const Question question(store, store.metadata().unit, points, body.path_pose, chainage);
   note_sizes(question, log);
   const PathCover cover(question);
   check_reach(question, cover, log);
-  check_height(question, log);
-  check_surroundings(question, cover, false, log);
+  check_what_is_around(question, cover, true, log);
   check_model_itself(question, own, form, log);
   check_radius(question, log);
   steps.check(question, log);
@@ -97,6 +114,7 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
                     MessageLog& log) {
   std::vector<BodyMessages> told;
   StepChecks steps(path);
+  const std::vector<double> chainage = chainage_of(query.poses);
   for (const Body& body : query.bodies) {
     told.push_back({body.name, {}});
     const MessageCallback keep = [&](const Message& message) {
@@ -104,7 +122,7 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
     };
     std::vector<Message> unused;
     MessageLog own(keep, unused);
-    warn_of_body(store, body, query, steps, own);
+    warn_of_body(store, body, query, chainage, steps, own);
   }
   tell_of_bodies(told, log);
   steps.check_path(path, log);
@@ -138,8 +156,7 @@ void warn_of_points(const StoreReader& store, const Query& query, const Query& a
   warn_of_flat_scan(question, log);
   const PathCover cover(question);
   check_reach(question, cover, log);
-  const bool floats = check_height(question, log);
-  check_surroundings(question, cover, floats, log);
+  check_what_is_around(question, cover, false, log);
   check_model_itself(question, asked, view, log);
   check_radius(question, log);
   StepChecks().check(question, log);

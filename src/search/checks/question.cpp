@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/chainage.hpp"
 
 namespace clearway {
 namespace {
@@ -13,15 +14,26 @@ namespace {
 }  // namespace
 
 Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
-                   const Query& asked, std::span<const std::uint32_t> numbers)
+                   const Query& asked)
+    : Question(environment_points, length_unit, asked, {}, {}) {}
+
+Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
+                   const Query& asked, std::span<const std::uint32_t> numbers,
+                   std::span<const double> chainages)
     : cloud(environment_points),
       unit(length_unit),
       query(asked),
       path_pose(numbers),
+      path_chainage(chainages),
       environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
       model(box_of(query.model.vertices)),
       metre(unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? 1 / kMetresPerFoot
                                                                            : 1) {}
+
+double Question::chainage(std::uint32_t pose) const {
+  const std::uint32_t number = number_of(pose);
+  return path_chainage.empty() ? chainage_of(query.poses)[number] : path_chainage[number];
+}
 
 Sides::Sides(const Box& box) {
   double sides[3] = {box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};

@@ -14,22 +14,26 @@ namespace clearway {
 /// What the checks of a query look at. Owns nothing.
 struct Question {
   /// The environment has a point, the model too, the trajectory a pose.
-  /// path_pose: of a body, as Body has it.
+  Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked);
+  /// Of a body: path_pose as Body has it, chainage of all poses of the path that it follows.
   Question(const PackedCloud& environment, LengthUnit length_unit, const Query& asked,
-           std::span<const std::uint32_t> path_pose = {});
+           std::span<const std::uint32_t> path_pose, std::span<const double> path_chainage);
 
   /// What users know a pose as.
   std::uint32_t number_of(std::uint32_t pose) const {
     return path_pose.empty() ? pose : path_pose[pose];
   }
+  /// Metres along the positions of the path, up to what users know a pose as.
+  double chainage(std::uint32_t pose) const;
 
   const PackedCloud& cloud;
   LengthUnit unit;
   const Query& query;
   std::span<const std::uint32_t> path_pose;
-  Box environment;  ///< of all points
-  Box model;        ///< in its own frame
-  double metre;     ///< in the environment's unit
+  std::span<const double> path_chainage;  ///< of a body; else it follows from the poses
+  Box environment;                        ///< of all points
+  Box model;                              ///< in its own frame
+  double metre;                           ///< in the environment's unit
 };
 
 /// The lengths of a box's sides, the longest first.

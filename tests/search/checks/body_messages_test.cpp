@@ -66,6 +66,40 @@ TEST_CASE("a body that is nowhere near the scan does not hide what others lack")
   CHECK(found[1].text == "the vehicle, as its body near: no ground");
 }
 
+namespace {
+
+Message of_stretch(const std::string& code, double from, double to) {
+  Message message = warning(code, "from " + std::to_string(static_cast<int>(from)));
+  message.numbers = {{"chainage_from", from}, {"chainage_to", to}};
+  return message;
+}
+
+}  // namespace
+
+TEST_CASE("a stretch without ground below one body is told, once, as the body with the longest") {
+  for (const std::string code : {"nothing-below", "floats"}) {
+    CAPTURE(code);
+    const auto found = told({{"front", {of_stretch(code, 10, 16)}},
+                             {"rear", {of_stretch(code, 11, 18)}},
+                             {"roof", {}}});
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].code == code);
+    CHECK(found[0].text == "the vehicle, as its body rear: from 11");
+  }
+  // A roof is above the ground everywhere: that does not hide what its bogie meets.
+  const auto found = told(
+      {{"roof", {warning("floats", "everywhere")}}, {"bogie", {of_stretch("floats", 10, 16)}}});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].text == "the vehicle, as its body bogie: from 10");
+}
+
+TEST_CASE("a stretch without walls is told where all bodies lack them") {
+  const Message beside = of_stretch("nothing-beside", 10, 40);
+  CHECK(told({{"roof", {beside}}, {"bogie", {}}}).empty());
+  CHECK(codes(told({{"roof", {beside}}, {"bogie", {of_stretch("nothing-beside", 12, 40)}}})) ==
+        std::vector<std::string>{"nothing-beside"});
+}
+
 TEST_CASE("notes of bodies stay notes") {
   const auto found = told({{"a", {{Message::Severity::kNote, {}, "small"}}}});
   REQUIRE(found.size() == 1);

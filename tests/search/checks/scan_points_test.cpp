@@ -69,10 +69,13 @@ TEST_CASE("a visit stops when it is told to") {
 TEST_CASE("ground is as far below a body as it is, and damaged cells are not passed over") {
   MemoryCloud cloud = ground_cloud();
   const Box body{{-1, -1, 0.5}, {1, 1, 2}};
-  CHECK(Ground(cloud).height_of(body, turned(0.4, 1, {20, 20, 7})).value() == Approx(7.5));
-  CHECK(Ground(cloud).height_of(body, turned(0.4, 1, {20, 20, -1})).value() == 0);
-  CHECK_FALSE(Ground(cloud).height_of(body, turned(0.4, 1, {20, 20, -4})).has_value());
-  CHECK_FALSE(Ground(cloud).height_of(body, turned(0.4, 1, {50, 20, 7})).has_value());
+  CHECK(height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {20, 20, 7})).value() ==
+        Approx(7.5));
+  CHECK(height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {20, 20, -1})).value() == 0);
+  CHECK_FALSE(
+      height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {20, 20, -4})).has_value());
+  CHECK_FALSE(
+      height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {50, 20, 7})).has_value());
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
     MemoryCloud damaged = ground_cloud();
     damaged.damage(cell);

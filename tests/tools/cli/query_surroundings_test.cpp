@@ -1,8 +1,11 @@
 // Questions whose answer would be a silent 0: the path is too low or too high, the scan lacks what
 // could be met, or the model lets things through.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/asked.hpp"
@@ -20,34 +23,51 @@ double bottom_of(const std::vector<Vec3>& model) {
 }
 
 /// A place of the hall from its nearest pose: how high above the model's lowest point, how far in
-/// plan, and how far to its left.
+/// plan, how far to its left, and how far along the path of 80 m.
 struct Relative {
-  double height, away, left;
+  double height, away, left, along;
 };
 
 Relative relative_to_path(const Vec3& p) {
   static const Asked asked;
   static const double bottom = bottom_of(asked.model);
   const Pose* nearest = nullptr;
-  double least = 1e300;
+  double least = 1e300, along = 0;
   for (std::size_t i = 0; i < asked.poses.size(); i += 20) {
     const double* t = asked.poses[i].translation;
     const double squared = (p.x - t[0]) * (p.x - t[0]) + (p.y - t[1]) * (p.y - t[1]);
     if (squared >= least) continue;
     least = squared;
     nearest = &asked.poses[i];
+    along = 80.0 * static_cast<double>(i) / static_cast<double>(asked.poses.size() - 1);
   }
   const double *r = nearest->rotation, *t = nearest->translation;
-  return {p.z - t[2] - bottom, std::sqrt(least), r[1] * (p.x - t[0]) + r[4] * (p.y - t[1])};
+  return {p.z - t[2] - bottom, std::sqrt(least), r[1] * (p.x - t[0]) + r[4] * (p.y - t[1]), along};
 }
 
-/// The codes where only a part of the hall was scanned.
-std::string codes_of_part(const std::function<bool(const Relative&)>& keep) {
+/// Asks where only a part of the hall was scanned.
+Outcome ask_part(const std::function<bool(const Relative&)>& keep) {
   const ScratchFolder folder;
   const std::string store =
       Scene::hall().changed_store(folder, [&](const Vec3& p) { return keep(relative_to_path(p)); });
-  return codes_of(Asked().ask(store));
+  return Asked().ask(store);
 }
+
+std::string codes_of_part(const std::function<bool(const Relative&)>& keep) {
+  return codes_of(ask_part(keep));
+}
+
+/// Asks where a part of the hall was registered too high, or too low.
+Outcome ask_raised(double by, const std::function<bool(const Relative&)>& is_wrong) {
+  const ScratchFolder folder;
+  const std::string store = Scene::hall().moved_store(folder, [&](const Vec3& p) {
+    return Vec3{p.x, p.y, p.z + (is_wrong(relative_to_path(p)) ? by : 0)};
+  });
+  return Asked().ask(store);
+}
+
+bool is_in_hole(const Relative& p) { return p.along > 30 && p.along < 42; }
+bool is_in_second_half(const Relative& p) { return p.along > 40; }
 
 std::string codes_at_height(double above) {
   Asked asked;
@@ -103,9 +123,155 @@ TEST_CASE("a scan that lacks what the model could meet is warned of") {
 }
 
 TEST_CASE("a scan from which only part was taken away on purpose is not warned of") {
-  // What the model touches, and the roof.
-  CHECK(codes_of_part([](const Relative& p) { return p.away > 1.3; }).empty());
+  // What is beside the wheels, and the roof.
+  CHECK(codes_of_part([](const Relative& p) { return p.away < 0.7 || p.away > 1.3; }).empty());
   CHECK(codes_of_part([](const Relative& p) { return p.height < 1; }).empty());
+}
+
+TEST_CASE("a scan without the corridor that the model takes is warned of") {
+  for (const double corridor : {1.3, 2.5}) {
+    CHECK(codes_of_part([&](const Relative& p) { return p.away > corridor; }) == "nothing-below");
+  }
+}
+
+TEST_CASE("a hole in the scan is warned of, with its place") {
+  const Outcome ground =
+      ask_part([](const Relative& p) { return !is_in_hole(p) || p.height > 0.5; });
+  CHECK(codes_of(ground) == "nothing-below");
+  CHECK_THAT(ground.err, Contains("m along the path) nothing was scanned below the model, though"));
+  const auto corridor = [](const Relative& p) { return !is_in_hole(p) || p.away > 2.5; };
+  CHECK(codes_of_part(corridor) == "nothing-below");
+  CHECK(codes_of_part([](const Relative& p) { return !is_in_hole(p) || p.away > 8; }) ==
+        "nothing-below");
+  CHECK(codes_of_part([](const Relative& p) { return !is_in_hole(p); }) == "nothing-below");
+  // The shadow of a scanner is none.
+  CHECK(codes_of_part([](const Relative& p) {
+          return p.height > 0.5 || p.along < 30 || p.along > 33;
+        }).empty());
+}
+
+TEST_CASE("several holes are told once, the longest with its place") {
+  const Outcome holes = ask_part([](const Relative& p) {
+    const bool in_hole = is_in_hole(p) || (p.along > 60 && p.along < 68);
+    return !in_hole || p.height > 0.5;
+  });
+  CHECK(codes_of(holes) == "nothing-below");
+  CHECK_THAT(holes.err,
+             Contains("The same holds for 1 other stretch, ") && Contains("m long in all"));
+}
+
+TEST_CASE("a part of the scan at another height is warned of") {
+  for (const double by : {2.0, 3.0, 4.0}) {
+    CAPTURE(by);
+    CHECK(codes_of(ask_raised(by, is_in_second_half)) == "nothing-below");
+    CHECK(codes_of(ask_raised(by, is_in_hole)) == "nothing-below");
+  }
+  const Outcome low = ask_raised(-1, is_in_second_half);
+  CHECK(codes_of(low) == "floats");
+  CHECK_THAT(low.err, Contains("the model is 1.0") && Contains("m above the highest point below"));
+  CHECK(codes_of(ask_raised(-1, is_in_hole)) == "floats");
+}
+
+TEST_CASE("walls that are missing along a part of the path are warned of") {
+  const Outcome both =
+      ask_part([](const Relative& p) { return !is_in_second_half(p) || p.height < 0.1; });
+  CHECK(codes_of(both) == "nothing-beside");
+  CHECK_THAT(both.err, Contains("though there is something on the rest of the path"));
+  const Outcome left =
+      ask_part([](const Relative& p) { return !is_in_second_half(p) || p.left < 0.5; });
+  CHECK(codes_of(left) == "one-side");
+  CHECK_THAT(left.err, Contains("nothing was scanned on the left of the model"));
+}
+
+TEST_CASE("a path that leaves the ground on a part of its way is warned of") {
+  Asked asked;
+  double pose = 0;
+  asked.move_path([&](const Vec3& p) {
+    const double ramp = std::min(std::abs(pose - 600), std::abs(pose - 1000)) / 100;
+    const bool up = pose > 600 && pose < 1000;
+    ++pose;
+    return Vec3{p.x, p.y, p.z + (up ? 0.8 * std::min(ramp, 1.0) : 0)};
+  });
+  const Outcome outcome = asked.ask();
+  CHECK(codes_of(outcome) == "floats");
+  CHECK_THAT(outcome.err, Contains("between pose 6") && Contains("the path leaves it"));
+}
+
+TEST_CASE("stretches of which a warning tells are numbers in the JSON") {
+  const ScratchFolder folder;
+  const std::string store = Scene::hall().changed_store(folder, [](const Vec3& p) {
+    const Relative place = relative_to_path(p);
+    return !is_in_hole(place) || place.height > 0.5;
+  });
+  const Scene& hall = Scene::hall();
+  const Outcome outcome = run_program(
+      folder, "run --json --env " + store + " --model " + quoted(hall.folder / "model.ply") +
+                  " --trajectory " + quoted(hall.folder / "trajectory.txt") + " --radius 0.1 -o " +
+                  quoted(folder / "out.h5"));
+  const auto warnings = nlohmann::json::parse(outcome.out)["warnings"];
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0]["code"] == "nothing-below");
+  const auto& numbers = warnings[0]["numbers"];
+  CHECK(numbers["chainage_from"].get<double>() == Approx(31.5).margin(1.5));
+  CHECK(numbers["chainage_to"].get<double>() == Approx(40.5).margin(1.5));
+  CHECK(numbers["first_pose"].get<double>() ==
+        Approx(numbers["chainage_from"].get<double>() * 25).margin(2));
+  CHECK(numbers["stretches"] == 1);
+  CHECK(numbers["share"].get<double>() == Approx(9.0 / 80).margin(0.03));
+}
+
+TEST_CASE("short, long and wide vehicles in a sound scan are not warned of") {
+  const double bottom = bottom_of(Asked().model);
+  for (const Vec3& size : {Vec3{0.5, 0.4, 0.5}, Vec3{1, 0.8, 0.8}, Vec3{12, 1.8, 1.5}}) {
+    CAPTURE(size.x);
+    Asked asked;
+    asked.model =
+        shell({-size.x / 2, -size.y / 2, bottom}, {size.x / 2, size.y / 2, bottom + size.z}, true);
+    CHECK(codes_of(asked.ask()).empty());
+  }
+}
+
+TEST_CASE("a vehicle that stops for long is judged by its way") {
+  Asked asked;
+  std::vector<Pose> poses(asked.poses.begin(), asked.poses.begin() + 1000);
+  poses.insert(poses.end(), 20'000, poses.back());
+  poses.insert(poses.end(), asked.poses.begin() + 1000, asked.poses.end());
+  asked.poses = poses;
+  CHECK(codes_of(asked.ask()).empty());
+  const ScratchFolder folder;
+  const std::string store = Scene::hall().changed_store(folder, [](const Vec3& p) {
+    const Relative place = relative_to_path(p);
+    return place.along < 50 || place.along > 62 || place.height > 0.5;
+  });
+  CHECK(codes_of(asked.ask(store)) == "nothing-below");
+}
+
+TEST_CASE("where poses are far apart a note says what can stay unnoticed") {
+  Asked asked;
+  asked.options = "--between-poses";
+  CHECK_THAT(asked.ask().err, !Contains("is looked at every"));
+  std::vector<Pose> few;
+  for (std::size_t i = 0; i < asked.poses.size(); i += 150) few.push_back(asked.poses[i]);
+  asked.poses = few;
+  CHECK_THAT(asked.ask().err,
+             Contains("is looked at every 5.99 m") && Contains("shorter than 12 m"));
+}
+
+TEST_CASE("a scan that was thinned is warned of, also for a wide model") {
+  const ScratchFolder folder;
+  std::set<std::array<long, 3>> filled;
+  const std::string store = Scene::hall().changed_store(folder, [&](const Vec3& p) {
+    return filled.insert({std::lround(p.x / 0.7), std::lround(p.y / 0.7), std::lround(p.z / 0.7)})
+        .second;
+  });
+  Asked asked;
+  asked.radius = "0.05";
+  CHECK(codes_of(asked.ask(store)) == "coarse-scan");
+  const double bottom = bottom_of(asked.model);
+  asked.model = shell({-2.2, -1.3, bottom}, {2.2, 1.3, bottom + 1.5}, true);
+  CHECK_THAT(codes_of(asked.ask(store)), Contains("coarse-scan"));
+  asked.radius = "1";
+  CHECK_THAT(codes_of(asked.ask(store)), !Contains("coarse-scan"));
 }
 
 TEST_CASE("a scan without heights is warned of") {

@@ -1,11 +1,13 @@
 // Questions that may be misread, as users ask them. With --strict the program refuses to search.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "clearway/model.hpp"
+#include "core/geometry/angle.hpp"
 #include "io/formats/point_reader.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/asked.hpp"
@@ -137,6 +139,57 @@ TEST_CASE("a path whose rotations were misread is warned of") {
     CHECK_THAT(codes_of(outcome), Contains(mistake.code));
     CHECK_THAT(outcome.err, Contains(mistake.remedy));
   }
+}
+
+namespace {
+
+/// Turns the model about its x axis.
+void roll(double* r, double degrees) {
+  const double c = std::cos(degrees * kDegree), s = std::sin(degrees * kDegree);
+  for (double* row = r; row != r + 9; row += 3) {
+    const double left = row[1], up = row[2];
+    row[1] = c * left + s * up;
+    row[2] = c * up - s * left;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a model that leans along its whole path is warned of") {
+  for (const double degrees : {5.0, 8.0, -5.0}) {
+    CAPTURE(degrees);
+    Asked asked;
+    asked.turn([&](double* r) { roll(r, degrees); });
+    const Outcome outcome = asked.ask();
+    CHECK_THAT(codes_of(outcome), Contains("leans"));
+    CHECK_THAT(outcome.err, Contains(degrees > 0 ? "to the right by" : "to the left by") &&
+                                Contains("degrees, also where it does not turn"));
+  }
+  Asked road;  // as roads bank
+  road.turn([](double* r) { roll(r, 4); });
+  CHECK(codes_of(road.ask()).empty());
+  Asked changing;
+  double i = 0;
+  changing.turn([&](double* r) { roll(r, 6 * std::sin(i++ / 200)); });
+  CHECK_THAT(codes_of(changing.ask()), !Contains("leans"));
+}
+
+TEST_CASE("a model that leans inwards in a curve, as on rails, is not warned of") {
+  const auto codes = [](double degrees) {
+    Asked asked;
+    asked.poses.clear();
+    for (int k = 0; k < 1000; ++k) {
+      const double angle = 0.0015 * k;  // to the left
+      Pose pose{
+          {std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1},
+          {20 * std::sin(angle), 20 - 20 * std::cos(angle), 0}};
+      roll(pose.rotation, degrees);
+      asked.poses.push_back(pose);
+    }
+    return codes_of(asked.ask());
+  };
+  CHECK_THAT(codes(6), Contains("leans"));
+  CHECK_THAT(codes(-6), !Contains("leans"));
 }
 
 TEST_CASE("a model in another unit or frame is warned of") {
@@ -300,7 +353,8 @@ TEST_CASE("a scan that does not cover the whole path is warned of") {
               .exit_code == 0);
   const Outcome outcome = Asked().ask(quoted(folder / "gap.h5"));
   CHECK(codes_of(outcome) == "leaves-scan");
-  CHECK_THAT(outcome.err, Contains("there the result says nothing"));
+  CHECK_THAT(outcome.err, Contains("there the result says nothing") &&
+                              Contains(" m of the 80 m of the path, between pose "));
 }
 
 TEST_CASE("warnings are in the JSON, and the last line names them") {

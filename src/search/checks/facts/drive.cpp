@@ -127,6 +127,30 @@ double Drive::straightness() const {
   return length / static_cast<double>(pieces_.size());
 }
 
+std::vector<double> Drive::leans() const {
+  std::vector<double> leans;
+  for (const Piece& piece : pieces_) {
+    const Vec3& d = piece.direction;
+    const double level = std::hypot(d.x, d.y);
+    if (!(level > 0)) continue;
+    const double to_right = (piece.rotation[2] * d.y - piece.rotation[5] * d.x) / level;
+    leans.push_back(std::asin(std::clamp(to_right, -1.0, 1.0)));
+  }
+  return leans;
+}
+
+double Drive::right_turns() const {
+  constexpr double kHardly = 0.1;  // radians
+  double right = 0, all = 0;
+  for (std::size_t i = 1; i < pieces_.size(); ++i) {
+    const Vec3 &a = pieces_[i - 1].direction, &b = pieces_[i].direction;
+    const double turn = std::atan2(a.y * b.x - a.x * b.y, a.x * b.x + a.y * b.y);
+    right += std::max(turn, 0.0);
+    all += std::abs(turn);
+  }
+  return all < kHardly ? 0.5 : right / all;
+}
+
 bool Drive::never_turns() const {
   constexpr double kNoise = 0.02;
   return std::ranges::all_of(pieces_, [&](const Piece& piece) {

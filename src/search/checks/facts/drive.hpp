@@ -35,6 +35,10 @@ class Drive {
   double upright(Reading reading = Reading::kAsGiven) const;
   /// Of the directions of motion: 1 for a straight path, lower where it turns.
   double straightness() const;
+  /// How far the model's z axis leans to the right of the way, in radians, of each piece.
+  std::vector<double> leans() const;
+  /// Of all that the path turns, in plan: the part to the right; half where it hardly turns.
+  double right_turns() const;
   /// Whether no rotation differs from the first by more than a degree or so.
   bool never_turns() const;
 

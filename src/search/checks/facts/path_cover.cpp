@@ -1,6 +1,7 @@
 #include "search/checks/facts/path_cover.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/geometry/point_box.hpp"
 
@@ -60,9 +61,18 @@ void PathCover::measure(const Question& question) {
 
 void PathCover::look(const Question& question) {
   const Box slice = body_slice(question.model);
-  for (const std::uint32_t i : spread_poses(question.query.poses.size(), kCoverPoses)) {
+  const std::vector<Pose>& poses = question.query.poses;
+  std::uint32_t before = 0;
+  bool was_outside = false;
+  for (const std::uint32_t i : spread_poses(poses.size(), kCoverPoses)) {
+    const bool is_outside = !scan_.within(moved(slice, poses[i]), reach_);
+    const double way = length(poses[i].position() - poses[before].position());
+    length_ += way;
+    length_outside_ += way * (int{was_outside} + int{is_outside}) / 2;
+    before = i;
+    was_outside = is_outside;
     ++looked_at_;
-    if (scan_.within(moved(slice, question.query.poses[i]), reach_)) continue;
+    if (!is_outside) continue;
     if (outside_ == 0) first_outside_ = i;
     last_outside_ = i;
     ++outside_;

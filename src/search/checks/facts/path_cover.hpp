@@ -34,13 +34,16 @@ class PathCover {
   std::uint64_t outside() const { return outside_; }
   std::uint32_t first_outside() const { return first_outside_; }
   std::uint32_t last_outside() const { return last_outside_; }
+  /// Of the path, straight from one pose that was looked at to the next.
+  double length() const { return length_; }
+  double length_outside() const { return length_outside_; }
 
  private:
   void measure(const Question& question);
   void look(const Question& question);
 
   ScanProximity scan_;
-  double far_ = 0, reach_ = 0, usual_ = 0;
+  double far_ = 0, reach_ = 0, usual_ = 0, length_ = 0, length_outside_ = 0;
   std::uint64_t looked_at_ = 0, outside_ = 0;
   std::uint32_t first_outside_ = 0, last_outside_ = 0;
 };

@@ -1,6 +1,8 @@
 #include "tools/cli/support/asked.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "clearway/model.hpp"
@@ -26,14 +28,24 @@ const Scene& Scene::hall() {
   return scene;
 }
 
-std::string Scene::changed_store(const ScratchFolder& to,
-                                 const std::function<bool(const Vec3&)>& keep) const {
-  const auto reader = open_point_file(folder / "environment.las");
+namespace {
+
+/// Those points of a scan for which `change` gives a place, there, as a store in `to`.
+std::string store_of(const std::filesystem::path& scan, const ScratchFolder& to,
+                     const std::function<std::optional<Vec3>(const Vec3&)>& change) {
+  const auto reader = open_point_file(scan);
   const Quantisation quantisation = *reader->info().quantisation;
   std::vector<Quantum> kept;
   for (PointBatch batch; reader->read(batch);) {
     for (const Quantum& q : batch.quanta) {
-      if (keep(position(quantisation, q[0], q[1], q[2]))) kept.push_back(q);
+      const auto place = change(position(quantisation, q[0], q[1], q[2]));
+      if (!place) continue;
+      Quantum changed{};
+      for (int k = 0; k < 3; ++k) {
+        changed[k] = static_cast<std::int32_t>(
+            std::lround(((*place)[k] - quantisation.offset[k]) / quantisation.scale[k]));
+      }
+      kept.push_back(changed);
     }
   }
   write_las(to / "changed.las", kept, quantisation);
@@ -42,6 +54,19 @@ std::string Scene::changed_store(const ScratchFolder& to,
       run_program(to, "convert " + quoted(to / "changed.las") + " --force -o " + store).exit_code ==
       0);
   return store;
+}
+
+}  // namespace
+
+std::string Scene::changed_store(const ScratchFolder& to,
+                                 const std::function<bool(const Vec3&)>& keep) const {
+  return store_of(folder / "environment.las", to,
+                  [&](const Vec3& p) { return keep(p) ? std::optional(p) : std::nullopt; });
+}
+
+std::string Scene::moved_store(const ScratchFolder& to,
+                               const std::function<Vec3(const Vec3&)>& move) const {
+  return store_of(folder / "environment.las", to, [&](const Vec3& p) { return move(p); });
 }
 
 void Asked::move_model(const std::function<Vec3(const Vec3&)>& change) {

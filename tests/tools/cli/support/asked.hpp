@@ -22,6 +22,10 @@ class Scene {
   std::string changed_store(const ScratchFolder& to,
                             const std::function<bool(const Vec3&)>& keep) const;
 
+  /// All points of the scan where `move` puts them, as a store in `to`.
+  std::string moved_store(const ScratchFolder& to,
+                          const std::function<Vec3(const Vec3&)>& move) const;
+
   ScratchFolder folder;
   std::vector<Vec3> model;
   std::vector<Pose> poses;

@@ -1,0 +1,55 @@
+#include "search/checks/told_stretches.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/trajectory/chainage.hpp"
+#include "core/util/format.hpp"
+#include "search/checks/words.hpp"
+
+namespace clearway {
+namespace {
+
+std::optional<double> number_in(const Message& message, const std::string& name) {
+  const auto found =
+      std::ranges::find(message.numbers, name, [](const auto& n) { return n.first; });
+  return found == message.numbers.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
+
+ToldStretches::ToldStretches(const Question& question, const PathLooks& looks,
+                             const std::vector<LookRun>& runs)
+    : longest(*std::ranges::max_element(runs, {},
+                                        [&](const LookRun& run) { return looks.length(run); })) {
+  const Look &first = looks.all()[longest.first], &last = looks.all()[longest.last];
+  const double from = question.chainage(first.pose), to = question.chainage(last.pose);
+  double sum = 0;
+  for (const LookRun& run : runs) sum += looks.length(run);
+  where = "between pose " + std::to_string(question.number_of(first.pose)) + " and pose " +
+          std::to_string(question.number_of(last.pose)) + " (" + length_text(from, question.unit) +
+          " to " + length_text(to, question.unit) + " along the path)";
+  if (runs.size() > 1) {
+    others = ". The same holds for " +
+             counted(runs.size() - 1, "other stretch", "other stretches") + ", " +
+             length_text(sum - looks.length(longest), question.unit) + " long in all";
+  }
+  numbers = {{"first_pose", static_cast<double>(question.number_of(first.pose))},
+             {"last_pose", static_cast<double>(question.number_of(last.pose))},
+             {"chainage_from", from},
+             {"chainage_to", to},
+             {"stretches", static_cast<double>(runs.size())},
+             {"length", sum},
+             {"share", sum / looks.all().back().along}};
+}
+
+bool is_of_stretch(const Message& message) {
+  return number_in(message, "chainage_from").has_value();
+}
+
+double told_length(const Message& message) {
+  return number_in(message, "chainage_to").value_or(0) -
+         number_in(message, "chainage_from").value_or(0);
+}
+
+}  // namespace clearway
