@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/query/query_fields.hpp"
 #include "io/conflicts/json_text.hpp"
 #include "io/system/file_text.hpp"
 
@@ -33,15 +34,25 @@ const std::vector<OptionKey> kTrajectoryKeys{
     {"lever_arm", "--lever-arm", ValueKind::kList}};
 const std::vector<OptionKey> kChainageKeys{
     {"chainage_start", "--chainage-start", ValueKind::kLength}};
-const std::vector<OptionKey> kQueryKeys{{"first_pose", "--first-pose", ValueKind::kFlag},
-                                        {"clearance", "--clearance", ValueKind::kLength},
-                                        {"profile", "--profile", ValueKind::kLength},
-                                        {"between_poses", "--between-poses", ValueKind::kFlag},
-                                        {"tolerance", "--tolerance", ValueKind::kLength},
-                                        {"precision", "--precision", ValueKind::kText},
-                                        {"ignore_classes", "--ignore-class", ValueKind::kList},
-                                        {"ignore_boxes", "--ignore-box", ValueKind::kLists},
-                                        {"strict", "--strict", ValueKind::kFlag}};
+/// The parameters of a query but for the radius, which each run may have another one of.
+std::vector<OptionKey> query_keys() {
+  std::vector<OptionKey> keys;
+  const auto add = [&keys](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.of({}))>;
+    if (field.name == std::string_view("radius")) return;
+    keys.push_back({field.name, field.option,
+                    std::is_same_v<Value, bool>               ? ValueKind::kFlag
+                    : std::is_same_v<Value, double>           ? ValueKind::kLength
+                    : std::is_same_v<Value, std::vector<Box>> ? ValueKind::kLists
+                                                              : ValueKind::kList});
+  };
+  for_each_value_field(add);
+  keys.push_back({"precision", "--precision", ValueKind::kText});
+  for_each_list_field(add);
+  keys.push_back({"strict", "--strict", ValueKind::kFlag});
+  return keys;
+}
+const std::vector<OptionKey> kQueryKeys = query_keys();
 const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
                                            {"min_points", "--min-points", ValueKind::kCount},
                                            {"split", "--split", ValueKind::kLength}};

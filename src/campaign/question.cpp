@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "clearway/error.hpp"
+#include "core/query/query_fields.hpp"
 #include "io/journal/journal.hpp"
 #include "io/system/xxh64.hpp"
 
@@ -40,19 +41,15 @@ void ask_for_part(const Shard& shard, const std::string& store, nlohmann::ordere
 }
 
 nlohmann::ordered_json question_of(const ResultHeader& header) {
-  nlohmann::ordered_json question{{"radius", header.radius},
-                                  {"first_pose", header.first_pose},
-                                  {"clearance", header.clearance},
-                                  {"profile", header.profile},
-                                  {"between_poses", header.between_poses},
-                                  {"tolerance", header.tolerance},
-                                  {"single_precision", header.float_precision},
-                                  {"environment_points", header.environment_points},
-                                  {"environment_hash", hash_text(header.environment_hash)},
-                                  {"model_points", header.model_points},
-                                  {"model_hash", hash_text(header.model_hash)},
-                                  {"poses", header.poses},
-                                  {"trajectory_hash", hash_text(header.trajectory_hash)}};
+  nlohmann::ordered_json question;
+  for_each_value_field([&](const auto& field) { question[field.name] = field.of(header); });
+  question.update({{"single_precision", header.float_precision},
+                   {"environment_points", header.environment_points},
+                   {"environment_hash", hash_text(header.environment_hash)},
+                   {"model_points", header.model_points},
+                   {"model_hash", hash_text(header.model_hash)},
+                   {"poses", header.poses},
+                   {"trajectory_hash", hash_text(header.trajectory_hash)}});
   if (header.ignores_points()) question["ignored"] = ignored_of(header);
   if (header.model_triangles > 0) question["model_triangles"] = header.model_triangles;
   if (header.part) ask_for_part(header.part->shard, hash_text(header.part->store), question);

@@ -103,9 +103,9 @@ spacing: where the vertices are samples of a mesh, how far its surface may be fr
       });
 }
 
-void add_read_model(py::module_& module) {
+void add_read_model_points(py::module_& module) {
   module.def(
-      "read_model",
+      "read_model_points",
       [](const py::object& path, double spacing, const UnitArgument& unit,
          const UnitArgument& environment_unit, bool vertices_only, std::optional<double> above,
          const py::object& messages) {
@@ -138,9 +138,9 @@ above: leaves out points whose z is below it, metres; for example wheels on the 
 messages: a list to which notes and warnings are appended.)");
 }
 
-void add_read_model_shape(py::module_& module) {
+void add_read_model(py::module_& module) {
   module.def(
-      "read_model_shape",
+      "read_model",
       [](const py::object& path, const std::string& model_as, double spacing,
          const UnitArgument& unit, const UnitArgument& environment_unit, bool vertices_only,
          std::optional<double> above, const py::object& messages) {
@@ -208,8 +208,8 @@ std::string model_words(const py::object& object) {
 
 void add_model(py::module_& module) {
   add_shape(module);
+  add_read_model_points(module);
   add_read_model(module);
-  add_read_model_shape(module);
 }
 
 }  // namespace clearway::python

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "clearway/result.hpp"
+#include "core/query/query_fields.hpp"
 #include "python/arrays.hpp"
 
 namespace clearway::python {
@@ -113,26 +114,11 @@ void add_parameters(py::module_& module) {
       .def_readonly("in_boxes", &Counts::in_boxes,
                     "How many points each ignored box has: a list in the order of the query's "
                     "ignore_boxes, sorted.");
-  using Q = QueryParameters;
-  py::class_<Q>(module, "QueryParameters",
-                "The parameters of a query: all of it but the model and the poses.")
-      .def_readonly("radius", &Q::radius, "A point strictly closer to the model collides; metres.")
-      .def_readonly("first_pose", &Q::first_pose,
-                    "Whether the first pose that touches each point was asked for.")
-      .def_readonly("between_poses", &Q::between_poses,
-                    "Whether the model was moved on straight segments from pose to pose.")
-      .def_readonly("clearance", &Q::clearance,
-                    "Distances below it were asked for; metres; 0: none were.")
-      .def_readonly("profile", &Q::profile,
-                    "The least distance at every pose was asked for where it is below this; "
-                    "metres; 0: it was not.")
-      .def_readonly("tolerance", &Q::tolerance,
-                    "Points whose distance differs from the radius by no more may be answered "
-                    "wrongly; metres; 0: the answer is exact.")
-      .def_readonly("ignore_classes", &Q::ignore_classes,
-                    "The numbers of the classes whose points were left out of the search.")
-      .def_readonly("ignore_boxes", &Q::ignore_boxes,
-                    "The boxes whose points were left out of the search: a list of Box.");
+  py::class_<QueryParameters> parameters(
+      module, "QueryParameters",
+      "The parameters of a query: all of it but the model and the poses.");
+  for_each_field(
+      [&](const auto& field) { parameters.def_readonly(field.name, field.member, field.doc); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/query/query_fields.hpp"
 #include "python/arrays.hpp"
 #include "python/model.hpp"
 #include "python/store.hpp"
@@ -77,14 +78,14 @@ void add_store(py::module_& module) {
       });
 }
 
-template <auto Member>
-void add_parameter(py::class_<ArrayQuery>& query, const char* name, const char* doc) {
+template <typename Value>
+void add_parameter(py::class_<ArrayQuery>& query, const QueryField<Value>& field) {
   query.def_property(
-      name, [](const ArrayQuery& q) { return q.parameters.*Member; },
-      [](ArrayQuery& q, std::remove_cvref_t<decltype(std::declval<QueryParameters>().*Member)> v) {
-        q.parameters.*Member = v;
+      field.name, [member = field.member](const ArrayQuery& q) { return q.parameters.*member; },
+      [member = field.member](ArrayQuery& q, Value value) {
+        q.parameters.*member = std::move(value);
       },
-      doc);
+      field.doc);
 }
 
 ArrayQuery make_query(const py::object& model, const py::object& poses,
@@ -140,31 +141,7 @@ The other arguments are the properties of the same names.)")
         return py::str("<Query: {}, {} poses, radius {} m>")
             .format(model_words(q.model), q.poses.shape(0), q.parameters.radius);
       });
-  using Q = QueryParameters;
-  add_parameter<&Q::radius>(
-      query, "radius", "A point strictly closer to the model than this collides; metres, above 0.");
-  add_parameter<&Q::first_pose>(
-      query, "first_pose",
-      "Whether the first pose that touches each colliding point is asked for.");
-  add_parameter<&Q::between_poses>(query, "between_poses",
-                                   "Whether model points move on straight segments from pose to "
-                                   "pose, so that nothing between poses is missed.");
-  add_parameter<&Q::clearance>(
-      query, "clearance",
-      "The distance of every point that is closer than this is asked for too; metres; 0: of none.");
-  add_parameter<&Q::profile>(query, "profile",
-                             "The least distance at every pose is asked for, where it is below "
-                             "this; metres; 0: it is not.");
-  add_parameter<&Q::tolerance>(
-      query, "tolerance",
-      "Points whose distance differs from the radius by no more than this may be answered wrongly, "
-      "which saves time; metres; 0: the answer is exact.");
-  add_parameter<&Q::ignore_classes>(query, "ignore_classes",
-                                    "The numbers of the classes whose points are left out of the "
-                                    "search, such as [2] for the ground.");
-  add_parameter<&Q::ignore_boxes>(query, "ignore_boxes",
-                                  "The boxes whose points are left out of the search, in the "
-                                  "environment's coordinates: a list of Box.");
+  for_each_field([&](const auto& field) { add_parameter(query, field); });
 }
 
 void add_searches(py::module_& module) {

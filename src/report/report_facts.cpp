@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/query/ignored_text.hpp"
+#include "core/query/query_fields.hpp"
 #include "findings/conflict_rank.hpp"
 #include "io/result/result.hpp"
 #include "io/store/class_names.hpp"
@@ -133,10 +134,8 @@ void write_ignored_points(JsonText& json, const ResultHeader& header, const Answ
 
 void write_query(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
-  json.key("query").begin('{').field("radius", header.radius);
-  json.field("first_pose", header.first_pose).field("between_poses", header.between_poses);
-  json.field("clearance", header.clearance).field("profile", header.profile);
-  json.field("tolerance", header.tolerance);
+  json.key("query").begin('{');
+  for_each_value_field([&](const auto& field) { json.field(field.name, field.of(header)); });
   json.field("exact", header.tolerance == 0 && !header.float_precision).end('}');
   write_ignored_points(json, header, facts.answer);
 }

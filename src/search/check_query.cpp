@@ -8,6 +8,7 @@
 #include "clearway/error.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/query/ignored_text.hpp"
+#include "core/query/query_fields.hpp"
 
 namespace clearway {
 namespace {
@@ -42,10 +43,12 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
     if (std::isfinite(value) && (value > 0 || (may_be_zero && value == 0))) return;
     throw UsageError(std::string(name) + " has to be a finite number of metres above 0");
   };
-  check("the radius", query.radius, false);
-  check("the clearance", query.clearance, true);
-  check("the profile's distance", query.profile, true);
-  check("the tolerance", query.tolerance, true);
+  for_each_value_field([&](const auto& field) {
+    if constexpr (std::is_same_v<decltype(field), const QueryField<double>&>) {
+      const std::string topic = std::string("the ") + field.topic;
+      check(topic.c_str(), field.of(query), field.member != &QueryParameters::radius);
+    }
+  });
   check("the field's voxel", options.field_voxel, true);
   check("the grid cell", options.grid_cell, true);
   if (options.threads < 0) throw UsageError("the number of threads cannot be negative");

@@ -1,7 +1,10 @@
 #include "search/run_journal.hpp"
 
+#include <algorithm>
+
 #include "clearway/error.hpp"
 #include "core/query/ignored_text.hpp"
+#include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
 #include "io/result/check/verify_result.hpp"
 #include "io/system/xxh64.hpp"
@@ -14,6 +17,8 @@ namespace fs = std::filesystem;
 constexpr const char* kReplaces = "overwrites";
 
 std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
+std::string text_of(bool value) { return yes_or_no(value); }
+std::string text_of(double value) { return format_number(value); }
 
 /// A journal of version 0.1.0 has "yes" between poses too: its ways did not include their ends.
 std::string first_pose_text(const ResultHeader& header) {
@@ -65,7 +70,14 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
   if (header.model_triangles > 0) {
     identity.emplace_back("model_as", header.model_solids > 0 ? "solid" : "surface");
   }
-  if (header.profile > 0) identity.emplace_back("profile", format_number(header.profile));
+  // Later parameters are named where they are asked for, so that earlier journals stay valid.
+  for_each_value_field([&](const auto& field) {
+    const bool known =
+        std::ranges::any_of(identity, [&](const auto& named) { return named.first == field.name; });
+    if (!known && !field.is_default(header)) {
+      identity.emplace_back(field.name, text_of(field.of(header)));
+    }
+  });
   if (header.tolerance > 0) {  // then the answer depends on the field
     identity.emplace_back("field_voxel", format_number(options.field_voxel));
   }

@@ -10,12 +10,52 @@
 #include "cli/support/option_groups.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "core/query/query_fields.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/model/model_input.hpp"
 #include "search/check_query.hpp"
 
 namespace clearway::tool {
 namespace {
+
+bool is_required(const QueryField<double>& field) {
+  return field.member == &QueryParameters::radius;
+}
+bool is_required(const QueryField<bool>&) { return false; }
+
+CLI::Option* add_field(CLI::App& command, const QueryField<double>& field, RunOptions& options) {
+  return options.lengths.add(command, field.option, options.query.*field.member, field.help);
+}
+
+CLI::Option* add_field(CLI::App& command, const QueryField<bool>& field, RunOptions& options) {
+  return command.add_flag(field.option, options.query.*field.member, field.help);
+}
+
+CLI::Option* add_field(CLI::App& command, const QueryField<std::vector<std::uint8_t>>& field,
+                       RunOptions& options) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          field.option,
+          [&classes = options.query.*field.member](const std::vector<std::string>& lists) {
+            classes = parse_classes(lists);
+          },
+          field.help)
+      ->allow_extra_args(false)
+      ->type_name("N,...");
+}
+
+CLI::Option* add_field(CLI::App& command, const QueryField<std::vector<Box>>& field,
+                       RunOptions& options) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          field.option,
+          [&boxes = options.query.*field.member](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) boxes.push_back(parse_box(text));
+          },
+          field.help)
+      ->allow_extra_args(false)
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+}
 
 void add_inputs(CLI::App& command, RunOptions& options) {
   const GroupScope group(command, OptionGroup::kInputs);
@@ -37,10 +77,9 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
       ->type_name("FILE")
       ->required();
-  options.lengths
-      .add(command, "--radius", options.query.radius,
-           "Search radius in metres, for example 0.1, or with a unit, for example 10cm")
-      ->required();
+  for_each_value_field([&](const auto& field) {
+    if (is_required(field)) add_field(command, field, options)->required();
+  });
   command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
@@ -63,49 +102,15 @@ void add_inputs(CLI::App& command, RunOptions& options) {
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
 
-void add_ignored(CLI::App& command, QueryParameters& query) {
-  const GroupScope group(command, OptionGroup::kIgnored);
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--ignore-class",
-          [&query](const std::vector<std::string>& lists) {
-            query.ignore_classes = parse_classes(lists);
-          },
-          "Leave points of these classes out of the search, for example 2,7 or 3-5; the store "
-          "has to have classes")
-      ->allow_extra_args(false)
-      ->type_name("N,...");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--ignore-box",
-          [&query](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) query.ignore_boxes.push_back(parse_box(text));
-          },
-          "Leave points in this box out of the search: its least and its greatest x, y and z, in "
-          "the environment's coordinates; may be given several times")
-      ->allow_extra_args(false)
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-}
-
 void add_query(CLI::App& command, RunOptions& options) {
-  const GroupScope group(command, OptionGroup::kAsked);
-  command.add_flag("--first-pose", options.query.first_pose,
-                   "Also report the first pose that touches each colliding point, counted from 0");
-  options.lengths.add(
-      command, "--clearance", options.query.clearance,
-      "Also report the least distance, and its pose, of every point closer than this, for "
-      "example 0.5; engine sweep only");
-  options.lengths.add(
-      command, "--profile", options.query.profile,
-      "Also report for every pose the least distance below this, and its point, for example 0.5; "
-      "engine sweep only");
-  command.add_flag("--between-poses", options.query.between_poses,
-                   "Move every model point on a straight segment from each pose to the next");
-  options.lengths.add(
-      command, "--tolerance", options.query.tolerance,
-      "Faster: may decide wrongly for points within this distance of the radius, for example "
-      "0.001; engine sweep only");
-  add_ignored(command, options.query);
+  {
+    const GroupScope group(command, OptionGroup::kAsked);
+    for_each_value_field([&](const auto& field) {
+      if (!is_required(field)) add_field(command, field, options);
+    });
+  }
+  const GroupScope group(command, OptionGroup::kIgnored);
+  for_each_list_field([&](const auto& field) { add_field(command, field, options); });
 }
 
 /// An option that takes the name of one of the values.

@@ -6,6 +6,7 @@
 
 #include "clearway/body.hpp"
 #include "clearway/error.hpp"
+#include "core/query/query_fields.hpp"
 #include "io/hdf5/kept_warnings.hpp"
 #include "io/result/as_numbers.hpp"
 #include "io/result/ignored_lists.hpp"
@@ -84,10 +85,30 @@ void read_model_box(const hdf5::Id& file, const std::string& name, Box& box) {
   }
 }
 
-void read_profile_distance(const hdf5::Id& file, const std::string& name, double& profile) {
-  profile = hdf5::read_number<double>(file, names::kProfile, name);
-  if (profile >= 0 && std::isfinite(profile)) return;
-  refuse(name, "attribute 'profile' is " + shown(profile) + ", expected a length, or 0 for none");
+void check_profile(const ResultHeader& header, const std::string& name) {
+  if (header.profile >= 0 && std::isfinite(header.profile)) return;
+  refuse(name,
+         "attribute 'profile' is " + shown(header.profile) + ", expected a length, or 0 for none");
+}
+
+void write_field(const hdf5::Id& file, const QueryField<double>& field,
+                 const QueryParameters& query) {
+  hdf5::write_number(file, field.name, field.of(query));
+}
+
+void write_field(const hdf5::Id& file, const QueryField<bool>& field,
+                 const QueryParameters& query) {
+  hdf5::write_number(file, field.name, static_cast<std::uint8_t>(field.of(query)));
+}
+
+void read_field(const hdf5::Id& file, const QueryField<double>& field, const std::string& name,
+                QueryParameters& query) {
+  query.*field.member = hdf5::read_number<double>(file, field.name, name);
+}
+
+void read_field(const hdf5::Id& file, const QueryField<bool>& field, const std::string& name,
+                QueryParameters& query) {
+  query.*field.member = hdf5::read_number<std::uint8_t>(file, field.name, name) != 0;
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {
@@ -181,19 +202,17 @@ void write_result_header(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_number(file, "model_hash", header.model_hash);
   hdf5::write_number(file, "poses", header.poses);
   hdf5::write_number(file, "trajectory_hash", header.trajectory_hash);
-  hdf5::write_number(file, "radius", header.radius);
-  hdf5::write_number(file, "first_pose", static_cast<std::uint8_t>(header.first_pose));
-  hdf5::write_number(file, "clearance", header.clearance);
-  hdf5::write_number(file, names::kProfile, header.profile);
-  hdf5::write_number(file, "between_poses", static_cast<std::uint8_t>(header.between_poses));
+  for_each_value_field([&](const auto& field) {
+    if (field.since > 0) write_field(file, field, header);
+  });
   hdf5::write_attribute(file, names::kModelBox, as_numbers(std::span(model_box)), 3);
   hdf5::write_attribute(file, "scale", std::span<const double>(header.quantisation.scale));
   hdf5::write_attribute(file, "offset", std::span<const double>(header.quantisation.offset));
   hdf5::write_attribute(file, "crs_wkt", header.crs_wkt);
-  if (header.tolerance > 0) {
-    hdf5::write_number(file, names::kTolerance, header.tolerance);
-    hdf5::write_attribute(file, names::kEngine, header.engine);
-  }
+  for_each_value_field([&](const auto& field) {
+    if (field.since == 0 && !field.is_default(header)) write_field(file, field, header);
+  });
+  if (header.tolerance > 0) hdf5::write_attribute(file, names::kEngine, header.engine);
   if (header.float_precision) hdf5::write_attribute(file, names::kPrecision, names::kFloat);
   if (header.has_poses_of_ways() && !header.ways_without_ends) {
     hdf5::write_attribute(file, names::kFirstPoseOf, names::kClosedWay);
@@ -224,15 +243,16 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
   header.model_hash = hdf5::read_number<std::uint64_t>(file, "model_hash", name);
   header.poses = hdf5::read_number<std::uint64_t>(file, "poses", name);
   header.trajectory_hash = hdf5::read_number<std::uint64_t>(file, "trajectory_hash", name);
-  header.radius = hdf5::read_number<double>(file, "radius", name);
-  header.first_pose = hdf5::read_number<std::uint8_t>(file, "first_pose", name) != 0;
-  header.clearance = hdf5::read_number<double>(file, "clearance", name);
-  header.between_poses = hdf5::read_number<std::uint8_t>(file, "between_poses", name) != 0;
+  for_each_value_field([&](const auto& field) {
+    const bool always = field.since > 0 && header.version >= field.since;
+    if (always || (field.since == 0 && hdf5::has_attribute(file, field.name, name))) {
+      read_field(file, field, name, header);
+    }
+  });
   read_axes(file, "scale", name, header.quantisation.scale);
   read_axes(file, "offset", name, header.quantisation.offset);
   header.crs_wkt = hdf5::read_text_attribute(file, "crs_wkt", name);
   if (hdf5::has_attribute(file, names::kTolerance, name)) {
-    header.tolerance = hdf5::read_number<double>(file, names::kTolerance, name);
     header.engine = hdf5::read_text_attribute(file, names::kEngine, name);
     check_tolerance(header, name);
   }
@@ -252,7 +272,7 @@ ResultHeader read_result_header(const hdf5::Id& file, const std::string& name) {
       header.has_poses_of_ways() && !has_value(file, names::kFirstPoseOf, names::kClosedWay, name);
   if (header.version >= 3) {
     read_model_box(file, name, header.model_box);
-    read_profile_distance(file, name, header.profile);
+    check_profile(header, name);
   }
   read_more(file, name, header);
   if (is_part) {

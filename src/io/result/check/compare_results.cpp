@@ -3,6 +3,7 @@
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
 #include "core/query/ignored_text.hpp"
+#include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
 #include "io/result/result_cursor.hpp"
 #include "io/system/input_error.hpp"
@@ -27,18 +28,22 @@ std::string quantisation_text(const Quantisation& quantisation) {
   return text;
 }
 
-std::string distance_text(double asked_for) {
-  return asked_for > 0 ? shown(asked_for) + " m" : "not asked for";
+std::string field_text(const QueryField<double>& field, const ResultHeader& header) {
+  if (field.member == &QueryParameters::tolerance) {
+    if (!(header.tolerance > 0)) return "none: exact";
+    return shown(header.tolerance) + " m, engine " + header.engine;
+  }
+  if (field.member == &QueryParameters::radius) return shown(header.radius) + " m";
+  return field.of(header) > 0 ? shown(field.of(header)) + " m" : "not asked for";
 }
 
-std::string tolerance_text(const ResultHeader& header) {
-  if (!(header.tolerance > 0)) return "none: exact";
-  return shown(header.tolerance) + " m, engine " + header.engine;
-}
-
-std::string first_pose_text(const ResultHeader& header) {
-  if (!header.first_pose) return "not asked for";
-  return header.ways_without_ends ? "asked for, as version 0.1.0 defined them" : "asked for";
+std::string field_text(const QueryField<bool>& field, const ResultHeader& header) {
+  if (field.member == &QueryParameters::between_poses) {
+    return header.between_poses ? "between poses" : "at poses only";
+  }
+  if (!field.of(header)) return "not asked for";
+  const bool old = field.member == &QueryParameters::first_pose && header.ways_without_ends;
+  return old ? "asked for, as version 0.1.0 defined them" : "asked for";
 }
 
 std::string bodies_text(const ResultHeader& header) {
@@ -80,10 +85,6 @@ std::string model_text(const ResultHeader& header) {
   return content_text(header.model_triangles, ("triangles" + solids).c_str(), header.model_hash);
 }
 
-const char* motion_text(const ResultHeader& header) {
-  return header.between_poses ? "between poses" : "at poses only";
-}
-
 class Differences {
  public:
   void add(std::string what, std::string a, std::string b) {
@@ -100,12 +101,8 @@ void add_question(const ResultHeader& a, const ResultHeader& b, Differences& out
   out.add("bodies", bodies_text(a), bodies_text(b));
   out.add("trajectory", content_text(a.poses, "poses", a.trajectory_hash),
           content_text(b.poses, "poses", b.trajectory_hash));
-  out.add("radius", shown(a.radius) + " m", shown(b.radius) + " m");
-  out.add("first poses", first_pose_text(a), first_pose_text(b));
-  out.add("clearance", distance_text(a.clearance), distance_text(b.clearance));
-  out.add("profile", distance_text(a.profile), distance_text(b.profile));
-  out.add("motion", motion_text(a), motion_text(b));
-  out.add("tolerance", tolerance_text(a), tolerance_text(b));
+  for_each_value_field(
+      [&](const auto& field) { out.add(field.topic, field_text(field, a), field_text(field, b)); });
   out.add("precision", a.float_precision ? "float" : "exact",
           b.float_precision ? "float" : "exact");
 }

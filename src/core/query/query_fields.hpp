@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clearway/query.hpp"
+
+namespace clearway {
+
+/// A parameter of a query, with everything that the places that list parameters say of it: the
+/// command line, campaigns, results and their comparison, journals, pages and Python. Value: bool,
+/// double (a length in metres), or a list.
+template <typename Value>
+struct QueryField {
+  Value QueryParameters::*member;
+  const char* name;    ///< in results, JSON, campaigns and Python
+  const char* topic;   ///< in messages, as in "the radius"
+  const char* option;  ///< of `clearway run`
+  const char* help;    ///< of that option
+  const char* doc;     ///< of the property in Python
+  /// The version from which on every result has it; 0: only results that do not have its default.
+  std::uint32_t since = 0;
+
+  const Value& of(const QueryParameters& query) const { return query.*member; }
+  bool is_default(const QueryParameters& query) const { return of(query) == of(QueryParameters{}); }
+};
+
+/// Calls visit(field) for each parameter that is one value, in the order in which results keep
+/// them.
+template <typename Visit>
+void for_each_value_field(Visit visit) {
+  using Q = QueryParameters;
+  visit(QueryField<double>{
+      &Q::radius, "radius", "radius", "--radius",
+      "Search radius in metres, for example 0.1, or with a unit, for example 10cm",
+      "A point strictly closer to the model than this collides; metres, above 0.", 2});
+  visit(QueryField<bool>{
+      &Q::first_pose, "first_pose", "first poses", "--first-pose",
+      "Also report the first pose that touches each colliding point, counted from 0",
+      "Whether the first pose that touches each colliding point is asked for.", 2});
+  visit(QueryField<double>{
+      &Q::clearance, "clearance", "clearance", "--clearance",
+      "Also report the least distance, and its pose, of every point closer than this, for "
+      "example 0.5; engine sweep only",
+      "The distance of every point that is closer than this is asked for too; metres; 0: of none.",
+      2});
+  visit(QueryField<double>{
+      &Q::profile, "profile", "profile", "--profile",
+      "Also report for every pose the least distance below this, and its point, for example 0.5; "
+      "engine sweep only",
+      "The least distance at every pose is asked for, where it is below this; metres; 0: it is "
+      "not.",
+      3});
+  visit(QueryField<bool>{
+      &Q::between_poses, "between_poses", "motion", "--between-poses",
+      "Move every model point on a straight segment from each pose to the next",
+      "Whether model points move on straight segments from pose to pose, so that nothing between "
+      "poses is missed.",
+      2});
+  visit(QueryField<double>{
+      &Q::tolerance, "tolerance", "tolerance", "--tolerance",
+      "Faster: may decide wrongly for points within this distance of the radius, for example "
+      "0.001; engine sweep only",
+      "Points whose distance differs from the radius by no more than this may be answered wrongly, "
+      "which saves time; metres; 0: the answer is exact."});
+}
+
+/// The same for the parameters that are lists: of points that are left out of the search.
+template <typename Visit>
+void for_each_list_field(Visit visit) {
+  using Q = QueryParameters;
+  visit(QueryField<std::vector<std::uint8_t>>{
+      &Q::ignore_classes, "ignore_classes", "ignored classes", "--ignore-class",
+      "Leave points of these classes out of the search, for example 2,7 or 3-5; the store "
+      "has to have classes",
+      "The numbers of the classes whose points are left out of the search, such as [2] for the "
+      "ground."});
+  visit(QueryField<std::vector<Box>>{
+      &Q::ignore_boxes, "ignore_boxes", "ignored boxes", "--ignore-box",
+      "Leave points in this box out of the search: its least and its greatest x, y and z, in "
+      "the environment's coordinates; may be given several times",
+      "The boxes whose points are left out of the search, in the environment's coordinates: a list "
+      "of Box."});
+}
+
+template <typename Visit>
+void for_each_field(Visit visit) {
+  for_each_value_field(visit);
+  for_each_list_field(visit);
+}
+
+}  // namespace clearway
