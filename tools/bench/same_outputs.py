@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Asks two builds of Clearway the same questions, and compares all that they write.
 
-It prints a line for each output that differs, with the first difference, and a summary. An output is a file
-that a command wrote or changed, what it printed on standard output or standard error, or its exit code.
-Exit code 1: an output differs, or a question could not be asked as the table says.
+It prints a line for each output that differs, with the first difference, and a summary. An output
+is a file that a command wrote or changed, what it printed on standard output or on standard error,
+or its exit code. Exit code 1: an output differs, or a command did not end as the table expects.
 
-The questions are in outputs/questions.py, the inputs that they need in outputs/inputs.py, and what may differ
-in outputs/difference.py. h5py and numpy (Debian: python3-h5py) say which dataset of a result differs.
+The questions are in outputs/questions.py, the inputs that they need in outputs/inputs.py, and what
+may differ in outputs/difference.py. h5py and numpy (Debian: python3-h5py) say which dataset of a
+result differs.
 Example: tools/bench/same_outputs.py before/clearway build/release/tools/clearway --data DATA
 """
 
@@ -140,7 +141,7 @@ class Tally:
             where = self.comparison.difference(name, old, new, several_threads)
         if where:
             self.different += 1
-            print(f"{question}\n    {name}: {where}", flush=True)
+            print(f"{name}: {where} [{question}]", flush=True)
 
     def compare_answers(self, question, old, new):
         """Empty texts are not counted."""

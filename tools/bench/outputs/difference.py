@@ -22,6 +22,7 @@ CLOCK = [(re.compile(pattern), word) for pattern, word, _ in (
     (rb'"time": ?"[^"]*"', b'"time": TIME', "when a task of a campaign ended"),
     (rb'"date": ?"\d{4}-[^"]* UTC"', b'"date": TIME', "when a page was made that got no date"),
     (rb'"peak_host_bytes": ?\d+', b'"peak_host_bytes": BYTES', "memory at its greatest"),
+    (rb'"bytes_moved": ?\{[^{}]*\}', b'"bytes_moved": BYTES', "as the system counts them"),
     (rb'"outputs_id": ?"\w+"', b'"outputs_id": HASH', "hash of commands that name the folder"),
 )]
 # What depends on which thread finds a point first; of commands with a profile and several threads.
