@@ -37,7 +37,8 @@ class Program:
     def __init__(self, path, folder):
         self.path, self.folder = Path(path).absolute(), folder
         self.folder.mkdir(parents=True)
-        self.environment = {**os.environ, "LC_ALL": "C.UTF-8", "TZ": "UTC", "CUDA_VISIBLE_DEVICES": ""}
+        self.environment = {**os.environ, "LC_ALL": "C.UTF-8", "TZ": "UTC",
+                            "CUDA_VISIBLE_DEVICES": ""}
         said = self.run(["--version"])
         if said.returncode != 0:
             sys.exit(f"{path}: --version ends with {said.returncode}")
@@ -45,12 +46,14 @@ class Program:
         self.naming = Naming(folder, dict.fromkeys([self.path, self.path.resolve()]), self.version)
 
     def start(self, words, folder=None, **streams):
-        return subprocess.Popen([str(self.path), *words], cwd=folder or self.folder, env=self.environment, **streams)
+        return subprocess.Popen([str(self.path), *words], cwd=folder or self.folder,
+                                env=self.environment, **streams)
 
     def run(self, words, stdin=None, folder=None):
         """The finished command; a command that takes too long ends with -9."""
         with open(self.folder / stdin if stdin else os.devnull, "rb") as given:
-            process = self.start(words, folder, stdin=given, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            process = self.start(words, folder, stdin=given, stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE)
             try:
                 out, err = process.communicate(timeout=SECONDS)
             except subprocess.TimeoutExpired:
@@ -63,7 +66,8 @@ class Program:
         before = self._files()
         done = self.run(question.words, question.stdin)
         after = self._files()
-        outputs = {"exit code": str(done.returncode).encode(), "stdout": done.stdout, "stderr": done.stderr}
+        outputs = {"exit code": str(done.returncode).encode(), "stdout": done.stdout,
+                   "stderr": done.stderr}
         for name in sorted(after):
             if before.get(name) != after[name]:
                 outputs[name] = (self.folder / name).read_bytes()
@@ -113,7 +117,7 @@ class Question:
 
 
 def chosen_questions(data, pattern):
-    """The questions that the pattern finds, in a group's name or a line, and those whose outputs they need."""
+    """The questions that the pattern finds, and those whose outputs they need."""
     asked = [Question(group, number, line) for group, lines in questions.groups(data).items()
              for number, line in enumerate(lines)]
     wanted = []

@@ -5,7 +5,9 @@ import re
 import shutil
 import sqlite3
 import subprocess
+import tempfile
 import zipfile
+from pathlib import Path
 
 try:
     import h5py
@@ -48,7 +50,8 @@ class Naming:
         self.words = [(str(folder).encode(), b"FOLDER")]
         self.words += [(str(program).encode(), b"PROGRAM") for program in programs]
         self.version = version
-        self.patterns = [(re.compile(rb"(?<![\d.])" + re.escape(version.encode()) + rb"(?![\d.])"), b"VERSION")]
+        self.patterns = [(re.compile(
+            rb"(?<![\d.])" + re.escape(version.encode()) + rb"(?![\d.])"), b"VERSION")]
 
     def neutral(self, data, with_version):
         for word, stands_for in self.words:
@@ -194,7 +197,10 @@ def _values(dataset):
 def _hdf5_dump(data):
     if not shutil.which("h5dump"):
         return None
-    done = subprocess.run(["h5dump", "-w", "0", "-m", "%.17g", "/dev/stdin"], input=data, capture_output=True)
+    with tempfile.TemporaryDirectory() as folder:  # h5dump reads no pipe
+        (Path(folder) / "file.h5").write_bytes(data)
+        done = subprocess.run(["h5dump", "-w", "0", "-m", "%.17g", "file.h5"], cwd=folder,
+                              capture_output=True)
     return {"h5dump": done.stdout} if done.returncode == 0 else None
 
 
