@@ -277,12 +277,18 @@ class CampaignPage {
 
   void unfinished() {
     TaskList tasks;
+    std::string changes;
     for (std::size_t i = 0; i < looks_.size(); ++i) {
-      if (outcome_of(looks_[i]) == Outcome::kUnfinished) tasks.push_back(plan_.tasks[i].number);
+      if (outcome_of(looks_[i]) != Outcome::kUnfinished) continue;
+      tasks.push_back(plan_.tasks[i].number);
+      if (looks_[i].changed.empty()) continue;
+      changes += "<li>" + html_text(plan_.tasks[i].name() + ": " + looks_[i].changed) +
+                 ", so its verdict would be of an earlier file</li>\n";
     }
     if (tasks.empty()) return;
     text_ += "<section>\n<h2>Not done</h2>\n<p>Tasks " + task_list_text(tasks) +
-             ". <code>clearway campaign run DIR --all</code> goes on with them.</p>\n</section>\n";
+             ". <code>clearway campaign run DIR --all</code> goes on with them.</p>\n" +
+             (changes.empty() ? "" : "<ul>\n" + changes + "</ul>\n") + "</section>\n";
   }
 
   /// Nothing in it ends the element that it stands in.
@@ -326,6 +332,7 @@ ordered_json page_facts(const Plan& plan, const std::vector<TaskLook>& looks,
                      {"outcome", words_of(outcome_of(look)).name},
                      {"page", cell_link(task, look)}};
     if (look.status == TaskStatus::kDone) run.update(look.state->facts);
+    if (!look.changed.empty()) run["changed"] = look.changed;
     if (look.status == TaskStatus::kFailed) {
       run["exit_code"] = look.state->exit_code;
       run["message"] = look.state->message;
