@@ -30,6 +30,8 @@ struct SearchedLength {
   double path = 0;   ///< the whole path
   double whole = 0;  ///< where all bodies are searched
   double part = 0;   ///< where some bodies are searched and others are not
+
+  friend bool operator==(const SearchedLength&, const SearchedLength&) = default;
 };
 
 SearchedLength searched_length(std::span<const Pose> path, std::span<const Body> bodies);

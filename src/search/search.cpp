@@ -343,6 +343,7 @@ class Search {
 
   ResultFindings findings() const {
     ResultFindings found{.doubts = report_.doubts};
+    if (!query_.bodies.empty()) found.searched = report_.searched;
     if (!query_.ignores_points()) return found;
     found.ignored_colliding = report_.ignored_colliding;
     found.ignored_colliding_high = report_.ignored_colliding_high;

@@ -9,6 +9,7 @@
 #include "io/conflicts/json_text.hpp"
 #include "io/conflicts/scan_crs.hpp"
 #include "io/conflicts/write_conflicts.hpp"
+#include "io/result/answer.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -38,7 +39,8 @@ struct Written {
     std::vector<std::uint32_t> conflict_of;
     const Conflicts conflicts = find_conflicts(result, found.poses, options, &conflict_of);
     REQUIRE(conflicts.listed.size() == 2);
-    const ConflictFile file{conflicts, options, result.reader().header(), found.poses, {}};
+    const Answer answer = counted_answer(result.reader());
+    const ConflictFile file{conflicts, options, result.reader().header(), answer, found.poses, {}};
     const ConflictPictures pictures{conflict_points(result.reader(), conflicts, conflict_of), {}};
     write_conflicts(file, pictures, format, folder / "out");
     return bytes_of(folder / "out");

@@ -170,6 +170,9 @@ ResultFindings PartSet::findings() const {
     warnings.insert(warnings.end(), told.begin(), told.end());
   }
   ResultFindings out{.doubts = doubts_among(warnings)};
+  for (const ResultReader& part : parts_) {
+    if (!out.searched) out.searched = part.findings().searched;
+  }
   if (!header_.ignores_points()) return out;
   const auto sum_of = [&](auto member) {
     std::optional<std::uint64_t> sum = 0;

@@ -13,6 +13,7 @@
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
+#include "clearway/unsearched.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/result/encoded_rows.hpp"
@@ -101,6 +102,9 @@ struct ResultFindings {
   /// As Answer has them. A file has both where points are ignored, unless an earlier release wrote
   /// it.
   std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};
+  /// As Answer has it. A file has it where there are several bodies, unless an earlier release
+  /// wrote it.
+  std::optional<SearchedLength> searched = {};
 };
 
 /// Writes the datasets that docs/design/result-format.md lists and the header asks for, to a file

@@ -139,6 +139,20 @@ ResultPart read_part(const hdf5::Id& file, const std::string& name, const Result
   return part;
 }
 
+/// Three attributes that a file has all of, or none.
+std::optional<SearchedLength> read_searched(const hdf5::Id& file, const std::string& name) {
+  if (!hdf5::has_attribute(file, names::kSearchedLength, name)) return {};
+  const SearchedLength read{hdf5::read_number<double>(file, names::kPathLength, name),
+                            hdf5::read_number<double>(file, names::kSearchedLength, name),
+                            hdf5::read_number<double>(file, names::kPartlySearchedLength, name)};
+  const bool sound = std::isfinite(read.path) && read.whole >= 0 && read.whole <= read.path &&
+                     read.part >= 0 && read.part <= read.path;
+  if (sound) return read;
+  refuse(name, "attributes 'searched_length' and 'partly_searched_length' are " +
+                   shown(read.whole) + " and " + shown(read.part) +
+                   ", expected lengths up to that of the path, which is " + shown(read.path));
+}
+
 void write_part(const hdf5::Id& file, const ResultHeader& header) {
   const ResultPart& part = *header.part;
   const std::uint32_t shard[]{part.shard.number, part.shard.count};
@@ -272,6 +286,11 @@ void write_result_findings(const hdf5::Id& file, const ResultFindings& findings)
   if (findings.ignored_colliding_high) {
     hdf5::write_number(file, names::kIgnoredHigh, *findings.ignored_colliding_high);
   }
+  if (findings.searched) {
+    hdf5::write_number(file, names::kPathLength, findings.searched->path);
+    hdf5::write_number(file, names::kSearchedLength, findings.searched->whole);
+    hdf5::write_number(file, names::kPartlySearchedLength, findings.searched->part);
+  }
 }
 
 ResultFindings read_result_findings(const hdf5::Id& file, const std::string& name,
@@ -294,6 +313,7 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
   findings.ignored_colliding = read_count(names::kIgnoredColliding, header.ignored.points);
   findings.ignored_colliding_high =
       read_count(names::kIgnoredHigh, findings.ignored_colliding.value_or(0));
+  findings.searched = read_searched(file, name);
   return findings;
 }
 
