@@ -7,7 +7,7 @@
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "io/conflicts/json_text.hpp"
-#include "io/conflicts/scan_crs.hpp"
+#include "io/formats/scan_crs.hpp"
 #include "io/conflicts/write_conflicts.hpp"
 #include "io/result/answer.hpp"
 
