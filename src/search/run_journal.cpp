@@ -175,6 +175,7 @@ void RunJournal::refuse_existing(const ResultHeader& header) const {
   try {
     found = ResultReader(output_, Parts::kAccepted).header();
   } catch (const Error&) {
+    if (!options_.resume) return;  // the pending file says that it is there
     throw UsageError(exists + "and is no complete result", overwrite);
   }
   const std::string differences = differences_text(found, header);
