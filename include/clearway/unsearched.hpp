@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,6 +35,11 @@ struct SearchedLength {
 
   friend bool operator==(const SearchedLength&, const SearchedLength&) = default;
 };
+
+/// First and last pose of each run of poses of the path, ascending, at which no body has a pose.
+/// Empty for no bodies.
+std::vector<std::array<std::uint32_t, 2>> poses_without_bodies(std::size_t path_poses,
+                                                               std::span<const Body> bodies);
 
 SearchedLength searched_length(std::span<const Pose> path, std::span<const Body> bodies);
 

@@ -348,6 +348,9 @@ class Search {
   ResultFindings findings() const {
     ResultFindings found{.doubts = report_.doubts};
     if (!query_.bodies.empty()) found.searched = report_.searched;
+    if (query_.profile > 0) {
+      found.without_bodies = poses_without_bodies(query_.poses.size(), query_.bodies);
+    }
     if (!query_.ignores_points()) return found;
     found.ignored_colliding = report_.ignored_colliding;
     found.ignored_colliding_high = report_.ignored_colliding_high;

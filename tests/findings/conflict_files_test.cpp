@@ -7,8 +7,9 @@
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "io/conflicts/json_text.hpp"
-#include "io/formats/scan_crs.hpp"
+#include "io/conflicts/markup_text.hpp"
 #include "io/conflicts/write_conflicts.hpp"
+#include "io/formats/scan_crs.hpp"
 #include "io/result/answer.hpp"
 
 using namespace clearway;
@@ -67,6 +68,11 @@ std::string value_of(const std::filesystem::path& path, const std::string& sql) 
 }
 
 }  // namespace
+
+TEST_CASE("text in pages and BCF is escaped for elements and attributes") {
+  CHECK(markup_text("a < b & \"c\" > d\n") == "a &lt; b &amp; &quot;c&quot; &gt; d ");
+  CHECK(markup_text("\xff") == "\xEF\xBF\xBD");
+}
 
 TEST_CASE("GeoJSON names the coordinate reference system of the scans") {
   const auto name = [](const std::string& wkt) {

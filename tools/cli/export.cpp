@@ -136,6 +136,7 @@ constexpr const char* kFooter =
     "in the order of the scans. Text has enough digits to give back each coordinate exactly.\n"
     "With --what clearance, distance and pose take the place of first_pose, in .xyz too.\n"
     "With --what profile it is CSV only: pose,time,name,chainage,distance,source,x,y,z.\n"
+    "Of several bodies it has searched too: 0 where no body has a pose.\n"
     "With --scans it copies records of LAS, all of one point format, with all their fields.\n"
     "Example: clearway export out.h5 -o colliding.las";
 

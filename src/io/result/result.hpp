@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -105,6 +106,9 @@ struct ResultFindings {
   /// As Answer has it. A file has it where there are several bodies, unless an earlier release
   /// wrote it.
   std::optional<SearchedLength> searched = {};
+  /// As poses_without_bodies() has them, where there is a profile of several bodies: there it is
+  /// not known what is near.
+  std::vector<std::array<std::uint32_t, 2>> without_bodies = {};
 };
 
 /// Writes the datasets that docs/design/result-format.md lists and the header asks for, to a file
