@@ -17,8 +17,8 @@ struct ScanCrs {
 /// Of well-known text, which PROJ need not understand.
 ScanCrs scan_crs_of(const std::string& wkt);
 
-/// Of EPSG's code, as GeoTIFF keys give it. Without wkt, and the name is the code alone where PROJ's
-/// database is not installed or does not know it.
+/// Of EPSG's code, as GeoTIFF keys give it. Without wkt, and the name is the code alone where
+/// PROJ's database is not installed or does not know it.
 ScanCrs scan_crs_of_epsg(std::uint16_t code);
 
 }  // namespace clearway

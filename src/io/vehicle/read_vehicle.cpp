@@ -129,7 +129,9 @@ struct MountedBody {
   Stretch body, pivots;
 };
 
-double horizontal_length(const Box& box) { return std::max(box.hi.x - box.lo.x, box.hi.y - box.lo.y); }
+double horizontal_length(const Box& box) {
+  return std::max(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
+}
 
 /// A body is far away from the vehicle where this many times the longest body fits between.
 constexpr double kFarLengths = 3;

@@ -67,8 +67,7 @@ std::vector<Message> doubts_about(const FollowedPath& followed, const PathStatio
   tell(expected ? Message::Severity::kNote : Message::Severity::kWarning, "body-off-path",
        followed.off_path,
        std::string("the body has no pose there, as ") + (pivots ? "a pivot" : "its station") +
-           " is off the path, which is " + metres_text(path.length()) +
-           " m long. " +
+           " is off the path, which is " + metres_text(path.length()) + " m long. " +
            (mostly ? "Most of the path is not searched for this body. Check its stations, or make "
                      "the path longer"
                    : "Make the path longer to search there too"));
