@@ -11,6 +11,7 @@
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
+#include "clearway/unsearched.hpp"
 
 namespace clearway {
 
@@ -61,6 +62,10 @@ struct Answer {
   std::optional<Shard> shard;       ///< where it is the answer of one part alone
   bool float_precision = false;     ///< single precision alone decided: not exact
   std::vector<std::string> doubts;  ///< see doubts_among()
+  /// How much of the path the answer is about: bodies on pivots have no pose at its ends. nullopt
+  /// where it is not known, as for files of one model, whose path was searched to its whole length,
+  /// and for files of several bodies that an earlier release wrote.
+  std::optional<SearchedLength> searched;
 
   /// One colliding point is a conflict, however doubtful the question is.
   Verdict verdict() const;

@@ -19,7 +19,26 @@ namespace clearway {
 /// Where a conflict lies, seen from the model.
 enum class Side { kUnknown, kLeft, kRight, kAbove, kBelow, kFront, kBehind };
 
-const char* name_of(Side side);  ///< "left", ...; "unknown"
+/// "left", ...; "unknown"
+inline const char* name_of(Side side) {
+  switch (side) {
+    case Side::kUnknown:
+      return "unknown";
+    case Side::kLeft:
+      return "left";
+    case Side::kRight:
+      return "right";
+    case Side::kAbove:
+      return "above";
+    case Side::kBelow:
+      return "below";
+    case Side::kFront:
+      return "front";
+    case Side::kBehind:
+      return "behind";
+  }
+  return "";
+}
 
 /// An axis of the model's frame, with its sign.
 enum class Axis { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };

@@ -29,6 +29,7 @@ enum class Remedy {
   kSkipUnreadable,  ///< one of several inputs; the others can be converted without it
   kIgnoreCrs,
   kOverwrite,           ///< the output exists
+  kReadOrOverwrite,     ///< the output exists, and is the answer that was asked for
   kResumeOrOverwrite,   ///< an unfinished run of this output exists
   kOverwriteNotResume,  ///< what was to be resumed is damaged
   kRestoreOptions,      ///< what was to be resumed belongs to other options or files

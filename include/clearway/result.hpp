@@ -29,7 +29,9 @@ struct Clearances {
 /// Of every pose of the trajectory the least distance between the model and the environment.
 struct Profile {
   static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
-  std::vector<double> distance;       ///< metres; infinity where it is not below the one asked for
+  /// Metres; infinity where it is not below the one asked for; NaN where no body of a vehicle has a
+  /// pose, because nothing is known there. Results of earlier releases have infinity there too.
+  std::vector<double> distance;
   std::vector<std::uint64_t> source;  ///< of the point, of several the smallest; or kNoPoint
   std::vector<Vec3> xyz;              ///< of the point; NaN where there is none
   std::vector<double> chainage;       ///< metres along the positions of the path

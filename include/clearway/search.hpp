@@ -134,7 +134,8 @@ std::shared_ptr<const DeviceStart> start_devices(const SearchOptions& options,
                                                  const Store* store = nullptr);
 
 /// Throws what search() would throw before it looks at store, model and trajectory: for callers
-/// that read large inputs first. As search() does, it replaces a file OUTPUT.partial: see before
+/// that read large inputs first. A result that is there already is left to search(), which says
+/// whether it answers the query. As search() does, it replaces a file OUTPUT.partial: see before
 /// that no input has that name.
 void check_search(const QueryParameters& query, const std::filesystem::path& output,
                   const SearchOptions& options = {});

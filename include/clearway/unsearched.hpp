@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,7 +32,14 @@ struct SearchedLength {
   double path = 0;   ///< the whole path
   double whole = 0;  ///< where all bodies are searched
   double part = 0;   ///< where some bodies are searched and others are not
+
+  friend bool operator==(const SearchedLength&, const SearchedLength&) = default;
 };
+
+/// First and last pose of each run of poses of the path, ascending, at which no body has a pose.
+/// Empty for no bodies.
+std::vector<std::array<std::uint32_t, 2>> poses_without_bodies(std::size_t path_poses,
+                                                               std::span<const Body> bodies);
 
 SearchedLength searched_length(std::span<const Pose> path, std::span<const Body> bodies);
 

@@ -1,5 +1,8 @@
 #include "clearway/result.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 
@@ -74,6 +77,10 @@ Profile Result::profile() const {
   out.xyz.resize(rows);
   out.chainage.resize(rows);
   if (rows > 0) reader_->read_profile(0, out.distance, out.source, out.xyz, out.chainage);
+  for (const auto& [first, last] : reader_->findings().without_bodies) {
+    std::fill(out.distance.begin() + first, out.distance.begin() + last + 1,
+              std::numeric_limits<double>::quiet_NaN());
+  }
   return out;
 }
 

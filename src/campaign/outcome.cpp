@@ -32,7 +32,8 @@ const OutcomeWords& words_of(Outcome outcome) {
         "clear, but something was warned of: read the warnings below"},
        {"clear", "○", "clear", "clear: no point is closer than the radius"},
        {"failed", "✕", "failed", "failed: nothing is known"},
-       {"not_done", "…", "not done", "not done yet: nothing is known"}}};
+       {"not_done", "…", "not done",
+        "not done yet, or a file has changed since: nothing is known"}}};
   return kWords.at(static_cast<std::size_t>(outcome));
 }
 

@@ -36,6 +36,29 @@ ordered_json ignored_of(const ordered_json& ignored) {
           {"colliding", ignored.value("colliding", ordered_json())}};
 }
 
+ordered_json json_of(const std::vector<InputStamp>& stamps) {
+  ordered_json out = ordered_json::array();
+  for (const InputStamp& stamp : stamps) {
+    out.push_back({{"what", stamp.what},
+                   {"file", stamp.file},
+                   {"bytes", stamp.bytes},
+                   {"modified", stamp.modified}});
+  }
+  return out;
+}
+
+std::vector<InputStamp> stamps_in(const ordered_json& list) {
+  std::vector<InputStamp> stamps;
+  for (const ordered_json& one : list) {
+    InputStamp& stamp = stamps.emplace_back();
+    one.at("what").get_to(stamp.what);
+    one.at("file").get_to(stamp.file);
+    one.at("bytes").get_to(stamp.bytes);
+    one.at("modified").get_to(stamp.modified);
+  }
+  return stamps;
+}
+
 }  // namespace
 
 std::optional<TaskState> read_state(const std::filesystem::path& folder) {
@@ -54,6 +77,7 @@ std::optional<TaskState> read_state(const std::filesystem::path& folder) {
     json.at("host").get_to(state.host);
     json.at("time").get_to(state.time);
     state.inputs_changed = json.value("inputs_changed", false);
+    state.inputs = stamps_in(json.value("inputs", ordered_json::array()));
     state.facts = json.at("facts");
     return state;
   } catch (const JsonError&) {
@@ -76,6 +100,7 @@ void write_state(const std::filesystem::path& folder, const TaskState& state) {
                           {"question_id", state.question_id},
                           {"outputs_id", state.outputs_id},
                           {"inputs_changed", state.inputs_changed},
+                          {"inputs", json_of(state.inputs)},
                           {"facts", state.facts}};
   replace_file(folder / kStateName,
                json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");

@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "campaign/input_stamp.hpp"
 
 namespace clearway::campaign {
 
@@ -23,6 +26,8 @@ struct TaskState {
   std::string host, time;  ///< of its end, in UTC
   /// Whether it failed because an input is not the planned one: another try succeeds once it is.
   bool inputs_changed = false;
+  /// The files that it read, as they were when it began. Empty in states of earlier releases.
+  std::vector<InputStamp> inputs = {};
   nlohmann::ordered_json facts;  ///< of the result, once it is done: see task_facts()
   friend bool operator==(const TaskState&, const TaskState&) = default;
 };

@@ -41,19 +41,9 @@ TaskStatus status_of(const std::optional<TaskState>& state, LockState lock) {
   }
 }
 
-}  // namespace
-
-const char* name_of(TaskStatus status) {
-  constexpr const char* kNames[]{"done", "running", "begun", "interrupted", "failed", "missing"};
-  return kNames[static_cast<std::size_t>(status)];
-}
-
-bool has_result(const Task& task, const fs::path& campaign) {
-  return answers(campaign / task.folder() / task.result(), task.question);
-}
-
-bool is_done(const Task& task, const fs::path& campaign, const std::optional<TaskState>& state) {
-  if (task.shard && has_result(run_of(task), campaign)) return true;
+/// Whether the try finished its task, whatever became of its inputs since.
+bool is_finished(const Task& task, const fs::path& campaign,
+                 const std::optional<TaskState>& state) {
   if (!state || state->ending != Ending::kDone || state->question_id != task.question_id() ||
       state->outputs_id != task.outputs_id) {
     return false;
@@ -65,6 +55,23 @@ bool is_done(const Task& task, const fs::path& campaign, const std::optional<Tas
          has_result(task, campaign);
 }
 
+}  // namespace
+
+const char* name_of(TaskStatus status) {
+  constexpr const char* kNames[]{"done",     "running", "begun",  "interrupted",
+                                 "outdated", "failed",  "missing"};
+  return kNames[static_cast<std::size_t>(status)];
+}
+
+bool has_result(const Task& task, const fs::path& campaign) {
+  return answers(campaign / task.folder() / task.result(), task.question);
+}
+
+bool is_done(const Task& task, const fs::path& campaign, const std::optional<TaskState>& state) {
+  if (task.shard && has_result(run_of(task), campaign)) return true;
+  return is_finished(task, campaign, state) && changed_since(state->inputs).empty();
+}
+
 TaskLook look_at(const Task& task, const fs::path& campaign) {
   const fs::path folder = campaign / task.folder();
   std::optional<TaskState> state = state_of(task, folder);
@@ -74,7 +81,14 @@ TaskLook look_at(const Task& task, const fs::path& campaign) {
     if (lock == LockState::kHeld) return {TaskStatus::kRunning, state};
     // What held the lock may have ended, or begun, between the two looks.
     std::optional<TaskState> again = state_of(task, folder);
-    if (again == state) return {status_of(state, lock), state};
+    if (again == state) {
+      TaskLook look{status_of(state, lock), state};
+      if (is_finished(task, campaign, state)) {
+        look.status = TaskStatus::kOutdated;
+        look.changed = changed_since(state->inputs);
+      }
+      return look;
+    }
     state = std::move(again);
   }
 }

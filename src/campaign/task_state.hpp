@@ -10,11 +10,12 @@
 
 namespace clearway::campaign {
 
-/// kBegun: by another process, or interrupted; the file system has no locks that tell.
-enum class TaskStatus { kDone, kRunning, kBegun, kInterrupted, kFailed, kMissing };
-inline constexpr TaskStatus kStatuses[]{TaskStatus::kDone,   TaskStatus::kRunning,
-                                        TaskStatus::kBegun,  TaskStatus::kInterrupted,
-                                        TaskStatus::kFailed, TaskStatus::kMissing};
+/// kBegun: by another process, or interrupted; the file system has no locks that tell. kOutdated:
+/// finished, but a file that it read has changed since, so that its verdict is of an earlier file.
+enum class TaskStatus { kDone, kRunning, kBegun, kInterrupted, kOutdated, kFailed, kMissing };
+inline constexpr TaskStatus kStatuses[]{
+    TaskStatus::kDone,     TaskStatus::kRunning, TaskStatus::kBegun,  TaskStatus::kInterrupted,
+    TaskStatus::kOutdated, TaskStatus::kFailed,  TaskStatus::kMissing};
 const char* name_of(TaskStatus status);
 
 /// A task as its folder says.
@@ -22,6 +23,7 @@ struct TaskLook {
   TaskStatus status = TaskStatus::kMissing;
   std::optional<TaskState> state;  ///< of the last try of this plan
   std::uint32_t shard = 0;         ///< whose look it is, where it stands for its run; 0: of none
+  std::string changed = {};        ///< of an outdated one: see changed_since()
 };
 
 /// campaign: its folder. Changes nothing.
@@ -31,7 +33,8 @@ TaskLook look_at(const Task& task, const std::filesystem::path& campaign);
 bool has_result(const Task& task, const std::filesystem::path& campaign);
 
 /// Whether a try said so of this plan, and the result is complete and answers the task's question,
-/// and the outputs are there. A shard is done too where its run has the result: it is not needed.
+/// and the outputs are there, and no file that the try read has changed since. A shard is done too
+/// where its run has the result: it is not needed.
 bool is_done(const Task& task, const std::filesystem::path& campaign,
              const std::optional<TaskState>& state);
 

@@ -27,26 +27,6 @@ Vec3 in_model_frame(const Vec3& place, const Pose& pose) {
 
 }  // namespace
 
-const char* name_of(Side side) {
-  switch (side) {
-    case Side::kUnknown:
-      return "unknown";
-    case Side::kLeft:
-      return "left";
-    case Side::kRight:
-      return "right";
-    case Side::kAbove:
-      return "above";
-    case Side::kBelow:
-      return "below";
-    case Side::kFront:
-      return "front";
-    case Side::kBehind:
-      return "behind";
-  }
-  return "";
-}
-
 bool along_one_line(Axis a, Axis b) { return line_of(a) == line_of(b); }
 
 Vec3 direction_to_left(Axis forward, Axis up) {

@@ -60,9 +60,11 @@ void require_finite(std::span<const double> numbers, std::size_t of_one, const c
                     const char* one) {
   const auto bad = std::ranges::find_if(numbers, [](double x) { return !std::isfinite(x); });
   if (bad == numbers.end()) return;
-  throw InputError(std::string(name) + ": " + one + " " +
-                   std::to_string((bad - numbers.begin()) / of_one) +
-                   ": expected finite numbers, found " + (std::isnan(*bad) ? "nan" : "infinity"));
+  throw InputError(
+      std::string(name) + ": " + one + " " + std::to_string((bad - numbers.begin()) / of_one) +
+      ": expected finite numbers, found " + (std::isnan(*bad) ? "nan" : "infinity") +
+      (std::string_view(one) == "pose" ? "; leave such poses out, because a body has no place there"
+                                       : ""));
 }
 
 std::span<const double> all_of(const Doubles& array) {
@@ -85,6 +87,8 @@ Doubles poses_array(const py::handle& object, const char* name) {
       array.ndim() == 3 && array.shape(2) == 4 && (array.shape(1) == 3 || array.shape(1) == 4);
   if (!fits) refuse_shape(name, "n x 4 x 4 or n x 3 x 4 numbers", array);
   Doubles doubles(array);
+  // First, because a pose of NaN alone would be refused for its last row.
+  require_finite(all_of(doubles), static_cast<std::size_t>(4 * doubles.shape(1)), name, "pose");
   if (doubles.shape(1) == 3) return doubles;
   const double* pose = doubles.data();
   for (py::ssize_t i = 0; i < doubles.shape(0); ++i, pose += 16) {

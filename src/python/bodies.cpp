@@ -135,8 +135,8 @@ model_as: 'auto': meshes as their triangles are, and other models as points.
     'points': the surface of a mesh is sampled, which needs a spacing.
     'solid': triangles, and what closed parts enclose; each body has to be a mesh.
 spacing, vertices_only, above: of all models, as read_model() takes them.
-unit: of models without a model_unit, as read_model_points() takes it.
-environment_unit: into which lengths with a unit are converted, as read_model_points() takes it.
+unit: of models without a model_unit, as read_model() takes it.
+environment_unit: into which lengths with a unit are converted, as read_model() takes it.
 format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metres_per_unit,
     lever_arm: for trajectories that bodies have of their own, as read_trajectory() takes them.
 messages: a list to which notes and warnings are appended.)";

@@ -52,6 +52,8 @@ const char* name_of(Remedy remedy) {
       return "ignore_crs";
     case Remedy::kOverwrite:
       return "overwrite";
+    case Remedy::kReadOrOverwrite:
+      return "read_or_overwrite";
     case Remedy::kResumeOrOverwrite:
       return "resume_or_overwrite";
     case Remedy::kOverwriteNotResume:

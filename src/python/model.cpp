@@ -164,7 +164,7 @@ model_as: 'auto': a mesh as its surface, any other file as its points; with spac
     vertices_only a mesh as points.
     'surface': the triangles of the mesh; a file without any is refused.
     'solid': the same, and what its closed parts enclose; a mesh without any is refused.
-    'points': as read_model_points() reads it.
+    'points': samples of the surface of a mesh, or the points of the file.
 spacing, vertices_only: for points, as read_model_points() takes them.
 above: cuts the triangles at this height, and leaves out what is below it; metres; not for 'solid'.
 unit, environment_unit, messages: as read_model_points() takes them.)");

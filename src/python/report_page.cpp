@@ -49,7 +49,7 @@ title, project, client, author, date: texts for the head of the page, where noth
     on the time.
 result_name, environment_name, model_name, trajectory_name: names of the files, for the page to
     show.
-model_above, model_left_out: what read_model_points() left out of the model's file, for the page to say.
+model_above, model_left_out: what read_model() left out of the model's file, for the page to say.
 classes: one to three distances, metres, ascending: below these a point is hit, near, or to watch.
 max_points: how many environment points the page shows at the most.
 gap, min_points, split, chainage_start, forward, up: as find_conflicts() takes them.

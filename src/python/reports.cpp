@@ -71,6 +71,13 @@ py::list reasons_of(const Answer& answer) {
 }
 
 void add_answer(py::module_& module) {
+  py::class_<SearchedLength>(module, "SearchedLength",
+                             "How much of a path was searched, in metres along its positions.")
+      .def_readonly("path", &SearchedLength::path, "Metres of the whole path.")
+      .def_readonly("whole", &SearchedLength::whole,
+                    "Metres on which all bodies have poses, so that all of them were searched.")
+      .def_readonly("part", &SearchedLength::part,
+                    "Metres on which some bodies were searched, and others have no pose.");
   py::class_<Answer>(
       module, "Answer",
       "The answer to a query in short: the verdict, and the places that matter most.")
@@ -122,6 +129,10 @@ void add_answer(py::module_& module) {
       .def_readonly("least_profile", &Answer::least_profile,
                     "The point with the least distance of the profile: a FoundPlace. None where "
                     "there is none or no profile was asked for.")
+      .def_readonly("searched", &Answer::searched,
+                    "How much of the path was searched: a SearchedLength. None where a file does "
+                    "not say it: one model is searched on the whole path, and earlier releases did "
+                    "not write it for several bodies.")
       .def_property_readonly(
           "shard",
           [](const Answer& a) -> py::object {

@@ -88,7 +88,8 @@ void add_columns(py::module_& module) {
   profiles
       .def_readonly("distance", &ProfileColumns::distance,
                     "The least distance at each pose: n float64, metres; infinity where nothing is "
-                    "closer than the distance that was asked for.")
+                    "closer than the distance that was asked for, NaN where no body of a vehicle "
+                    "has a pose, because nothing is known there.")
       .def_readonly(
           "source", &ProfileColumns::source,
           "The index of the nearest point at each pose: n uint64; NO_POINT where there is none.")

@@ -217,9 +217,9 @@ shard: (i, n) searches the i-th of n parts, from 1; the output is a part for mer
 overwrite: replaces an existing result, and the journal of an earlier search.
 resume: goes on from the journal of an earlier search.
 strict: raises InputError where anything is warned of, and searches nothing.
-input_warnings: messages of read_model_points() and read_trajectory(), which the report then holds too,
+input_warnings: messages of read_model() and read_trajectory(), which the report then holds too,
     and which strict counts.
-model_is_cut: says that the model lacks its lowest part, as with above= of read_model_points(), so that it
+model_is_cut: says that the model lacks its lowest part, as with above= of read_model(), so that it
     does not stand on the ground: ignored points that collide are not warned of for their number
     alone.
 end_gpus: says that nothing else in this process uses CUDA, so that it ends with the search.

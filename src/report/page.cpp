@@ -3,32 +3,12 @@
 #include <span>
 #include <string_view>
 
-#include "io/conflicts/json_text.hpp"
+#include "io/conflicts/markup_text.hpp"
 #include "io/system/file.hpp"
 #include "report/page_parts.hpp"
 
 namespace clearway {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : valid_utf8(text)) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 class PageFile {
  public:
@@ -47,7 +27,7 @@ class PageFile {
 
 void write_place(PageFile& file, std::string_view name, const std::string& title,
                  const std::string& facts, const std::vector<PageColumn>& columns) {
-  if (name == "TITLE") file.write(escaped(title));
+  if (name == "TITLE") file.write(markup_text(title));
   if (name == "STYLE") file.write(page_parts::kStyle);
   if (name == "SCRIPT") file.write(page_parts::kScript);
   if (name == "FACTS") file.write(facts);

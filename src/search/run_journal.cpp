@@ -6,6 +6,7 @@
 #include "core/query/ignored_text.hpp"
 #include "core/query/query_fields.hpp"
 #include "core/util/format.hpp"
+#include "io/result/check/compare_results.hpp"
 #include "io/result/check/verify_result.hpp"
 #include "io/system/xxh64.hpp"
 
@@ -88,6 +89,27 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
   return identity;
 }
 
+/// The name of a coordinate reference system, for example, is no more than that.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kMost = 80;
+  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
+/// "radius: 0.1 m in the file, 0.2 m here; ..."; empty where both ask the same.
+std::string differences_text(const ResultHeader& found, const ResultHeader& asked) {
+  std::string text;
+  const auto add = [&](const std::string& what, const std::string& a, const std::string& b) {
+    text += (text.empty() ? "" : "; ") + what + ": " + shortened(a) + " in the file, " +
+            shortened(b) + " here";
+  };
+  const auto part_text = [](const ResultHeader& header) {
+    return header.part ? in_words(header.part->shard) : std::string("the whole result");
+  };
+  if (part_text(found) != part_text(asked)) add("part", part_text(found), part_text(asked));
+  for (const QueryDifference& one : query_differences(found, asked)) add(one.what, one.a, one.b);
+  return text;
+}
+
 void remove_file(const fs::path& path) {
   std::error_code failed;
   fs::remove(path, failed);
@@ -150,9 +172,37 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
     if (read_ || !unwanted_.empty()) remove_file(path_);
     return true;
   }
-  if (options_.resume) refuse_other_part(header);
+  refuse_existing(header);
   pending_.refuse_existing();
   return false;
+}
+
+void RunJournal::refuse_existing(const ResultHeader& header) const {
+  std::error_code unknown;
+  if (!fs::is_regular_file(output_, unknown)) return;  // the pending file judges what else it is
+  if (options_.resume) refuse_other_part(header);
+  const Remedy overwrite = options_.resume ? Remedy::kOverwriteNotResume : Remedy::kOverwrite;
+  const std::string exists = output_.string() + ": exists already, ";
+  ResultHeader found;
+  try {
+    found = ResultReader(output_, Parts::kAccepted).header();
+  } catch (const Error&) {
+    if (!options_.resume) return;  // the pending file says that it is there
+    throw UsageError(exists + "and is no complete result", overwrite);
+  }
+  const std::string differences = differences_text(found, header);
+  if (!differences.empty()) {
+    throw UsageError(exists + "and answers another question than this run: " + differences,
+                     overwrite);
+  }
+  if (!header.is_exact()) {
+    throw UsageError(exists +
+                         "and answers the same question, but not exactly, so another search may "
+                         "find another answer",
+                     overwrite);
+  }
+  if (options_.resume) throw UsageError(exists + "and is damaged", overwrite);
+  throw UsageError(exists + "and answers the same question", Remedy::kReadOrOverwrite);
 }
 
 /// A part in the place of a result, another part, or a result in the place of a part.

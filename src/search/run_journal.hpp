@@ -28,8 +28,13 @@ class RunJournal {
 
   /// Whether, with options.resume, the output is there, intact, and answers this query: exactly,
   /// or from an earlier run that was only kept from removing its journal. A journal is removed
-  /// then. Throws UsageError where another output is there that this run may not overwrite.
+  /// then. Throws as refuse_existing() where another output is there.
   bool already_done(const StoreReader& store, const ResultHeader& header, Progress& progress);
+
+  /// Throws UsageError where there is an output that this run may not overwrite. It says whether
+  /// the output answers this query or which inputs and parameters differ, because whoever reads
+  /// the output next would take its answer for that of this run.
+  void refuse_existing(const ResultHeader& header) const;
 
   /// As the run to resume was started with; kAuto where there is none.
   Device earlier_device() const;

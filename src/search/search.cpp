@@ -69,7 +69,11 @@ class Search {
         pending_(output, true),
         journal_(pending_, output, options_, log_),
         header_(result_header(store_, query_, options_)) {
-    if (!options.overwrite && !options.resume) pending_.refuse_existing();
+    // Which part a shard is turns out later.
+    if (!options.overwrite && !options.resume && !options.shard) {
+      journal_.refuse_existing(header_);
+      pending_.refuse_existing();
+    }
     end_gpus_ = options_.end_gpus;
     if (query_.first_pose) options_.end_gpus = false;  // they search twice
     if (!options_.started) options_.started = start_devices(options_, &store);
@@ -343,6 +347,10 @@ class Search {
 
   ResultFindings findings() const {
     ResultFindings found{.doubts = report_.doubts};
+    if (!query_.bodies.empty()) found.searched = report_.searched;
+    if (query_.profile > 0) {
+      found.without_bodies = poses_without_bodies(query_.poses.size(), query_.bodies);
+    }
     if (!query_.ignores_points()) return found;
     found.ignored_colliding = report_.ignored_colliding;
     found.ignored_colliding_high = report_.ignored_colliding_high;
@@ -380,6 +388,17 @@ class Search {
   SearchJournal* open_ = nullptr;
 };
 
+/// Or part of one.
+bool is_result(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) return false;
+  try {
+    return ResultReader(file, Parts::kAccepted).header().version > 0;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 void check_search(const QueryParameters& query, const std::filesystem::path& output,
@@ -390,7 +409,8 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
   std::vector<Message> none;
   MessageLog log(silent, none);
   const RunJournal journal(pending, output, options, log);
-  if (!options.overwrite && !options.resume) pending.refuse_existing();
+  // Whether a result that is there answers this query is known once the inputs are read.
+  if (!options.overwrite && !options.resume && !is_result(output)) pending.refuse_existing();
 }
 
 SearchReport search(const Store& store, const Query& query, const std::filesystem::path& output,

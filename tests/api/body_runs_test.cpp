@@ -26,6 +26,11 @@ TEST_CASE("merged shards of a vehicle have the bytes of the search of everything
   const MergeReport report = merge(parts, vehicle.folder / "merged.h5");
   CHECK(bytes_of(vehicle.folder / "merged.h5") == whole);
   CHECK(report.bodies.size() == 3);
+  const SearchedLength searched = searched_length(vehicle.query.poses, vehicle.query.bodies);
+  CHECK(searched.whole < searched.path);
+  CHECK(vehicle.report.searched == searched);
+  CHECK(report.searched == searched);
+  CHECK(Result(vehicle.folder / "merged.h5").answer().searched == searched);
   REQUIRE(report.first_place);
   CHECK(*report.first_place == *vehicle.report.first_place);
   CHECK(*report.least_clearance == *vehicle.report.least_clearance);

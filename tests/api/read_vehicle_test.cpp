@@ -101,3 +101,38 @@ TEST_CASE("errors name the file and the key") {
   CHECK_THROWS_AS(read_vehicle(files.folder / "no.json", files.path), ResourceError);
   CHECK_THROWS_AS(files.read(""), InputError);
 }
+
+TEST_CASE("a body whose station or pivots are far from the vehicle is warned of") {
+  ScratchFolder folder;
+  std::vector<Pose> path;
+  for (int i = 0; i <= 400; ++i) path.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5 * i, 0, 0}});
+  put_bytes(folder / "wagon.xyz", "-5 -1 0\n5 1 3\n");
+  put_bytes(folder / "bogie.xyz", "-1.5 -1 0\n1.5 1 1\n");
+  const auto codes = [&](const std::string& bodies) {
+    put_bytes(folder / "v.json", "{\"bodies\": [" + bodies + "]}");
+    std::vector<Message> told;
+    read_vehicle(folder / "v.json", path, {}, &told);
+    std::string text;
+    for (const Message& message : told) {
+      if (message.severity == Message::Severity::kWarning) text += message.code + " ";
+    }
+    return text;
+  };
+  const std::string wagon = R"({"name": "wagon", "model": "wagon.xyz", "pivots": [4, -4]})";
+  CHECK(codes(wagon).empty());
+  CHECK(codes(wagon + R"(, {"name": "front", "model": "bogie.xyz", "at": 4})").empty());
+  CHECK(codes(R"({"name": "front", "model": "bogie.xyz", "at": 10},
+                 {"name": "rear", "model": "bogie.xyz", "at": -10})")
+            .empty());
+  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -50})") == "body-far ");
+  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "pivots": [-46, -54]})") == "body-far ");
+  CHECK(codes(wagon + R"(, {"name": "rear", "model": "bogie.xyz", "at": -48})") == "body-far ");
+  // A train is one vehicle from wagon to wagon.
+  CHECK(codes(wagon + R"(, {"name": "b", "model": "wagon.xyz", "at": -20},
+                           {"name": "c", "model": "wagon.xyz", "at": -40},
+                           {"name": "d", "model": "wagon.xyz", "at": -60})")
+            .empty());
+  // 150 of 200 m: most of the path is not searched, though it is only its end.
+  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -150})") ==
+        "body-off-path body-far ");
+}

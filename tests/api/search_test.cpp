@@ -238,7 +238,11 @@ TEST_CASE("check_search refuses what search refuses") {
   check({.radius = 0.1}, {.overwrite = true, .resume = true});
   CHECK_NOTHROW(check_search(scene.query, output));
   search(store, scene.query, output);
-  check(scene.query, {});  // the output exists
+  CHECK_NOTHROW(check_search(scene.query, output));  // only the search knows what it answers
+  CHECK_THAT(usage_error_of([&] { search(store, scene.query, output); }),
+             Contains("exists already, and answers the same question"));
+  put_bytes(output, "no result");
+  check(scene.query, {});
   CHECK_NOTHROW(check_search(scene.query, output, {.overwrite = true}));
 }
 

@@ -2,6 +2,7 @@
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "io/conflicts/bcf/bcf_text.hpp"
+#include "io/result/answer.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -93,7 +94,8 @@ TEST_CASE("a topic of BCF names the body that it is seen from") {
     Conflicts conflicts;
     conflicts.listed.push_back(found.conflict(given));
     const ConflictOptions options = TwoBodies::with(given);
-    const ConflictFile file{conflicts, options, header, found.poses, {}};
+    const Answer answer = answer_of(header);
+    const ConflictFile file{conflicts, options, header, answer, found.poses, {}};
     return bcf_markup(file, conflicts.listed[0]);
   };
   CHECK_THAT(markup(found.bodies),

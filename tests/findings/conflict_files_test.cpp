@@ -7,8 +7,10 @@
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "io/conflicts/json_text.hpp"
-#include "io/conflicts/scan_crs.hpp"
+#include "io/conflicts/markup_text.hpp"
 #include "io/conflicts/write_conflicts.hpp"
+#include "io/formats/scan_crs.hpp"
+#include "io/result/answer.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -38,7 +40,8 @@ struct Written {
     std::vector<std::uint32_t> conflict_of;
     const Conflicts conflicts = find_conflicts(result, found.poses, options, &conflict_of);
     REQUIRE(conflicts.listed.size() == 2);
-    const ConflictFile file{conflicts, options, result.reader().header(), found.poses, {}};
+    const Answer answer = counted_answer(result.reader());
+    const ConflictFile file{conflicts, options, result.reader().header(), answer, found.poses, {}};
     const ConflictPictures pictures{conflict_points(result.reader(), conflicts, conflict_of), {}};
     write_conflicts(file, pictures, format, folder / "out");
     return bytes_of(folder / "out");
@@ -65,6 +68,11 @@ std::string value_of(const std::filesystem::path& path, const std::string& sql) 
 }
 
 }  // namespace
+
+TEST_CASE("text in pages and BCF is escaped for elements and attributes") {
+  CHECK(markup_text("a < b & \"c\" > d\n") == "a &lt; b &amp; &quot;c&quot; &gt; d ");
+  CHECK(markup_text("\xff") == "\xEF\xBF\xBD");
+}
 
 TEST_CASE("GeoJSON names the coordinate reference system of the scans") {
   const auto name = [](const std::string& wkt) {

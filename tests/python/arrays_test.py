@@ -92,6 +92,9 @@ class Arrays(SceneTest):
         broken[3, 0, 0] = np.nan
         with self.assertRaisesRegex(clearway.InputError, "poses: pose 3: expected finite"):
             self.sources(poses=broken)
+        broken[3] = np.nan  # its last row too
+        with self.assertRaisesRegex(clearway.InputError, "pose 3: expected finite .* leave such"):
+            self.sources(poses=broken)
 
     def test_no_points_and_no_poses(self):
         with self.assertRaisesRegex(clearway.InputError, "no points"):

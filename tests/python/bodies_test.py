@@ -38,6 +38,16 @@ class BodyTest(SceneTest):
         np.testing.assert_array_equal(result.first_pose(), least[found])
         np.testing.assert_array_equal(result.first_body(), (ahead != least)[found])
 
+    def test_a_profile_tells_what_was_not_searched(self):
+        front = clearway.follow("front", self.model, self.poses, at=1)
+        query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=[front], profile=0.01)
+        report = self.search(query=query)
+        result = clearway.Result(self.folder / "out.h5")
+        distance = result.profile().distance
+        np.testing.assert_array_equal(np.isnan(distance), np.arange(len(distance)) >= 25)
+        self.assertEqual(result.answer().searched.whole, report.searched.whole)
+        self.assertLess(report.searched.whole, report.searched.path)
+
     def test_a_page_of_bodies(self):
         own = clearway.Body("own", self.model, self.poses)
         query = clearway.Query(poses=self.poses, radius=RADIUS, bodies=[own], first_pose=True)

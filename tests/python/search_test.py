@@ -264,7 +264,7 @@ class FindsWhatBruteForceFinds(SceneTest):
             self.model, self.poses, self.folder / "out.html", title="<Tunnel>", overwrite=True)
         self.assertFalse(summary.clear)
         page = (self.folder / "out.html").read_text()
-        self.assertTrue("<title>&lt;Tunnel></title>" in page)
+        self.assertTrue("<title>&lt;Tunnel&gt;</title>" in page)
         self.assertEqual(summary.bytes, len(page.encode()))
 
 

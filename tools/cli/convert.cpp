@@ -106,10 +106,16 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArgumen
   return out;
 }
 
+/// Of a store that was there already, because the unit may have been given to its conversion alone.
+std::string unit_clause(const std::filesystem::path& store) {
+  const LengthUnit unit = StoreReader(store).metadata().unit;
+  return unit == LengthUnit::kUnknown ? "" : ", with coordinates in " + to_string(unit);
+}
+
 void log_report(const ConvertArguments& options, const ConvertReport& report) {
   if (report.was_finished) {
-    spdlog::info("{}: is the store of these inputs already; nothing to do{}",
-                 options.output.string(),
+    spdlog::info("{}: is the store of these inputs already{}; nothing to do{}",
+                 options.output.string(), unit_clause(options.output),
                  report.warnings.empty() ? "" : ". Its conversion gave the warnings above");
     return;
   }

@@ -8,6 +8,7 @@
 #include "clearway/error.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/commands.hpp"
+#include "cli/ignored/ignored_options.hpp"
 #include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
@@ -16,10 +17,13 @@
 #include "cli/support/signals.hpp"
 #include "cli/support/standard_output.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "io/export/export_profile.hpp"
 #include "io/export/export_result.hpp"
 #include "io/export/export_scan_records.hpp"
+#include "io/formats/wkt.hpp"
+#include "io/result/answer.hpp"
 #include "io/system/pending_file.hpp"
 #include "io/trajectory/content_hash.hpp"
 
@@ -105,12 +109,20 @@ void run_export(ExportOptions& options) {
   const ResultReader result(options.result);
   const Exported exported = export_table(result, options);
   spdlog::info("{}: {}", options.output.string(), counted(exported.rows, exported.row));
+  warn_of_doubts(result);
+  const std::string verdict =
+      verdict_to_repeat(result, {}, symbol_of(units_of_wkt(result.header().crs_wkt).horizontal));
+  if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
   if (!options.json) return;
   nlohmann::ordered_json out =
       program_json({{"result", options.result}, {"output", options.output}});
   out["what"] = options.what;
   out["with_records_of_scans"] = !options.scans.empty();
   out["rows"] = exported.rows;
+  const Answer answer = counted_answer(result);
+  out["verdict"] = name_of(answer.verdict());
+  out["doubts"] = answer.doubts;
+  out["ignored"] = ignored_json(answer);
   print(text_of_json(out));
 }
 
@@ -124,6 +136,7 @@ constexpr const char* kFooter =
     "in the order of the scans. Text has enough digits to give back each coordinate exactly.\n"
     "With --what clearance, distance and pose take the place of first_pose, in .xyz too.\n"
     "With --what profile it is CSV only: pose,time,name,chainage,distance,source,x,y,z.\n"
+    "Of several bodies it has searched too: 0 where no body has a pose.\n"
     "With --scans it copies records of LAS, all of one point format, with all their fields.\n"
     "Example: clearway export out.h5 -o colliding.las";
 

@@ -115,6 +115,11 @@ ordered_json describe(const ResultReader& result) {
     description["points_inside"] = inside ? ordered_json(*inside) : ordered_json(nullptr);
     description["greatest_depth"] = depth ? ordered_json(*depth) : ordered_json(nullptr);
   }
+  if (answer.searched) {
+    description["path_length"] = answer.searched->path;
+    description["searched_length"] = answer.searched->whole;
+    description["partly_searched_length"] = answer.searched->part;
+  }
   if (h.ignores_points()) {
     description["ignored"] = ignored_json(answer);
     if (!h.ignore_classes.empty()) description["classes_hash"] = hash_text(h.classes_hash);

@@ -205,22 +205,6 @@ void refuse_judging_part(const RunOptions& options) {
       "--fail-on-collision tells it of all parts");
 }
 
-/// How much of the path the answer is about, where that is not all of it: bodies on pivots have no
-/// pose at its ends. unit: of lengths, "m".
-std::string searched_text(const SearchedLength& searched, const std::string& unit) {
-  if (!(searched.whole < searched.path)) return "";
-  const std::string part =
-      searched.part > 0 ? fmt::format(", some bodies on {:.2f} {} more", searched.part, unit) : "";
-  return fmt::format("; the vehicle was searched on {:.2f} of {:.2f} {} of the path{}",
-                     searched.whole, searched.path, unit, part);
-}
-
-void add_searched(const SearchedLength& searched, nlohmann::ordered_json& out) {
-  out["path_length"] = searched.path;
-  out["searched_length"] = searched.whole;
-  out["partly_searched_length"] = searched.part;
-}
-
 Verdict run(RunOptions& options) {
   const Stopwatch total;
   MemoryWatch memory;
@@ -256,14 +240,10 @@ Verdict run(RunOptions& options) {
   log_report(report, options, symbol_of_unit(store.length_unit()), program.total_seconds);
   program.peak_host_bytes = memory.peak_bytes();
   const std::string unit = symbol_of_unit(store.length_unit());
-  const SearchedLength searched = searched_length(query.poses, query.bodies);
-  const std::string sentence = verdict_text(
-      report, path, unit, searched_text(searched, unit) + caveat_of(report.warnings.size()));
+  const std::string sentence = verdict_text(report, path, unit, caveat_of(report.warnings.size()));
   if (options.json) {
     spdlog::info("{}", sentence);
-    nlohmann::ordered_json json = json_of(report, options, path, program);
-    add_searched(searched, json);
-    print(text_of_json(json));
+    print(text_of_json(json_of(report, options, path, program)));
   } else {
     print_verdict(sentence);
   }

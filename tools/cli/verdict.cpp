@@ -119,6 +119,17 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
   return out;
 }
 
+/// How much of the path the answer is about, where that is not all of it: bodies on pivots have no
+/// pose at its ends.
+std::string searched_text(const Answer& answer, const std::string& unit) {
+  if (!answer.searched || !(answer.searched->whole < answer.searched->path)) return "";
+  const SearchedLength& searched = *answer.searched;
+  const std::string part =
+      searched.part > 0 ? fmt::format(", some bodies on {:.2f} {} more", searched.part, unit) : "";
+  return fmt::format("; the vehicle was searched on {:.2f} of {:.2f} {} of the path{}",
+                     searched.whole, searched.path, unit, part);
+}
+
 }  // namespace
 
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points) {
@@ -146,7 +157,14 @@ std::string verdict_text(const Answer& answer, const PathWords& path, const std:
   }
   if (answer.shard) text += "; clearway merge gives the answer of all parts";
   if (answer.float_precision) text += "; not exact, as single precision alone decided";
+  text += searched_text(answer, unit);
   return text + caveat + ".";
+}
+
+std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
+                              const std::string& unit) {
+  if (result.collisions() > 0 && !result.header().ignores_points()) return "";
+  return verdict_text(answer_of(result), path, unit, "");
 }
 
 void warn_of_doubts(const ResultReader& result) {
@@ -167,6 +185,12 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["model_spacing"] = nullptr;
   if (answer.model_spacing > 0) out["model_spacing"] = answer.model_spacing;
   out["ignored"] = ignored_json(answer);
+  out["path_length"] = out["searched_length"] = out["partly_searched_length"] = nullptr;
+  if (answer.searched) {
+    out["path_length"] = answer.searched->path;
+    out["searched_length"] = answer.searched->whole;
+    out["partly_searched_length"] = answer.searched->part;
+  }
   out["shard"] = answer.shard ? ordered_json(to_string(*answer.shard)) : ordered_json(nullptr);
   const auto depth = answer.greatest_depth();
   const auto inside = answer.points_inside();

@@ -29,12 +29,17 @@ std::string caveat_of(std::size_t warnings);
 std::string verdict_text(const Answer& answer, const PathWords& path, const std::string& unit,
                          const std::string& caveat);
 
+/// The verdict of a result that is there already, in one sentence; empty where points collide and
+/// none was ignored, because what collides then says enough. Reads all tables of the result.
+std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
+                              const std::string& unit);
+
 /// For commands that do not word the verdict: warns where the result's is undecided, so that nobody
 /// takes an empty list for an all-clear.
 void warn_of_doubts(const ResultReader& result);
 
-/// Adds the keys verdict, reasons, margins, seen, shard, ignored, points_inside, greatest_depth,
-/// least_clearance, least_profile and first_place.
+/// Adds the keys verdict, reasons, margins, seen, path_length and its parts, shard, ignored,
+/// points_inside, greatest_depth, least_clearance, least_profile and first_place.
 void add_answer(const Answer& answer, const PathWords& path, nlohmann::ordered_json& out);
 
 }  // namespace clearway::tool

@@ -11,28 +11,12 @@
 #include "campaign/page/page_cell.hpp"
 #include "campaign/task_list.hpp"
 #include "core/util/format.hpp"
-#include "io/conflicts/json_text.hpp"
+#include "io/conflicts/markup_text.hpp"
 
 namespace clearway::campaign {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string html_text(const std::string& text) {
-  std::string out;
-  for (const char c : valid_utf8(text)) {
-    if (c == '<') {
-      out += "&lt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else if (c == '"') {
-      out += "&quot;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
 
 /// The names that the tasks have, in the order of the first ones.
 template <typename Name>
@@ -76,14 +60,14 @@ class CampaignPage {
 
  private:
   void head() {
-    const std::string name = html_text(plan_.name);
+    const std::string name = markup_text(plan_.name);
     text_ +=
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
         "style-src 'unsafe-inline'\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
         name + "</title>\n<style>\n" + kCampaignStyle + "</style>\n</head>\n<body>\n<header><h1>" +
-        name + "</h1><p>Clearway, " + html_text(date_) + "</p></header>\n<main>\n";
+        name + "</h1><p>Clearway, " + markup_text(date_) + "</p></header>\n<main>\n";
   }
 
   void summary() {
@@ -140,18 +124,18 @@ class CampaignPage {
   }
 
   void table(const std::string& radius) {
-    const std::string title = "Radius " + html_text(radius) + unit_of(radius);
+    const std::string title = "Radius " + markup_text(radius) + unit_of(radius);
     text_ += "<section>\n<h2>" + title +
              "</h2>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" + title +
              "\">\n<table class=\"matrix" + (routes_.size() > kFewRoutes ? " many" : "") +
              "\">\n<thead><tr><th scope=\"col\">vehicle</th>";
     for (const std::string& route : routes_) {
-      text_ += "<th scope=\"col\">" + html_text(route) + "<small>" +
-               html_text(environment_of_[route]) + "</small></th>";
+      text_ += "<th scope=\"col\">" + markup_text(route) + "<small>" +
+               markup_text(environment_of_[route]) + "</small></th>";
     }
     text_ += "</tr></thead>\n<tbody>\n";
     for (const std::string& vehicle : names_in(plan_, &Task::vehicle)) {
-      text_ += "<tr><th scope=\"row\">" + html_text(vehicle) + "</th>";
+      text_ += "<tr><th scope=\"row\">" + markup_text(vehicle) + "</th>";
       for (const std::string& route : routes_) cell(at_.at({vehicle, route, radius}));
       text_ += "</tr>\n";
     }
@@ -173,7 +157,7 @@ class CampaignPage {
     const OutcomeWords& kind = words_of(outcome_of(look));
     const std::string link = cell_link(task, look), distance = cell_distance(task, look);
     text_ += std::string("<td class=\"") + kind.name + "\" title=\"" +
-             html_text(task.vehicle + " on " + task.route + ": " + cell_details(task, look)) +
+             markup_text(task.vehicle + " on " + task.route + ": " + cell_details(task, look)) +
              "\">";
     if (!link.empty()) text_ += "<a href=\"" + link + "\">";
     text_ += std::string(R"(<span class="sign" aria-hidden="true">)") + kind.sign +
@@ -204,7 +188,7 @@ class CampaignPage {
     for (std::size_t i = 0; i < runs.size() && i < kMost; ++i) {
       const Task& task = plan_.tasks[runs[i]];
       text += (i == 0 ? "" : ", ") + ("<a href=\"" + cell_link(task, looks_[runs[i]]) + "\">") +
-              html_text(task.name()) + "</a>";
+              markup_text(task.name()) + "</a>";
     }
     if (runs.size() > kMost) text += " and " + format_count(runs.size() - kMost) + " more";
     return text;
@@ -243,7 +227,7 @@ class CampaignPage {
     if (runs_of.empty()) return;
     begin_list("Warnings", {"runs", "warning", "what the first of them says", "in"});
     for (const auto& [code, runs] : runs_of) {
-      add_row({format_count(runs.size()), html_text(code), html_text(first_text[code]),
+      add_row({format_count(runs.size()), markup_text(code), markup_text(first_text[code]),
                run_links(runs)});
     }
     end_list();
@@ -270,19 +254,25 @@ class CampaignPage {
     for (std::size_t i = 0; i < looks_.size(); ++i) {
       if (outcome_of(looks_[i]) != Outcome::kFailed) continue;
       add_row({std::to_string(plan_.tasks[i].number), run_links({i}),
-               html_text(cell_details(plan_.tasks[i], looks_[i]))});
+               markup_text(cell_details(plan_.tasks[i], looks_[i]))});
     }
     end_list();
   }
 
   void unfinished() {
     TaskList tasks;
+    std::string changes;
     for (std::size_t i = 0; i < looks_.size(); ++i) {
-      if (outcome_of(looks_[i]) == Outcome::kUnfinished) tasks.push_back(plan_.tasks[i].number);
+      if (outcome_of(looks_[i]) != Outcome::kUnfinished) continue;
+      tasks.push_back(plan_.tasks[i].number);
+      if (looks_[i].changed.empty()) continue;
+      changes += "<li>" + markup_text(plan_.tasks[i].name() + ": " + looks_[i].changed) +
+                 ", so its verdict would be of an earlier file</li>\n";
     }
     if (tasks.empty()) return;
     text_ += "<section>\n<h2>Not done</h2>\n<p>Tasks " + task_list_text(tasks) +
-             ". <code>clearway campaign run DIR --all</code> goes on with them.</p>\n</section>\n";
+             ". <code>clearway campaign run DIR --all</code> goes on with them.</p>\n" +
+             (changes.empty() ? "" : "<ul>\n" + changes + "</ul>\n") + "</section>\n";
   }
 
   /// Nothing in it ends the element that it stands in.
@@ -326,6 +316,7 @@ ordered_json page_facts(const Plan& plan, const std::vector<TaskLook>& looks,
                      {"outcome", words_of(outcome_of(look)).name},
                      {"page", cell_link(task, look)}};
     if (look.status == TaskStatus::kDone) run.update(look.state->facts);
+    if (!look.changed.empty()) run["changed"] = look.changed;
     if (look.status == TaskStatus::kFailed) {
       run["exit_code"] = look.state->exit_code;
       run["message"] = look.state->message;

@@ -66,6 +66,9 @@ std::string cell_details(const Task& task, const TaskLook& look) {
     return (look.shard > 0 ? "shard " + std::to_string(look.shard) + ": " : "") + "exit code " +
            std::to_string(look.state->exit_code) + ": " + look.state->message;
   }
+  if (look.status == TaskStatus::kOutdated) {
+    return std::string(name_of(look.status)) + ": " + look.changed;
+  }
   if (look.status != TaskStatus::kDone) return name_of(look.status);
   const ordered_json& facts = look.state->facts;
   std::string text = words_of(outcome_of(look)).word;

@@ -33,6 +33,20 @@ std::string starts_of(std::span<const Jump> jumps) {
   return ranges.size() > kMost ? text + " and others" : text;
 }
 
+/// How many poses each row has, where the jumps lead from row to row of a grid: they come after
+/// equal numbers of poses and are equally long. 0: they are no such jumps.
+std::size_t row_of_grid(std::span<const Jump> jumps) {
+  constexpr double kEqual = 0.01;
+  if (jumps.size() < 2) return 0;
+  const std::size_t row = jumps.front().pose + 1;
+  for (std::size_t k = 0; k < jumps.size(); ++k) {
+    if (jumps[k].pose + 1 != (k + 1) * row) return 0;
+    const double length = jumps.front().length;
+    if (std::abs(jumps[k].length - length) > kEqual * length) return 0;
+  }
+  return row;
+}
+
 }  // namespace
 
 std::vector<double> step_lengths(std::span<const Pose> poses) {
@@ -80,12 +94,16 @@ Message jump_warning(std::span<const Jump> jumps, const std::string& prefix,
                                 : format_count(jumps.size()) +
                                       " steps are far longer than those around them, after " +
                                       starts_of(jumps) + ". The longest, " + where + ", is ";
-  return {Message::Severity::kWarning,
+  const std::size_t row = row_of_grid(jumps);
+  const std::string cause = row > 0
+                                ? "They come after every " + format_count(row) +
+                                      " poses and are equally long, as between the rows of a grid"
+                                : "Poses may be missing there, or one of them may be wrong";
+  return {row > 0 ? Message::Severity::kNote : Message::Severity::kWarning,
           "trajectory-jump",
           prefix + begin + format_brief(worst.length) + " " + unit + " long, " +
               format_brief(worst.length / worst.usual) + " times the median of the steps around " +
-              "it, which is " + format_brief(worst.usual) + " " + unit +
-              ". Poses may be missing there, or one of them may be wrong" + consequence,
+              "it, which is " + format_brief(worst.usual) + " " + unit + ". " + cause + consequence,
           {{"jumps", static_cast<double>(jumps.size())},
            {"pose", static_cast<double>(worst.pose)},
            {"step", worst.length},

@@ -29,10 +29,10 @@ std::vector<double> step_lengths(std::span<const Pose> poses);
 /// passed over, because a model that stands still says nothing of how long its steps are.
 std::vector<Jump> jumps_of(std::span<const double> steps, double least);
 
-/// The one warning "trajectory-jump" for all of `jumps`, which are not empty and name the poses as
-/// users count them. The text begins with `prefix`, for example "path.txt: ", and ends with
-/// `consequence`, a sentence such as ". Nothing is searched there", or nothing. unit: of the
-/// lengths, "m" or "ft".
+/// The one warning "trajectory-jump", or note where the poses are rows of a grid, for all of
+/// `jumps`, which are not empty and name the poses as users count them. The text begins with
+/// `prefix`, for example "path.txt: ", and ends with `consequence`, a sentence such as ". Nothing
+/// is searched there", or nothing. unit: of the lengths, "m" or "ft".
 Message jump_warning(std::span<const Jump> jumps, const std::string& prefix,
                      const std::string& unit, const std::string& consequence);
 

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -78,6 +79,7 @@ std::optional<Message> missing_rotation(std::span<const Pose> poses, double path
 struct Alignment {
   double line = 1;       ///< forwards or backwards; 1/3 where it is all over
   double direction = 1;  ///< forwards alone; 0 where it is all over
+  double ahead = 0;      ///< how much of that direction is along the model's x axis, either way
 
   /// Whether a mistake is almost certain: its repair makes order of disorder.
   bool repaired_by(const Alignment& other) const {
@@ -105,7 +107,8 @@ Alignment alignment(std::span<const Pose> poses, std::span<const Chord> chords,
   if (!(weight > 0)) return {};
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments / weight,
                                                               Eigen::EigenvaluesOnly);
-  return {solver.eigenvalues().maxCoeff(), sum.norm() / weight};
+  return {solver.eigenvalues().maxCoeff(), sum.norm() / weight,
+          sum.norm() > 0 ? std::abs(sum.x()) / sum.norm() : 0};
 }
 
 Matrix rotation_of(const Pose& pose) { return Eigen::Map<const Matrix>(pose.rotation); }
@@ -127,9 +130,33 @@ std::vector<Pose> inverse_of(std::span<const Pose> poses) {
   return inverse;
 }
 
+/// What makes the model turn against its path. A path whose x and y are swapped is the mirror image
+/// of the true one, as are headings that are counted clockwise from north; with these rotations the
+/// model would move ahead on the swapped path. Rotations that are transposed, or counted the other
+/// way, would move it ahead on the path as it is.
+std::string cause_of_turns(std::span<const Pose> poses, double length, const Alignment& transposed,
+                           RotationSource source) {
+  constexpr double kAhead = 0.9;
+  std::vector<Pose> swapped(poses.begin(), poses.end());
+  for (Pose& pose : swapped) std::swap(pose.translation[0], pose.translation[1]);
+  const Alignment of_swapped = alignment(swapped, pieces_of(swapped, length), rotation_of);
+  const bool angles = source == RotationSource::kAngles;
+  const std::string columns = "The columns x and y may be swapped";
+  const std::string north =
+      angles ? ", or headings may be counted clockwise from north" : ", as northing before easting";
+  if (of_swapped.ahead > kAhead && of_swapped.ahead > transposed.ahead) return columns + north;
+  const std::string other = angles ? "angles may be counted the other way"
+                            : source == RotationSource::kMatrices
+                                ? "matrices may be column by column"
+                                : "quaternions may be of the inverse rotations";
+  if (transposed.ahead > kAhead)
+    return std::string(1, static_cast<char>(std::toupper(other[0]))) + other.substr(1);
+  return columns + ", or " + other;
+}
+
 /// A mistake after whose repair the motion would keep to one direction of the model.
 std::optional<Message> other_rotation(std::span<const Pose> poses, double length,
-                                      const std::string& name) {
+                                      RotationSource source, const std::string& name) {
   const auto chords = pieces_of(poses, length);
   const Alignment given = alignment(poses, chords, rotation_of);
   const std::string begin = name + ": the model moves in changing directions of its own frame; ";
@@ -153,10 +180,8 @@ std::optional<Message> other_rotation(std::span<const Pose> poses, double length
       poses, chords, [](const Pose& pose) -> Matrix { return rotation_of(pose).transpose(); });
   if (given.repaired_by(transposed)) {
     return warning("turns-against-path",
-                   begin +
-                       "it turns left where the path turns right. The columns x and y may be "
-                       "swapped, angles may be counted the other way, or matrices may be "
-                       "column by column",
+                   begin + "it turns left where the path turns right. " +
+                       cause_of_turns(poses, length, transposed, source),
                    numbers(transposed));
   }
   return std::nullopt;
@@ -196,15 +221,28 @@ std::optional<Message> quaternion_order(std::span<const Pose> poses, const std::
   return std::nullopt;
 }
 
-std::optional<Message> upside_down(const TrajectorySummary& summary, const std::string& name) {
+/// What usually turns a model over, by where its rotations come from.
+const char* cause_of_upside_down(RotationSource source) {
+  switch (source) {
+    case RotationSource::kQuaternions:
+      return "the order of quaternions, or the frame of the model, may be another";
+    case RotationSource::kAngles:
+      return "angles may be of a frame whose z axis points down, or roll may be off by 180 degrees";
+    case RotationSource::kMatrices:
+      break;
+  }
+  return "matrices may be of a frame whose z axis points down, or the frame of the model may be "
+         "another";
+}
+
+std::optional<Message> upside_down(const TrajectorySummary& summary, RotationSource source,
+                                   const std::string& name) {
   constexpr double kDown = 0.9;
   if (summary.up.axis != 2 || !summary.up.negative || summary.up.cosine < kDown) {
     return std::nullopt;
   }
   return warning("upside-down",
-                 name +
-                     ": the model's z axis points down; the order of quaternions, or the frame "
-                     "of the model, may be another",
+                 name + ": the model's z axis points down; " + cause_of_upside_down(source),
                  {{"cosine", -summary.up.cosine}});
 }
 
@@ -219,13 +257,13 @@ std::vector<Message> doubts_about(std::span<const Pose> poses, RotationSource so
   const TrajectorySummary summary = summarize_trajectory(poses);
   if (poses.empty() || !std::isfinite(summary.length)) return doubts;
   if (source == RotationSource::kQuaternions) add(quaternion_order(poses, name));
-  if (doubts.empty()) add(upside_down(summary, name));
+  if (doubts.empty()) add(upside_down(summary, source, name));
   if (summary.length == 0) return doubts;
   constexpr double kTurnThatTells = 20 * kDegree;
   const double path_turn = turn_of_path(poses, summary.length);
   if (doubts.empty()) add(missing_rotation(poses, path_turn, source, name));
   if (doubts.empty() && path_turn > kTurnThatTells) {
-    add(other_rotation(poses, summary.length, name));
+    add(other_rotation(poses, summary.length, source, name));
   }
   return doubts;
 }

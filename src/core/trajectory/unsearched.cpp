@@ -65,6 +65,18 @@ std::vector<UnsearchedStretch> unsearched_stretches(std::span<const Pose> path,
   return stretches;
 }
 
+std::vector<std::array<std::uint32_t, 2>> poses_without_bodies(std::size_t path_poses,
+                                                               std::span<const Body> bodies) {
+  std::vector<std::array<std::uint32_t, 2>> runs;
+  const std::vector<BodySet> missing = missing_at(path_poses, bodies);
+  for (std::uint32_t i = 0; i < missing.size(); ++i) {
+    if (missing[i].count() < bodies.size()) continue;
+    if (runs.empty() || runs.back()[1] + 1 < i) runs.push_back({i, i});
+    runs.back()[1] = i;
+  }
+  return runs;
+}
+
 SearchedLength searched_length(std::span<const Pose> path, std::span<const Body> bodies) {
   const std::vector<double> chainage = chainage_of(path);
   SearchedLength length;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "clearway/conflicts.hpp"
 #include "clearway/pose.hpp"
 #include "io/formats/wkt.hpp"
@@ -17,6 +18,7 @@ struct ConflictFile {
   const Conflicts& conflicts;
   const ConflictOptions& options;  ///< that they were found with
   const ResultHeader& header;      ///< of the result
+  const Answer& answer;            ///< of the result; its counts are enough
   const std::vector<Pose>& poses;
   std::vector<Message> warnings;
   /// Of files that must have one: an ISO 8601 time in UTC.

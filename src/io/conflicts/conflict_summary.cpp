@@ -77,8 +77,12 @@ std::string summary_json(const ConflictFile& file) {
   out.add_length("radius", header.radius);
   out.add_length("clearance", header.clearance);
   out.add("between_poses", header.between_poses ? "true" : "false");
+  out.add("verdict", json_string(name_of(file.answer.verdict())));
+  out.add("doubts", names_json(file.answer.doubts));
   if (header.ignores_points()) {
     out.add_count("ignored_points", header.ignored.points);
+    const auto& colliding = file.answer.ignored_colliding;
+    out.add("ignored_colliding", colliding ? std::to_string(*colliding) : "null");
     out.add("ignored", json_string(ignored_text(header)));
   }
   out.add_length("gap", file.options.gap);

@@ -1,8 +1,8 @@
 #include "io/conflicts/conflict_fields.hpp"
 #include "io/conflicts/conflict_summary.hpp"
 #include "io/conflicts/json_text.hpp"
-#include "io/conflicts/scan_crs.hpp"
 #include "io/conflicts/text_conflicts.hpp"
+#include "io/formats/scan_crs.hpp"
 #include "io/formats/text/text_writer.hpp"
 
 namespace clearway {

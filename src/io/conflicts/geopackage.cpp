@@ -7,8 +7,8 @@
 #include "core/geometry/point_box.hpp"
 #include "io/conflicts/conflict_fields.hpp"
 #include "io/conflicts/geopackage_geometry.hpp"
-#include "io/conflicts/scan_crs.hpp"
 #include "io/conflicts/sqlite.hpp"
+#include "io/formats/scan_crs.hpp"
 
 namespace clearway {
 namespace {

@@ -22,11 +22,13 @@ class ProfileTable {
       : out_(file),
         position_(result.header().quantisation),
         labels_(labels),
-        chainage_start_(chainage_start) {
+        chainage_start_(chainage_start),
+        has_bodies_(!result.header().bodies.empty()),
+        unsearched_(result.findings().without_bodies) {
     out_ << "pose";
     if (!labels.time.empty()) out_ << ",time";
     if (!labels.name.empty()) out_ << ",name";
-    out_ << ",chainage,distance,source,x,y,z\n";
+    out_ << ",chainage,distance,source,x,y,z" << (has_bodies_ ? ",searched\n" : "\n");
   }
 
   void write(const ProfileRows& rows) {
@@ -36,21 +38,31 @@ class ProfileTable {
       if (!labels_.name.empty()) out_ << "," << csv_cell(labels_.name[pose_]);
       out_ << "," << chainage_start_ + rows.chainage[i] << ",";
       if (rows.source[i] == Profile::kNoPoint) {
-        out_ << ",,,,\n";
+        out_ << ",,,,";
+        end_row();
         continue;
       }
       out_ << rows.distance[i] << "," << rows.source[i] << ",";
       position_.write(out_, rows.xyz[i], ",");
-      out_ << "\n";
+      end_row();
     }
   }
   void finish() { out_.flush(); }
 
  private:
+  void end_row() {
+    while (next_ < unsearched_.size() && unsearched_[next_][1] < pose_) ++next_;
+    const bool searched = next_ == unsearched_.size() || pose_ < unsearched_[next_][0];
+    out_ << (!has_bodies_ ? "\n" : searched ? ",1\n" : ",0\n");
+  }
+
   TextWriter out_;
   PositionText position_;
   const PoseLabels& labels_;
   double chainage_start_;
+  bool has_bodies_;
+  const std::vector<std::array<std::uint32_t, 2>>& unsearched_;
+  std::size_t next_ = 0;  ///< of unsearched_: the first that does not end before the pose
   std::uint64_t pose_ = 0;
 };
 

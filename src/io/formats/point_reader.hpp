@@ -26,6 +26,7 @@ struct CloudInfo {
   /// never trusted.
   std::optional<Box> declared_box;
   std::string crs_wkt;                     ///< as found; empty where there is none
+  std::uint16_t crs_epsg = 0;              ///< of files that name it by a code alone; 0: none
   LengthUnit unit = LengthUnit::kUnknown;  ///< of the horizontal coordinates
   bool any_foot = false;         ///< the unit is a "ft", which does not say which foot it is
   std::string unit_trouble;      ///< why they cannot be taken as they are; empty where they can

@@ -119,7 +119,10 @@ PartSet::PartSet(const std::vector<std::filesystem::path>& files) {
   const auto twice = std::ranges::adjacent_find(
       parts_, {}, [](const ResultReader& part) { return shard_of(part).number; });
   if (twice != parts_.end()) {
-    refuse((twice + 1)->name(), "is " + part_text(*twice) + ", as " + twice->name() + " is");
+    const std::string& name = (twice + 1)->name();
+    const std::string once = "; give each part once";
+    if (name == twice->name()) refuse(name, "is given twice" + once);
+    refuse(name, "is " + part_text(*twice) + ", and so is " + twice->name() + once);
   }
   refuse_missing(parts_);
   header_ = parts_.front().header();
@@ -170,6 +173,10 @@ ResultFindings PartSet::findings() const {
     warnings.insert(warnings.end(), told.begin(), told.end());
   }
   ResultFindings out{.doubts = doubts_among(warnings)};
+  for (const ResultReader& part : parts_) {
+    if (!out.searched) out.searched = part.findings().searched;
+    if (out.without_bodies.empty()) out.without_bodies = part.findings().without_bodies;
+  }
   if (!header_.ignores_points()) return out;
   const auto sum_of = [&](auto member) {
     std::optional<std::uint64_t> sum = 0;

@@ -97,6 +97,7 @@ void add_doubts(const std::vector<Message>& warnings, Answer& answer) {
 
 void add_findings(const ResultFindings& findings, Answer& answer) {
   answer.doubts = findings.doubts;
+  answer.searched = findings.searched;
   if (!answer.parameters.ignores_points()) return;
   answer.ignored_colliding = findings.ignored_colliding;
   answer.ignored_colliding_high = findings.ignored_colliding_high;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "clearway/progress.hpp"
 #include "clearway/query.hpp"
 #include "clearway/shard.hpp"
+#include "clearway/unsearched.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/result/encoded_rows.hpp"
@@ -101,6 +103,12 @@ struct ResultFindings {
   /// As Answer has them. A file has both where points are ignored, unless an earlier release wrote
   /// it.
   std::optional<std::uint64_t> ignored_colliding = {}, ignored_colliding_high = {};
+  /// As Answer has it. A file has it where there are several bodies, unless an earlier release
+  /// wrote it.
+  std::optional<SearchedLength> searched = {};
+  /// As poses_without_bodies() has them, where there is a profile of several bodies: there it is
+  /// not known what is near.
+  std::vector<std::array<std::uint32_t, 2>> without_bodies = {};
 };
 
 /// Writes the datasets that docs/design/result-format.md lists and the header asks for, to a file

@@ -160,6 +160,43 @@ ResultPart read_part(const hdf5::Id& file, const std::string& name, const Result
   return part;
 }
 
+constexpr std::size_t kMostRuns = 4000;  // HDF5 keeps attributes of up to 64 KiB
+
+std::vector<std::array<std::uint32_t, 2>> read_runs(const hdf5::Id& file, const std::string& name,
+                                                    const ResultHeader& header) {
+  std::vector<std::array<std::uint32_t, 2>> runs;
+  if (!hdf5::has_attribute(file, names::kRunsWithoutBodies, name)) return runs;
+  const auto count = hdf5::read_number<std::uint64_t>(file, names::kRunsWithoutBodies, name);
+  if (count > kMostRuns) {
+    refuse(name, "attribute 'runs_without_bodies' is " + std::to_string(count) +
+                     ", expected at most " + std::to_string(kMostRuns));
+  }
+  const auto ends =
+      hdf5::read_attribute<std::uint32_t>(file, names::kPosesWithoutBodies, 2 * count, name);
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    const bool ascends = ends[i] <= ends[i + 1] && (i == 0 || ends[i - 1] < ends[i]);
+    if (!ascends || ends[i + 1] >= header.poses) {
+      refuse(name, "attribute 'poses_without_bodies': expected runs of poses that ascend");
+    }
+    runs.push_back({ends[i], ends[i + 1]});
+  }
+  return runs;
+}
+
+/// Three attributes that a file has all of, or none.
+std::optional<SearchedLength> read_searched(const hdf5::Id& file, const std::string& name) {
+  if (!hdf5::has_attribute(file, names::kSearchedLength, name)) return {};
+  const SearchedLength read{hdf5::read_number<double>(file, names::kPathLength, name),
+                            hdf5::read_number<double>(file, names::kSearchedLength, name),
+                            hdf5::read_number<double>(file, names::kPartlySearchedLength, name)};
+  const bool sound = std::isfinite(read.path) && read.whole >= 0 && read.whole <= read.path &&
+                     read.part >= 0 && read.part <= read.path;
+  if (sound) return read;
+  refuse(name, "attributes 'searched_length' and 'partly_searched_length' are " +
+                   shown(read.whole) + " and " + shown(read.part) +
+                   ", expected lengths up to that of the path, which is " + shown(read.path));
+}
+
 void write_part(const hdf5::Id& file, const ResultHeader& header) {
   const ResultPart& part = *header.part;
   const std::uint32_t shard[]{part.shard.number, part.shard.count};
@@ -292,6 +329,18 @@ void write_result_findings(const hdf5::Id& file, const ResultFindings& findings)
   if (findings.ignored_colliding_high) {
     hdf5::write_number(file, names::kIgnoredHigh, *findings.ignored_colliding_high);
   }
+  if (findings.searched) {
+    hdf5::write_number(file, names::kPathLength, findings.searched->path);
+    hdf5::write_number(file, names::kSearchedLength, findings.searched->whole);
+    hdf5::write_number(file, names::kPartlySearchedLength, findings.searched->part);
+  }
+  if (!findings.without_bodies.empty() && findings.without_bodies.size() <= kMostRuns) {
+    std::vector<std::uint32_t> ends;
+    for (const auto& run : findings.without_bodies) ends.insert(ends.end(), run.begin(), run.end());
+    hdf5::write_number(file, names::kRunsWithoutBodies, std::uint64_t{ends.size() / 2});
+    hdf5::write_attribute(file, names::kPosesWithoutBodies, std::span<const std::uint32_t>(ends),
+                          2);
+  }
 }
 
 ResultFindings read_result_findings(const hdf5::Id& file, const std::string& name,
@@ -314,6 +363,8 @@ ResultFindings read_result_findings(const hdf5::Id& file, const std::string& nam
   findings.ignored_colliding = read_count(names::kIgnoredColliding, header.ignored.points);
   findings.ignored_colliding_high =
       read_count(names::kIgnoredHigh, findings.ignored_colliding.value_or(0));
+  findings.searched = read_searched(file, name);
+  findings.without_bodies = read_runs(file, name, header);
   return findings;
 }
 

@@ -61,7 +61,12 @@ inline constexpr const char* kBoxPoints = "box_points";
 inline constexpr const char* kDoubts = "doubts";  // codes, a line each; only where nothing collides
 inline constexpr const char* kIgnoredColliding = "ignored_colliding";  // where points are ignored
 inline constexpr const char* kIgnoredHigh = "ignored_colliding_high";  // likewise
-inline constexpr const char* kModelIsCut = "model_is_cut";             // of parts, only where it is
+inline constexpr const char* kPathLength = "path_length";  // with the next two, where bodies are
+inline constexpr const char* kSearchedLength = "searched_length";
+inline constexpr const char* kPartlySearchedLength = "partly_searched_length";
+inline constexpr const char* kRunsWithoutBodies = "runs_without_bodies";  // with the next one
+inline constexpr const char* kPosesWithoutBodies = "poses_without_bodies";
+inline constexpr const char* kModelIsCut = "model_is_cut";  // of parts, only where it is
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
 inline constexpr const char* kLastPoseHash = "last_pose_hash";  // so that older readers go on

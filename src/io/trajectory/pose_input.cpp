@@ -26,6 +26,21 @@ Objection objection_to(const Stretch& stretch, bool allow_non_rigid) {
           Remedy::kAllowNonRigid};
 }
 
+constexpr const char* kRowByRow =
+    "expected it row by row: r11 r12 r13 x r21 r22 r23 y r31 r32 r33 z";
+
+/// Whether 16 numbers are a 4x4 matrix column by column: its last row is 0 0 0 1 then.
+bool is_by_column(std::span<const double> numbers) {
+  return numbers[3] == 0 && numbers[7] == 0 && numbers[11] == 0 && numbers[15] == 1;
+}
+
+/// Whether 12 numbers are nine of a rotation and three of a position.
+bool is_rotation_first(std::span<const double> numbers) {
+  Pose pose{};
+  std::copy_n(numbers.data(), 9, pose.rotation);
+  return is_rigid(stretch_of(pose));
+}
+
 }  // namespace
 
 Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, Pose& pose) {
@@ -38,12 +53,24 @@ Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, 
     constexpr double kNoise = 1e-9;
     for (std::size_t column = 0; column < 4; ++column) {
       if (std::abs(numbers[12 + column] - (column == 3 ? 1 : 0)) > kNoise) {
-        return {"the last row of the 4x4 matrix is not 0 0 0 1; expected row-major order"};
+        if (is_by_column(numbers)) {
+          return {std::string("the 4x4 matrix stands column by column, as its numbers 13 to 15 are "
+                              "the position; ") +
+                  kRowByRow + " 0 0 0 1"};
+        }
+        return {"the last row of the 4x4 matrix is not 0 0 0 1, but its numbers 13 to 16 are " +
+                shown(numbers[12]) + " " + shown(numbers[13]) + " " + shown(numbers[14]) + " " +
+                shown(numbers[15])};
       }
     }
   }
   const Stretch stretch = stretch_of(pose);
-  return is_rigid(stretch) ? Objection() : objection_to(stretch, allow_non_rigid);
+  if (is_rigid(stretch)) return {};
+  if (!allow_non_rigid && numbers.size() == 12 && is_rotation_first(numbers)) {
+    return {std::string("the first nine numbers are a rotation, and the last three a position; ") +
+            kRowByRow};
+  }
+  return objection_to(stretch, allow_non_rigid);
 }
 
 Objection pose_of_quaternion(std::span<const double, 3> position,

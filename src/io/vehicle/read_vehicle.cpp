@@ -1,11 +1,13 @@
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <numeric>
 #include <optional>
 #include <variant>
 
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
+#include "core/geometry/point_box.hpp"
 #include "core/util/format.hpp"
 #include "io/vehicle/vehicle_file.hpp"
 
@@ -108,15 +110,98 @@ class VehicleReader {
   std::optional<PathStations> stations_;
 };
 
+/// Metres ahead of the path's pose: where a body begins and ends.
+struct Stretch {
+  double from, to;
+
+  double gap_to(const Stretch& other) const {
+    return std::max({from - other.to, other.from - to, 0.0});
+  }
+  void add(const Stretch& other) {
+    from = std::min(from, other.from);
+    to = std::max(to, other.to);
+  }
+};
+
+/// A body that follows the path, as it stands on a straight one.
+struct MountedBody {
+  const BodyEntry& entry;
+  Stretch body, pivots;
+};
+
+double horizontal_length(const Box& box) {
+  return std::max(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
+}
+
+/// A body is far away from the vehicle where this many times the longest body fits between.
+constexpr double kFarLengths = 3;
+
+void warn_far(const std::filesystem::path& file, const MountedBody& one, const std::string& what,
+              double gap, double longest, std::vector<Message>& warnings) {
+  warnings.push_back(
+      {Message::Severity::kWarning,
+       "body-far",
+       file.string() + ": " + one.entry.at.key() + " (" + one.entry.name + "): " + what + " " +
+           format_brief(gap) + " m away, and the longest body of the vehicle has " +
+           format_brief(longest) +
+           " m. Stations and pivots are metres ahead of the path's pose, negative ones behind: "
+           "check their sign and their unit",
+       {{"gap", gap}, {"length", longest}}});
+}
+
+/// Of stations and pivots that were mistyped: the body is moved along another way than it drives,
+/// and hardly anything near its path is searched.
+void warn_of_far_bodies(const std::filesystem::path& file, const std::vector<BodyEntry>& entries,
+                        const std::vector<Body>& bodies, std::vector<Message>& warnings) {
+  std::vector<MountedBody> apart;
+  double longest = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].model.empty() || !entries[i].trajectory.empty()) continue;
+    const Box box = box_of(bodies[i].model);
+    longest = std::max(longest, horizontal_length(box));
+    const auto* station = std::get_if<BodyStation>(&entries[i].mount);
+    const double at = station != nullptr ? station->at : 0;
+    MountedBody one{entries[i], {at + box.lo.x, at + box.hi.x}, {at, at}};
+    if (const auto* pivots = std::get_if<BodyPivots>(&entries[i].mount)) {
+      one.pivots = {std::min(pivots->front, pivots->rear), std::max(pivots->front, pivots->rear)};
+    }
+    apart.push_back(one);
+  }
+  const double far = kFarLengths * longest;
+  if (!(far > 0)) return;
+  for (const MountedBody& one : apart) {
+    if (std::holds_alternative<BodyPivots>(one.entry.mount) && one.body.gap_to(one.pivots) > far) {
+      warn_far(file, one, "the pivots and the model are", one.body.gap_to(one.pivots), longest,
+               warnings);
+    }
+  }
+  // The vehicle grows from the path's pose, as a train does from wagon to wagon.
+  Stretch vehicle{0, 0};
+  const auto near = [&](const MountedBody& one) { return vehicle.gap_to(one.body) <= far; };
+  for (auto next = std::ranges::find_if(apart, near); next != apart.end();
+       next = std::ranges::find_if(apart, near)) {
+    vehicle.add(next->body);
+    std::vector<MountedBody> rest;
+    for (auto one = apart.begin(); one != apart.end(); ++one) {
+      if (one != next) rest.push_back(*one);
+    }
+    apart.swap(rest);
+  }
+  for (const MountedBody& one : apart) {
+    warn_far(file, one, "the path's pose and the nearest other body are", vehicle.gap_to(one.body),
+             longest, warnings);
+  }
+}
+
 }  // namespace
 
 std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vector<Pose>& path,
                                const VehicleOptions& options, std::vector<Message>* warnings) {
   VehicleReader reader(file, path, options, warnings);
   std::vector<Body> bodies;
-  for (const BodyEntry& entry : read_vehicle_file(file, options.model.environment_unit)) {
-    bodies.push_back(reader.read(entry));
-  }
+  const std::vector<BodyEntry> entries = read_vehicle_file(file, options.model.environment_unit);
+  for (const BodyEntry& entry : entries) bodies.push_back(reader.read(entry));
+  if (warnings != nullptr) warn_of_far_bodies(file, entries, bodies, *warnings);
   return bodies;
 }
 

@@ -49,6 +49,7 @@ from ._clearway import (
     ResourceError,
     Result,
     SearchReport,
+    SearchedLength,
     SearchSeconds,
     SmallGroup,
     Store,

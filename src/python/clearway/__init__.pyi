@@ -177,6 +177,10 @@ class EngineEstimate:
 class DeviceEstimate:
     cpu: Final[float]
     cuda: Final[float]
+class SearchedLength:
+    path: Final[float]
+    whole: Final[float]
+    part: Final[float]
 
 class Answer:
     verdict: Final[Literal["clear", "conflict", "undecided", "unknown"]]
@@ -198,6 +202,7 @@ class Answer:
     first_place: Final[FoundPlace | None]
     least_clearance: Final[FoundPlace | None]
     least_profile: Final[FoundPlace | None]
+    searched: Final[SearchedLength | None]
     shard: Final[tuple[int, int] | None]
 class SearchReport(Answer):
     was_finished: Final[bool]

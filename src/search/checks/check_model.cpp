@@ -28,20 +28,25 @@ constexpr ModelUnit kUnits[] = {{kMetresPerMillimetre, "millimetres"},
                                 {kMetresPerInch, "inches"},
                                 {kMetresPerFoot, "feet"}};
 
-/// The model as large as a vehicle is, in the first unit in which it is one.
+/// The model in each unit in which it is as large as a vehicle, because several may be meant; none
+/// where it would be as thin as a sheet, as a train would be in centimetres.
 std::string unit_guess(const Question& question) {
-  const double longest = Sides(question.model).longest;
+  constexpr double kShortVehicle = 0.3, kLongVehicle = 60, kThinnest = 0.1;
+  const Sides sides(question.model);
+  std::string text;
   for (const ModelUnit& unit : kUnits) {
-    const double metres = longest * unit.metres;
-    if (metres < 0.3 || metres > 60) continue;
+    const double metres = sides.longest * unit.metres;
+    if (metres < kShortVehicle || metres > kLongVehicle) continue;
+    if (sides.shortest > 0 && sides.shortest * unit.metres < kThinnest) continue;
     Box box = question.model;
     for (int k = 0; k < 3; ++k) {
       box.lo[k] *= unit.metres;
       box.hi[k] *= unit.metres;
     }
-    return std::string("In ") + unit.name + " it would be " + size_text(box, LengthUnit::kMetre);
+    text += std::string(text.empty() ? "In " : ", in ") + unit.name +
+            (text.empty() ? " it would be " : " ") + size_text(box, LengthUnit::kMetre);
   }
-  return "Check its unit";
+  return text.empty() ? "Check its unit" : text;
 }
 
 void warn_of_size(const Question& question, MessageLog& log) {

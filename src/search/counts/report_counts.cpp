@@ -19,15 +19,19 @@ void report_sizes(const StoreReader& store, const Query& query, SearchReport& re
     report.model_triangles += body.model.triangles.size();
     report.searches += body.poses.size() * body.model.element_count();
   }
+  report.searched = searched_length(query.poses, query.bodies);
   report.cells_total = store.cells().size();
 }
 
 void report_finished(const ResultReader& result, SearchReport& report) {
   report.was_finished = true;
   const std::uint64_t environment_points = report.environment_points;  // a header counts NaN too
-  const double spacing = report.model_spacing;  // files of earlier releases do not have it
+  // What files do not always have.
+  const double spacing = report.model_spacing;
+  const std::optional<SearchedLength> searched = report.searched;
   static_cast<Answer&>(report) = answer_of(result);
   report.environment_points = environment_points;
+  report.searched = searched;
   report.model_spacing = std::max(report.model_spacing, spacing);
   add_doubts(report.warnings, report);
 }

@@ -101,6 +101,20 @@ TEST_CASE("the warning of jumps names the longest, and where the others are") {
   CHECK(many.numbers.at(0) == std::pair<std::string, double>{"jumps", 4});
 }
 
+TEST_CASE("equal jumps after equal numbers of poses are the rows of a grid") {
+  std::vector<double> steps;
+  for (int i = 1; i < 40; ++i) steps.push_back(i % 10 == 0 ? 9 : 1);
+  const Message grid = jump_warning(jumps_of(steps, 0.1), "", "m", "");
+  CHECK(grid.severity == Message::Severity::kNote);
+  CHECK_THAT(grid.text, Contains("after every 10 poses") && Contains("rows of a grid") &&
+                            !Contains("missing"));
+  steps[29] = 8;
+  CHECK(jump_warning(jumps_of(steps, 0.1), "", "m", "").severity == Message::Severity::kWarning);
+  steps[29] = 1;
+  steps[30] = 9;
+  CHECK(jump_warning(jumps_of(steps, 0.1), "", "m", "").severity == Message::Severity::kWarning);
+}
+
 TEST_CASE("the chord of an even curve leaves it by its sagitta, and that of the model's turn") {
   constexpr double kRadius = 20, kStep = 0.5, kReach = 3;
   const double turn = kStep / kRadius;

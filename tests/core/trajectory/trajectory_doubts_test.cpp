@@ -9,6 +9,8 @@
 
 using namespace clearway;
 using namespace clearway::test;
+using Catch::Contains;
+using Catch::EndsWith;
 
 namespace {
 
@@ -121,6 +123,31 @@ TEST_CASE("inverse poses, and rotations that turn the other way, are doubted") {
   const auto swapped = changed(
       winding_road(), [](Pose& pose) { std::swap(pose.translation[0], pose.translation[1]); });
   CHECK(doubts(swapped) == "turns-against-path");
+}
+
+TEST_CASE("the hint names what the file has: columns, headings, matrices or quaternions") {
+  const auto text = [](const std::vector<Pose>& poses, RotationSource source) {
+    const auto found = doubts_about(poses, source, "path.txt");
+    return found.size() == 1 ? found[0].text : "not one doubt";
+  };
+  const auto swapped = changed(
+      winding_road(), [](Pose& pose) { std::swap(pose.translation[0], pose.translation[1]); });
+  CHECK_THAT(text(swapped, RotationSource::kMatrices),
+             EndsWith("The columns x and y may be swapped, as northing before easting"));
+  CHECK_THAT(text(swapped, RotationSource::kAngles),
+             EndsWith("swapped, or headings may be counted clockwise from north"));
+  const auto transposed = changed(winding_road(), transpose);
+  CHECK_THAT(text(transposed, RotationSource::kMatrices),
+             EndsWith("right. Matrices may be column by column"));
+  CHECK_THAT(text(transposed, RotationSource::kAngles),
+             EndsWith("right. Angles may be counted the other way"));
+  CHECK_THAT(text(transposed, RotationSource::kQuaternions),
+             EndsWith("right. Quaternions may be of the inverse rotations"));
+  const auto turned = changed(winding_road(), [](Pose& pose) {
+    for (const int k : {1, 2, 4, 5, 7, 8}) pose.rotation[k] *= -1;
+  });
+  CHECK_THAT(text(turned, RotationSource::kMatrices), !Contains("quaternion"));
+  CHECK_THAT(text(turned, RotationSource::kQuaternions), Contains("order of quaternions"));
 }
 
 TEST_CASE("quaternions in another order are doubted") {

@@ -135,6 +135,17 @@ TEST_CASE("rotations printed with six digits are rigid") {
   }
 }
 
+TEST_CASE("decimal commas and matrices column by column are named, with what to write instead") {
+  CHECK_THAT(refusal_of_text("1,5 0,0 0,0 2,5 0,0 1,0 0,0 3,5 0,0 0,0 1,0 4,5\n"),
+             Contains("line 1") && Contains("decimal commas") && Contains("as in 0.25"));
+  CHECK_THAT(refusal_of_text("x;y;z;qx;qy;qz;qw\n1,5;2;3;0;0;0;1\n"),
+             Contains("line 2") && Contains("column 1 has a decimal comma"));
+  CHECK_THAT(refusal_of_text("1 0 0 0 0 1 0 0 0 0 1 0 5 6 7 1\n"),
+             Contains("stands column by column") && Contains("r31 r32 r33 z 0 0 0 1"));
+  CHECK_THAT(refusal_of_text("0 1 0 -1 0 0 0 0 1 5 6 7\n"),
+             Contains("first nine numbers are a rotation, and the last three a position"));
+}
+
 TEST_CASE("malformed trajectories are refused with their line") {
   CHECK_THAT(refusal_of_text(kIdentity + "\n" + kIdentity + " 0 0 0 1\n"),
              Contains("line 2") && Contains("16 numbers; expected 12"));

@@ -55,6 +55,21 @@ const std::string kPlantBox = "--ignore-box 6.9,0,-1,7.1,0.5,1 ";
 
 }  // namespace
 
+TEST_CASE("conflicts and export of a result repeat how many ignored points would collide") {
+  const Garden garden;
+  REQUIRE(garden.run(kPlant + "--first-pose -o b.h5").exit_code == 0);
+  const std::string verdict =
+      "the verdict of this result is clear, with 40 points ignored (class 3), 40 of which would "
+      "collide: no other point is closer";
+  CHECK_THAT(garden.program("conflicts b.h5 --trajectory path.txt").out, Contains(verdict));
+  const Outcome listed = garden.program("conflicts b.h5 --trajectory path.txt --json");
+  CHECK(json::parse(listed.out)["ignored_colliding"] == 40);
+  CHECK_THAT(listed.err, Contains(verdict));
+  const Outcome exported = garden.program("export b.h5 -o b.csv --json");
+  CHECK_THAT(exported.err, Contains(verdict));
+  CHECK(json::parse(exported.out)["ignored"]["colliding"] == 40);
+}
+
 TEST_CASE("a verdict says what was ignored") {
   const Garden garden;
   CHECK_THAT(garden.run("-o a.h5").out, Contains("conflict: 40 points are closer"));

@@ -199,8 +199,8 @@ TEST_CASE("a model in another unit or frame is warned of") {
   };
   const std::vector<Mistake> mistakes{
       {[](const Vec3& p) { return scaled(p, 1000); }, "model-size", "In millimetres it would be"},
-      {[](const Vec3& p) { return scaled(p, 100); }, "model-size", "it would be"},
-      {[](const Vec3& p) { return scaled(p, 1 / 0.0254); }, "model-size", "it would be"},
+      {[](const Vec3& p) { return scaled(p, 100); }, "model-size", ", in centimetres "},
+      {[](const Vec3& p) { return scaled(p, 1 / 0.0254); }, "model-size", ", in inches "},
       {[](const Vec3& p) { return scaled(p, 0.001); }, "model-size", "check its unit"},
       {[](const Vec3& p) {
          return Vec3{p.x + 691'000, p.y + 5'336'000, p.z};

@@ -192,3 +192,19 @@ TEST_CASE("an empty trajectory stays one, with a warning") {
   CHECK(bytes_of(files.folder / "out.txt").empty());
   CHECK(nlohmann::json::parse(outcome.out)["poses_out"] == 0);
 }
+
+TEST_CASE("resample takes the meaning of ft from the store") {
+  const Files files;
+  put_bytes(files.folder / "scan.xyz", "0 0 0\n100 100 0\n");
+  const auto at = [&](const char* name) { return quoted(files.folder / name); };
+  REQUIRE(run_program(files.folder, "convert --unit us-ft " + at("scan.xyz") + " -o " + at("s.h5"))
+              .exit_code == 0);
+  const std::string feet = "--trajectory-unit ft --max-motion 0.5";
+  REQUIRE(files.run("resample", "path.txt", "feet.txt", feet + " --env " + at("s.h5")).exit_code ==
+          0);
+  // The file counts in the store's own foot, so its positions stay as they are.
+  CHECK(has_in_order(files.read("feet.txt"), files.poses));
+  const Outcome told =
+      run_program(files.folder, "convert --resume " + at("scan.xyz") + " -o " + at("s.h5"));
+  CHECK_THAT(told.err, Contains("is the store of these inputs already, with coordinates in "));
+}

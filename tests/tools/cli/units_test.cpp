@@ -220,3 +220,50 @@ TEST_CASE("keys and texts that name two units are warned of") {
   CHECK(has(codes({keys({{1024, 1}, {3076, 9003}}), {"LASF_Projection", 2112, metre}}),
             "units-contradict"));
 }
+
+TEST_CASE("scans whose GeoTIFF keys or texts name different systems are warned of by both names") {
+  ScratchFolder folder;
+  const auto keys = [](std::uint16_t code) {
+    return LasBytes::Record{"LASF_Projection", 34735, geo_keys({{1024, 1}, {3072, code}})};
+  };
+  const auto text = [](const std::string& name, const std::string& code) {
+    const std::string authority = code.empty() ? "" : ",AUTHORITY[\"EPSG\",\"" + code + "\"]";
+    return LasBytes::Record{
+        "LASF_Projection", 2112,
+        "PROJCS[\"" + name +
+            "\",GEOGCS[\"ETRS89\",DATUM[\"European_Terrestrial_Reference_System_1989\",SPHEROID["
+            "\"GRS 1980\",6378137,298.257222101]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0."
+            "0174532925199433]],PROJECTION[\"Transverse_Mercator\"],UNIT[\"metre\",1]" +
+            authority + "]"};
+  };
+  const auto warning = [&](const LasBytes::Record& a, const LasBytes::Record& b) {
+    LasBytes las;
+    las.vlrs = {a};
+    put_bytes(folder / "a.las", las.build());
+    las.vlrs = {b};
+    put_bytes(folder / "b.las", las.build());
+    const Outcome outcome =
+        run_program(folder, "convert --json --force " + quoted(folder / "a.las") + " " +
+                                quoted(folder / "b.las") + " -o " + quoted(folder / "ab.h5"));
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    std::string found;
+    const json report = json::parse(outcome.out);
+    for (const auto& one : report["warnings"]) {
+      if (one["code"] == "other-crs") found += one["message"].get<std::string>();
+    }
+    return found;
+  };
+  CHECK(warning(keys(25832), keys(25832)).empty());
+  CHECK_THAT(warning(keys(25832), keys(25833)),
+             Contains("b.las: another coordinate reference system (") && Contains("EPSG:25833") &&
+                 Contains("a.las (") && Contains("EPSG:25832") && Contains("may not fit together"));
+  CHECK(warning(text("ETRS89 / UTM zone 32N", "25832"), keys(25832)).empty());
+  CHECK(warning(keys(25832), text("ETRS89 / UTM zone 32N", "25832")).empty());
+  CHECK_THAT(warning(text("ETRS89 / UTM zone 32N", "25832"), keys(25833)),
+             Contains("EPSG:25833") && Contains("ETRS89 / UTM zone 32N, EPSG:25832"));
+  CHECK(warning(text("one", "25832"), text("the same", "25832")).empty());
+  CHECK_THAT(warning(text("site grid", ""), keys(25833)),
+             Contains("site grid, without an EPSG code") && Contains("EPSG:25833"));
+  CHECK_THAT(warning(text("one", ""), text("two", "")), Contains("(two,") && Contains("(one,"));
+}

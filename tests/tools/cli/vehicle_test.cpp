@@ -92,6 +92,11 @@ TEST_CASE("the middle of a wagon leaves the gauge where a rigid one does not") {
   CHECK(json["path_length"].get<double>() - json["searched_length"].get<double>() ==
         Approx(20).margin(1));
   CHECK(json["partly_searched_length"] == 0);
+  const auto kept = nlohmann::json::parse(
+      run_program(tunnel().folder, "info --json " + tunnel().name("out.h5")).out);
+  for (const char* key : {"path_length", "searched_length", "partly_searched_length"}) {
+    CHECK(kept[key] == json[key]);
+  }
   CHECK_THAT(wagon.err, Contains("; the vehicle was searched on ") && Contains(" of the path"));
   CHECK(alone["searched_length"] == alone["path_length"]);
   CHECK(rigid.err.find("was searched on") == std::string::npos);

@@ -240,8 +240,20 @@ TEST_CASE("a question in doubt is undecided, and stays so for whoever reads the 
 
   CHECK_THAT(run("compare " + at("far.h5") + " " + at("far.h5")).err,
              Contains("its verdict is undecided, because the run warned of out-of-reach"));
-  CHECK_THAT(run("conflicts " + at("far.h5") + " --trajectory " + at("far.txt")).err,
-             Contains("has no first poses") || Contains("its verdict is undecided"));
+  REQUIRE(run(run_text + "--first-pose --force -o " + at("first.h5")).exit_code == 0);
+  const Outcome listed = run("conflicts " + at("first.h5") + " --trajectory " + at("far.txt"));
+  INFO(listed.err);
+  const std::string undecided =
+      "the verdict of this result is undecided, because the question is in doubt (out-of-reach)";
+  CHECK_THAT(listed.out, Contains("no conflicts, because no point collides\n" + undecided));
+  CHECK_THAT(listed.err, Contains("its verdict is undecided"));
+  const json listing =
+      json::parse(run("conflicts --json " + at("first.h5") + " --trajectory " + at("far.txt")).out);
+  CHECK(listing["verdict"] == "undecided");
+  CHECK(listing["doubts"] == json{"out-of-reach"});
+  const Outcome exported = run("export --json " + at("far.h5") + " -o " + at("far.csv"));
+  CHECK_THAT(exported.err, Contains("warning: ") && Contains(undecided));
+  CHECK(json::parse(exported.out)["verdict"] == "undecided");
 
   for (const char* part : {"1", "2"}) {
     const Outcome outcome = run(run_text + "--shard " + part + "/2 --json -o " +

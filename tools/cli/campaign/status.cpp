@@ -63,6 +63,7 @@ nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector
                                {"name", plan.tasks[i].name()},
                                {"folder", plan.tasks[i].folder().string()},
                                {"status", campaign::name_of(looks[i].status)}};
+    if (!looks[i].changed.empty()) one["changed"] = looks[i].changed;
     if (const auto& state = looks[i].state) {
       one["exit_code"] = state->exit_code;
       one["message"] = state->message;
@@ -105,12 +106,16 @@ std::string status_text(const campaign::Plan& plan, const std::vector<TaskLook>&
                                  plan.tasks.size() == 1 ? "task" : "tasks");
   for (const TaskStatus status : campaign::kStatuses) {
     const std::size_t count = count_of(looks, status);
-    if (count == 0 && status == TaskStatus::kBegun) continue;
+    if (count == 0 && (status == TaskStatus::kBegun || status == TaskStatus::kOutdated)) continue;
     text += fmt::format("  {:<12}{:>7}\n", campaign::name_of(status), format_count(count));
   }
   text += campaign::OutcomeCounts(campaign::run_looks(plan, looks).looks).text() + "\n";
   text += caveats_text(plan, looks);
   for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (looks[i].status == TaskStatus::kOutdated) {
+      text += fmt::format("task {}, {}: {}, so its verdict is of an earlier file; run it again\n",
+                          i, plan.tasks[i].name(), looks[i].changed);
+    }
     if (looks[i].status != TaskStatus::kFailed) continue;
     text += fmt::format("task {}, {}: exit code {}: {}\n", i, plan.tasks[i].name(),
                         looks[i].state->exit_code, looks[i].state->message);
@@ -137,7 +142,8 @@ void add_campaign_status(CLI::App& campaign) {
   const auto options = std::make_shared<CampaignStatusOptions>();
   CLI::App* command = campaign.add_subcommand(
       "status",
-      "Say which tasks are done, running, interrupted, failed or missing, and what the runs found");
+      "Say which tasks are done, running, interrupted, outdated, failed or missing, and what the "
+      "runs found");
   command->add_option("DIR", options->folder, "Folder of the campaign")
       ->type_name("DIR")
       ->required();
@@ -154,7 +160,8 @@ void add_campaign_status(CLI::App& campaign) {
   command->footer(
       "A task is done when its result is complete, answers the planned question, and its outputs "
       "are\n"
-      "there. A running task counts as neither missing nor failed.\n"
+      "there. It is outdated where a file that it read has changed since; run does it again. A\n"
+      "running task counts as neither missing nor failed.\n"
       "Example: clearway campaign status spring --missing");
   command->callback([options] { run_status(*options); });
 }

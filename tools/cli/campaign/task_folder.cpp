@@ -81,6 +81,7 @@ TaskFolder::TaskFolder(const campaign::Task& task, const fs::path& campaign)
   }
   state_.question_id = task.question_id();
   state_.outputs_id = task.outputs_id;
+  state_.inputs = campaign::stamps_of(task);
   state_.host = host_name();
   state_.time = time_in_utc();
   remove_of_other_inputs(earlier);
@@ -138,6 +139,7 @@ const campaign::TaskState& TaskFolder::end(int code) {
   } else {
     state_.message =
         code > kSignalled ? "killed by signal " + std::to_string(code - kSignalled) : last_error();
+    judge_refusal(code);
     if (code == kSignalled + SIGKILL) {  // where memory ran out, the system does so
       state_.exit_code = kResource;
       state_.message += ", as where memory runs out";
@@ -154,11 +156,25 @@ void TaskFolder::judge_result() {
     return;
   }
   state_.ending = Ending::kFailed;
+  refuse_changed_inputs("");
+}
+
+/// A run that is done again refuses its own result where that answers the planned question, and the
+/// inputs of now ask another one.
+void TaskFolder::judge_refusal(int code) {
+  const bool runs = task_.commands[command_][0] == "run";
+  if (code != kWrongUsage || !runs) return;
+  if (!campaign::answers(path_ / task_.result(), task_.question)) return;
+  refuse_changed_inputs(" (" + state_.message + ")");
+}
+
+void TaskFolder::refuse_changed_inputs(const std::string& details) {
   state_.exit_code = kBadInput;
   state_.inputs_changed = true;
   state_.message =
       "an input has changed since it was planned: put it back and run the task again, or plan "
-      "again with --force";
+      "again with --force" +
+      details;
 }
 
 std::string TaskFolder::last_error() const {

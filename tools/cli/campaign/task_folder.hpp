@@ -47,6 +47,8 @@ class TaskFolder {
   void refuse_damaged_result();
   std::string last_error() const;
   void judge_result();
+  void judge_refusal(int code);
+  void refuse_changed_inputs(const std::string& details);
 
   const campaign::Task& task_;
   std::filesystem::path path_;

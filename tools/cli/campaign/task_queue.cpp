@@ -98,8 +98,12 @@ void TaskQueue::check_shards(const campaign::Task& task) const {
 
 void TaskQueue::begin(const campaign::Task& task) {
   try {
-    const auto folder = campaign_ / task.folder();
-    if (campaign::is_done(task, campaign_, campaign::read_state(folder))) return end(task);
+    const auto earlier = campaign::read_state(campaign_ / task.folder());
+    if (campaign::is_done(task, campaign_, earlier)) return end(task);
+    if (earlier && earlier->ending == campaign::Ending::kDone) {
+      const std::string changed = campaign::changed_since(earlier->inputs);
+      if (!changed.empty()) spdlog::info("{}: {}; it runs again", task.name(), changed);
+    }
     // A run that has its result needs no parts.
     const bool merged = task.shards > 0 && campaign::has_result(task, campaign_);
     if (!merged) check_shards(task);

@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
+#include "io/conflicts/markup_text.hpp"
 #include "io/formats/text/csv_cell.hpp"
 #include "io/formats/text/text_writer.hpp"
 #include "io/system/file.hpp"
@@ -146,22 +147,6 @@ std::string csv_of(const ComparedConflicts& found) {
   return out;
 }
 
-std::string html_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string html_of(const ComparedConflicts& found) {
   std::string out =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -170,9 +155,9 @@ std::string html_of(const ComparedConflicts& found) {
       "solid #ccc; text-align: right; }\nth:first-child, td:first-child, td:last-child { "
       "text-align: left; }\ntr.new, tr.worse, tr.question { font-weight: bold; }\n</style>\n"
       "</head>\n<body>\n<h1>Conflicts compared</h1>\n";
-  out += "<p>a: " + html_text(found.a.file) + "<br>b: " + html_text(found.b.file) +
-         "</p>\n<p><strong>" + html_text(sentence_of(found)) + "</strong></p>\n<p>Lengths are in " +
-         found.a.unit + ".</p>\n<table>\n<tr>";
+  out += "<p>a: " + markup_text(found.a.file) + "<br>b: " + markup_text(found.b.file) +
+         "</p>\n<p><strong>" + markup_text(sentence_of(found)) +
+         "</strong></p>\n<p>Lengths are in " + found.a.unit + ".</p>\n<table>\n<tr>";
   for (const char* column : kColumns) {
     std::string title = column;
     std::ranges::replace(title, '_', ' ');
@@ -182,7 +167,8 @@ std::string html_of(const ComparedConflicts& found) {
   const auto number = [](double v) { return fmt::format("{:.3f}", v); };
   for (const Row& row : rows_of(found)) {
     out += "<tr class=\"" + row.status.substr(0, row.status.find(' ')) + "\">";
-    for (const std::string& cell : cells_of(row, number)) out += "<td>" + html_text(cell) + "</td>";
+    for (const std::string& cell : cells_of(row, number))
+      out += "<td>" + markup_text(cell) + "</td>";
     out += "</tr>\n";
   }
   return out + "</table>\n</body>\n</html>\n";

@@ -78,7 +78,7 @@ std::string small_text(const ConflictFile& file) {
 
 std::string totals_text(const ConflictFile& file) {
   const Conflicts& c = file.conflicts;
-  if (c.colliding_points == 0) return "no conflicts: no point collides\n";
+  if (c.colliding_points == 0) return "no conflicts, because no point collides\n";
   const std::string path =
       " along " + format_brief(c.path_length) + " " + symbol_of(file.unit()) + " of path\n";
   if (c.listed.empty()) {

@@ -27,10 +27,12 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "findings/conflict_warnings.hpp"
 #include "io/conflicts/conflict_summary.hpp"
 #include "io/conflicts/write_conflicts.hpp"
 #include "io/model/sample_mesh.hpp"
+#include "io/result/answer.hpp"
 #include "io/result/result.hpp"
 #include "io/system/pending_file.hpp"
 
@@ -146,7 +148,9 @@ void run_conflicts(ConflictsCommand& options) {
   if (has_pictures) {
     pictures = {conflict_points(result.reader(), conflicts, conflict_of), from.drawn_models()};
   }
-  ConflictFile file{conflicts, options.find, result.reader().header(), poses, {}, options.date};
+  const Answer answer = counted_answer(result.reader());
+  ConflictFile file{conflicts, options.find, result.reader().header(), answer, poses,
+                    {},        options.date};
   file.warnings = conflict_warnings(conflicts, symbol_of(file.unit()));
   for (const auto& output : outputs) {
     write_conflicts(file, pictures, output->format, output->pending.partial());
@@ -154,7 +158,15 @@ void run_conflicts(ConflictsCommand& options) {
   for (const auto& output : outputs) output->pending.publish();
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
-  print(options.json ? "{\n" + summary_json(file) + "\n}\n" : conflict_text(file, options.show));
+  const std::string verdict =
+      verdict_to_repeat(result.reader(), {.chainage = chainage_of(poses)}, symbol_of(file.unit()));
+  if (options.json) {
+    if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
+    print("{\n" + summary_json(file) + "\n}\n");
+  } else {
+    print(conflict_text(file, options.show) +
+          (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n"));
+  }
 }
 
 /// A day, or a time in UTC, as ISO 8601 has them.

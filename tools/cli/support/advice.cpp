@@ -63,11 +63,13 @@ std::string advice_on(const Error& error) {
     case Remedy::kIgnoreCrs:
       return "; --ignore-crs takes the coordinates as they are";
     case Remedy::kOverwrite:
-      return "; --force overwrites it";
+      return "; --force overwrites it, or give another name for the output";
+    case Remedy::kReadOrOverwrite:
+      return "; --resume repeats that answer without a search, and --force searches again";
     case Remedy::kResumeOrOverwrite:
       return "; --resume continues it, --force starts again";
     case Remedy::kOverwriteNotResume:
-      return "; --force instead of --resume overwrites it";
+      return "; --force instead of --resume overwrites it, or give another name for the output";
     case Remedy::kRestoreOptions:
       return "; give the options and files that it was started with, or --force to start again";
     case Remedy::kNameFormat:

@@ -11,6 +11,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/model.hpp"
+#include "clearway/store.hpp"
 #include "clearway/trajectory.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
@@ -32,11 +33,12 @@ namespace clearway::tool {
 namespace {
 
 struct ChangeOptions {
-  std::filesystem::path input, output, model;
+  std::filesystem::path input, output, model, environment;
   double max_motion = 0;
   FileUnit model_unit = {};
   LengthOptions lengths;
   TrajectoryOptions trajectory;
+  std::string unit = "m";  ///< of lengths, for messages
   bool force = false;
   bool json = false;
 };
@@ -78,12 +80,25 @@ void warn_of_jumps(const std::vector<Pose>& poses, const Box& model, const Chang
   }
   const auto jumps = jumps_of(motions, std::min(kLeastJump, options.max_motion));
   if (jumps.empty()) return;
-  log_message(
-      jump_warning(jumps, options.input.string() + ": as the model moves, ", "m", consequence));
+  log_message(jump_warning(jumps, options.input.string() + ": as the model moves, ", options.unit,
+                           consequence));
 }
 
-void write_changed(const ChangeOptions& options, const Change& change) {
-  refuse_overwriting(options.output, {options.input, options.model});
+/// Lengths and files without a unit of their own are in that of the store.
+void take_unit_of_environment(ChangeOptions& options) {
+  if (options.environment.empty()) return;
+  const Store store(options.environment);
+  if (const auto warning = options.lengths.convert_for(store)) log_message(*warning);
+  set_environment_unit(store, options.trajectory);
+  options.trajectory.default_crs = store.crs_wkt();
+  options.unit = symbol_of_unit(store.length_unit());
+}
+
+void write_changed(ChangeOptions& options, const Change& change) {
+  std::vector<std::filesystem::path> inputs{options.input, options.model};
+  if (!options.environment.empty()) inputs.push_back(options.environment);
+  refuse_overwriting(options.output, inputs);
+  take_unit_of_environment(options);
   PendingFile output(options.output, options.force);
   std::vector<Message> remarks;
   PoseLabels labels;
@@ -96,8 +111,10 @@ void write_changed(const ChangeOptions& options, const Change& change) {
   }
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   // No other place of a mesh is farther out than its vertices.
-  const Box model =
-      box_of(read_model_points(options.model, {.unit = options.model_unit, .vertices_only = true}));
+  const Box model = box_of(
+      read_model_points(options.model, {.unit = options.model_unit,
+                                        .environment_unit = options.trajectory.environment_unit,
+                                        .vertices_only = true}));
   const double motion_before = largest_motion(model, before);
   if (!std::isfinite(motion_before)) {
     throw InputError(options.input.string() +
@@ -110,9 +127,9 @@ void write_changed(const ChangeOptions& options, const Change& change) {
   output.publish();
 
   const double motion_after = largest_motion(model, after);
-  spdlog::info("{}: {}, from {}; the largest motion from one to the next {:.6g} m, was {:.6g} m",
+  spdlog::info("{}: {}, from {}; the largest motion from one to the next {:.6g} {}, was {:.6g} {}",
                options.output.string(), counted(after.size(), "pose"), format_count(before.size()),
-               motion_after, motion_before);
+               motion_after, options.unit, motion_before, options.unit);
   if (options.json) {
     const nlohmann::ordered_json report{{"poses_in", before.size()},
                                         {"poses_out", after.size()},
@@ -137,6 +154,10 @@ void add_change(CLI::App& command, const char* max_motion_help, const Change& ch
                   "The model, as clearway run reads it; its bounding box is what moves")
       ->type_name("FILE")
       ->required();
+  command
+      .add_option("--env", options->environment,
+                  "The store: says the unit of lengths, and which foot a ft is, and gives the CRS")
+      ->type_name("FILE");
   add_model_unit(command, "--model-unit", options->model_unit);
   add_trajectory_options(command, options->trajectory, options->lengths);
   command.add_flag("--force", options->force, "Overwrite an existing output");

@@ -60,13 +60,17 @@ std::vector<Message> doubts_about(const FollowedPath& followed, const PathStatio
     tell(Message::Severity::kWarning, code, poses, what);
   };
   const bool pivots = std::holds_alternative<BodyPivots>(mount);
-  // A wagon on pivots leaves the ends of any path: the verdict says how much of it was searched.
-  const bool expected = only_at_ends(followed.off_path, count);
+  // A wagon on pivots leaves the ends of any path: the verdict says how much of it was searched. A
+  // body that is missing on most of it is another matter, because the answer is hardly about it.
+  const bool mostly = followed.off_path.size() > count / 2;
+  const bool expected = !mostly && only_at_ends(followed.off_path, count);
   tell(expected ? Message::Severity::kNote : Message::Severity::kWarning, "body-off-path",
        followed.off_path,
        std::string("the body has no pose there, as ") + (pivots ? "a pivot" : "its station") +
-           " is off the path, which is " + metres_text(path.length()) +
-           " m long. Make the path longer to search there too");
+           " is off the path, which is " + metres_text(path.length()) + " m long. " +
+           (mostly ? "Most of the path is not searched for this body. Check its stations, or make "
+                     "the path longer"
+                   : "Make the path longer to search there too"));
   warn("body-undefined", followed.undefined,
        "the body has no pose there. Its pivots are at one place, or one is above the other. The "
        "path turns back there, or stands on its end");

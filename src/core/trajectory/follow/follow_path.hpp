@@ -26,7 +26,7 @@ struct FollowedPath {
 FollowedPath follow_path(const PathStations& path, const BodyMount& mount, int threads);
 
 /// Warnings of what is missing or odd in it; a note where stations are off the path at its ends
-/// only. name: whose poses these are, for the texts.
+/// only, and on no more than half of it. name: whose poses these are, for the texts.
 std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
                                   const BodyMount& mount, const std::string& name);
 

@@ -6,6 +6,7 @@
 #include "core/util/format.hpp"
 #include "io/conflicts/conflict_fields.hpp"
 #include "io/conflicts/json_text.hpp"
+#include "io/conflicts/markup_text.hpp"
 #include "io/system/xxh64.hpp"
 
 namespace clearway {
@@ -62,27 +63,10 @@ std::string title_of(const ConflictFile& file, const Conflict& c) {
   return out;
 }
 
-/// As the text of an element.
-std::string xml_text(const std::string& text) {
-  std::string out;
-  for (const char c : valid_utf8(text)) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else {
-      out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-  }
-  return out;
-}
-
 /// "the path's position", or that of the body which the conflict is seen from.
 std::string origin_text(const ConflictFile& file, const Conflict& c) {
   if (!c.body || file.options.bodies.empty()) return "the path's position";
-  return "the position of body " + xml_text(file.header.bodies.at(*c.body));
+  return "the position of body " + markup_text(file.header.bodies.at(*c.body));
 }
 
 /// "1.25 m left of the path's position and 0.5 m above it".

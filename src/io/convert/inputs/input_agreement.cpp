@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "clearway/error.hpp"
+#include "io/formats/scan_crs.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/system/input_error.hpp"
 
@@ -89,22 +91,62 @@ std::vector<CloudInfo> with_unit(std::span<const std::filesystem::path> files,
   return infos;
 }
 
-/// The first that any input has. Others are warned of, and none at all is noted.
-void choose_wkt(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+/// Reads each coordinate reference system once, because many files have the same.
+class CrsNames {
+ public:
+  const ScanCrs& of(const CloudInfo& info) {
+    const std::string key =
+        info.crs_wkt.empty() ? "EPSG:" + std::to_string(info.crs_epsg) : info.crs_wkt;
+    const auto known = known_.find(key);
+    if (known != known_.end()) return known->second;
+    return known_[key] =
+               info.crs_wkt.empty() ? scan_crs_of_epsg(info.crs_epsg) : scan_crs_of(info.crs_wkt);
+  }
+
+ private:
+  std::map<std::string, ScanCrs> known_;
+};
+
+bool names_crs(const CloudInfo& info) { return !info.crs_wkt.empty() || info.crs_epsg != 0; }
+
+/// Whether both inputs certainly have the same one. GeoTIFF keys give the code of the horizontal
+/// part, so only that is compared where an input has no text.
+bool has_same_crs(const CloudInfo& a, const CloudInfo& b, CrsNames& names) {
+  if (a.crs_wkt == b.crs_wkt && a.crs_epsg == b.crs_epsg) return true;
+  const ScanCrs &of_a = names.of(a), &of_b = names.of(b);
+  const bool texts = !a.crs_wkt.empty() && !b.crs_wkt.empty();
+  const std::int32_t code = texts ? of_a.epsg : of_a.horizontal_epsg;
+  return code != 0 && code == (texts ? of_b.epsg : of_b.horizontal_epsg);
+}
+
+/// "ETRS89 / UTM zone 32N, EPSG:25832"
+std::string crs_label(const ScanCrs& crs) {
+  if (crs.epsg == 0) return crs.name + ", without an EPSG code";
+  const std::string code = "EPSG:" + std::to_string(crs.epsg);
+  return crs.name == code ? code : crs.name + ", " + code;
+}
+
+/// The first text that any input has. Inputs of other systems than the first one's are warned of,
+/// and none at all is noted.
+void choose_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
                 CommonCrs& common) {
-  const auto named = [](const CloudInfo& info) { return !info.crs_wkt.empty(); };
-  const auto first = std::find_if(infos.begin(), infos.end(), named);
+  const auto first = std::ranges::find_if(infos, names_crs);
   if (first == infos.end()) return;
-  common.wkt = first->crs_wkt;
+  const auto text =
+      std::ranges::find_if(infos, [](const CloudInfo& info) { return !info.crs_wkt.empty(); });
+  if (text != infos.end()) common.wkt = text->crs_wkt;
   const std::string source = files[static_cast<std::size_t>(first - infos.begin())].string();
+  CrsNames names;
   std::size_t unnamed = 0;
   for (std::size_t i = 0; i < infos.size(); ++i) {
-    if (!named(infos[i])) {
+    if (!names_crs(infos[i])) {
       ++unnamed;
-    } else if (infos[i].crs_wkt != common.wkt) {
+    } else if (!has_same_crs(infos[i], *first, names)) {
       warn(common, "other-crs",
-           files[i].string() + ": another coordinate reference system than " + source +
-               "; the first one's is kept");
+           files[i].string() + ": another coordinate reference system (" +
+               crs_label(names.of(infos[i])) + ") than " + source + " (" +
+               crs_label(names.of(*first)) +
+               "). The coordinates are merged as they are, so the scans may not fit together");
     }
   }
   if (unnamed == 0) return;
@@ -146,7 +188,7 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files,
       if (!agrees) refuse_unit(files[i], infos[i].unit, first, common.unit);
     }
   }
-  choose_wkt(files, infos, common);
+  choose_crs(files, infos, common);
   if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
     warn(common, "feet",
          "the coordinates are in feet (" + to_string(common.unit) +

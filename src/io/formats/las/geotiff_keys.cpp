@@ -89,4 +89,12 @@ CrsUnits units_of_geotiff(std::span<const std::byte> key_directory) {
   return units;
 }
 
+std::uint16_t epsg_of_geotiff(std::span<const std::byte> key_directory) {
+  const bool geographic = value_of(key_directory, kModelType) >= 2;
+  const std::uint16_t projected = value_of(key_directory, kProjectedSystem);
+  const std::uint16_t code =
+      projected == 0 || geographic ? value_of(key_directory, kGeodeticSystem) : projected;
+  return code == kUserDefined ? 0 : code;
+}
+
 }  // namespace clearway

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "io/formats/wkt.hpp"
@@ -11,5 +12,9 @@ namespace clearway {
 /// whose code it gives, by PROJ's database where that is installed. A directory that is cut is read
 /// as far as it goes. Source: OGC GeoTIFF 1.1, LAS 1.4 R15 section 3.3.
 CrsUnits units_of_geotiff(std::span<const std::byte> key_directory);
+
+/// The EPSG code of the coordinate reference system that the keys name; 0 where they name none, or
+/// one of the user's own.
+std::uint16_t epsg_of_geotiff(std::span<const std::byte> key_directory);
 
 }  // namespace clearway

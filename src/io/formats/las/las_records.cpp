@@ -22,7 +22,10 @@ void note_record(std::string_view user, unsigned id, std::span<const std::byte> 
                  LasCrs& crs) {
   constexpr unsigned kWkt = 2112;
   constexpr unsigned kGeoKeys = 34735;
-  if (user == "LASF_Projection" && id == kGeoKeys) crs.geotiff = units_of_geotiff(payload);
+  if (user == "LASF_Projection" && id == kGeoKeys) {
+    crs.geotiff = units_of_geotiff(payload);
+    crs.geotiff_epsg = epsg_of_geotiff(payload);
+  }
   if (id != kWkt) return;
   std::string* wkt = user == "LASF_Projection" ? &crs.wkt
                      : user == "liblas"        ? &crs.foreign_wkt
@@ -53,6 +56,7 @@ bool is_about_crs(std::string_view user, unsigned id) {
 
 void LasCrs::describe(CloudInfo& info) const {
   info.crs_wkt = wkt.empty() ? foreign_wkt : wkt;
+  if (info.crs_wkt.empty()) info.crs_epsg = geotiff_epsg;
   CrsUnits units = units_of_wkt(info.crs_wkt);
   const bool keys_count = units.horizontal == LengthUnit::kUnknown && units.trouble.empty();
   if (keys_count) {

@@ -17,6 +17,7 @@ struct LasCrs {
   std::string wkt;          ///< of user LASF_Projection
   std::string foreign_wkt;  ///< the same record as liblas repeats it
   CrsUnits geotiff;
+  std::uint16_t geotiff_epsg = 0;  ///< code that the GeoTIFF keys name; 0: none
 
   /// Sets info's CRS and unit; well-known text counts more than GeoTIFF keys.
   void describe(CloudInfo& info) const;

@@ -221,6 +221,7 @@ std::vector<QueryDifference> question_differences(const ResultHeader& a, const R
 
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b) {
   Differences out;
+  out.add("environment", environment_text(a), environment_text(b));
   add_question(a, b, out);
   out.add("ignored points", ignored_lists_text(a), ignored_lists_text(b));
   out.add("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));

@@ -73,7 +73,7 @@ struct Comparison {
 /// Of the model, the trajectory and the parameters: what was asked, of whichever environment.
 std::vector<QueryDifference> question_differences(const ResultHeader& a, const ResultHeader& b);
 
-/// The same of one environment, with how its coordinates are stored and its classes.
+/// The same with the environment, how its coordinates are stored, and its classes.
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b);
 
 /// Merges both results in constant memory; keeps up to `kept` differing points. Throws InputError

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/formats/length_unit.hpp"
+#include "io/formats/text/point_line.hpp"
 #include "io/formats/text/text_number.hpp"
 #include "io/system/input_error.hpp"
 #include "io/trajectory/text/angle_table.hpp"
@@ -53,6 +54,9 @@ std::string name_of_pose(std::string_view field) {
 
 Objection objection_to_count(std::string_view line, std::optional<std::size_t> count,
                              std::size_t most, const std::string& expected) {
+  if (const std::string commas = decimal_commas_in(line); !commas.empty()) {
+    return {excerpt(line) + commas + ", as in 0.25"};
+  }
   if (!count) return {excerpt(line) + "; expected numbers only, in blanks or commas: " + expected};
   const std::string found =
       *count > most ? "more than " + std::to_string(most) : std::to_string(*count);
@@ -241,6 +245,10 @@ Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<d
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto value = parse_whole_number(fields_[columns[k]]);
     if (!value) {
+      if (fields_[columns[k]].find(',') != std::string_view::npos) {
+        return {excerpt(fields_[columns[k]]) + " in column " + std::to_string(columns[k] + 1) +
+                " has a decimal comma, which is not read; write a decimal point, as in 0.25"};
+      }
       return {excerpt(fields_[columns[k]]) + " in column " + std::to_string(columns[k] + 1) +
               "; expected a number"};
     }

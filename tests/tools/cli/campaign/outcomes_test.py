@@ -197,6 +197,38 @@ def put_back(work):
     expect(outcome("campaign", "run", path, "--all").returncode == 0, "then")
 
 
+def outdated(work):
+    """A run whose model was replaced after it was done is no longer clear, and runs again."""
+    path = work / "outdated"
+    program("campaign", "plan", campaign_of(work, routes={"middle": "middle.txt"}), "-o", path)
+    program("campaign", "run", path, "--all")
+    before = status(path)["outcomes"]
+    model, sound = work / "slim.off", (work / "slim.off").read_text()
+    out = (path / "runs/slim/middle/0.1/out.h5").read_bytes()
+    model.write_text(sound.replace("0.3 ", "1.0 "))
+    words = "the model file slim.off changed since this run"
+    look = status(path)
+    expect(look["outdated"] == 1 and look["list"][0]["status"] == "outdated", f"{look}")
+    expect(look["list"][0]["changed"] == words and "verdict" not in look["list"][0], f"{look}")
+    expect(look["outcomes"]["not_done"] == 1, f"{look}")
+    expect(words in program("campaign", "status", path), "status does not say it")
+    expect(program("campaign", "status", path, "--missing") == "0\n", "it is to be done")
+    told_alike(path, look["outcomes"])
+    expect(words in (path / "index.html").read_text(), "the page does not say it")
+    done = outcome("campaign", "run", path, "--all")
+    expect(done.returncode == 3 and words + "; it runs again" in done.stderr
+           and "an input has changed since it was planned" in done.stderr, done.stderr)
+    expect(status(path)["failed"] == 1 and status(path)["outcomes"]["clear"] == 0, "not clear")
+    model.write_text(sound)
+    done = outcome("campaign", "run", path, "--all")
+    expect(done.returncode == 0 and status(path)["outcomes"] == before, done.stderr)
+    expect((path / "runs/slim/middle/0.1/out.h5").read_bytes() == out, "another result")
+    model.touch()
+    expect(status(path)["outdated"] == 1, "its time alone says no more")
+    done = outcome("campaign", "run", path, "--all")
+    expect(done.returncode == 0 and status(path)["outcomes"] == before, done.stderr)
+
+
 def options_of_run(work):
     """Every option of `clearway run` that a campaign can pass on reaches its command line."""
     path = work / "options"
@@ -250,7 +282,7 @@ def main():
         write_path(work / "middle.txt")
         write_path(work / "far.txt", y=5000)
         for check in [every_outcome, warnings_are_repeated, ignored_points_are_told,
-                      lengths_are_rounded, put_back, options_of_run]:
+                      lengths_are_rounded, put_back, outdated, options_of_run]:
             check(work)
             print(check.__name__, flush=True)
 

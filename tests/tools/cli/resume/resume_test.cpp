@@ -121,18 +121,25 @@ TEST_CASE("a resumed run leaves a result alone that answers its query, and no ot
   CHECK(work.files() == Names{"out.h5"});
   CHECK(kept["cells_read"] == 0);
   CHECK(kept["seconds"].size() == found["seconds"].size());
-  check_refused(work.run("--resume", "0.2"), 2, "exists already");
-  check_refused(work.run(""), 2, "exists already");
+  const std::string radii =
+      "exists already, and answers another question than this run: radius: 0.1 m in the file, "
+      "0.2 m here; --force ";
+  check_refused(work.run("--resume", "0.2"), 2, radii + "instead of --resume overwrites it");
+  check_refused(work.run("", "0.2"), 2, radii + "overwrites it, or give another name");
+  check_refused(work.run("--shard 1/2"), 2, "part: the whole result in the file, part 1 of 2 here");
+  check_refused(work.run(""), 2,
+                "exists already, and answers the same question; --resume repeats that answer");
   CHECK((bytes_of(work.output) == bytes));
 
   std::string damaged = bytes;
   damaged[damaged.size() / 2] ^= 1;
   put_bytes(work.output, damaged);
-  check_refused(work.run("--resume"), 2, "exists already");
+  check_refused(work.run("--resume"), 2, "exists already, and is ");
 
   REQUIRE(work.run("--force --precision float").exit_code == 0);
-  check_refused(work.run("--resume"), 2, "exists already");
-  check_refused(work.run("--resume --precision float"), 2, "exists already");
+  check_refused(work.run("--resume"), 2, "precision: float in the file, exact here");
+  check_refused(work.run("--resume --precision float"), 2,
+                "exists already, and answers the same question, but not exactly");
 }
 
 TEST_CASE("an existing result stays until a resumed run replaces it, and only where asked for") {
@@ -149,7 +156,7 @@ TEST_CASE("an existing result stays until a resumed run replaces it, and only wh
   std::filesystem::remove(work.output);
   work.start_and(SIGKILL);
   put_bytes(work.output, "of somebody else");
-  check_refused(work.run("--resume"), 2, "exists already");
+  check_refused(work.run("--resume"), 2, "exists already, and is no complete result");
   CHECK(bytes_of(work.output) == "of somebody else");
   put_bytes(work.output, done);  // as if killed between the result's name and its journal's end
   const Outcome outcome = work.run("--resume");

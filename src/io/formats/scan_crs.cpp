@@ -1,20 +1,14 @@
-#include "io/conflicts/scan_crs.hpp"
-
-#include <proj.h>
+#include "io/formats/scan_crs.hpp"
 
 #include <charconv>
-#include <memory>
 #include <string_view>
+
+#include "io/formats/proj_objects.hpp"
 
 namespace clearway {
 namespace {
 
 constexpr std::int32_t kGreatestCode = 99'999;  // EPSG's numbers are below
-
-struct Release {
-  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
-  void operator()(PJ* object) const { proj_destroy(object); }
-};
 
 std::int32_t epsg_of(const PJ* crs) {
   const char* authority = proj_get_id_auth_name(crs, 0);
@@ -27,18 +21,22 @@ std::int32_t epsg_of(const PJ* crs) {
   return whole && number > 0 && number <= kGreatestCode ? number : 0;
 }
 
+std::int32_t horizontal_epsg_of(PJ_CONTEXT* context, const PJ* crs) {
+  if (proj_get_type(crs) != PJ_TYPE_COMPOUND_CRS) return epsg_of(crs);
+  const ProjObject horizontal(proj_crs_get_sub_crs(context, crs, 0));
+  return horizontal ? epsg_of(horizontal.get()) : 0;
+}
+
 void log_nothing(void*, int, const char*) {}
 
 }  // namespace
 
 ScanCrs scan_crs_of(const std::string& wkt) {
-  ScanCrs out{wkt, "the coordinate reference system of the scans", 0};
+  ScanCrs out{wkt, "the coordinate reference system of the scans"};
   if (wkt.empty() || wkt.find('\0') != std::string::npos) return out;
-  const std::unique_ptr<PJ_CONTEXT, Release> context(proj_context_create());
+  const ProjContext context = start_proj(log_nothing, nullptr);
   if (!context) return out;
-  proj_log_func(context.get(), nullptr, log_nothing);
-  const std::unique_ptr<PJ, Release> crs(
-      proj_create_from_wkt(context.get(), wkt.c_str(), nullptr, nullptr, nullptr));
+  const ProjObject crs(proj_create_from_wkt(context.get(), wkt.c_str(), nullptr, nullptr, nullptr));
   if (!crs || proj_is_crs(crs.get()) == 0) return out;
   if (const char* name = proj_get_name(crs.get())) out.name = name;
   const char* const options[] = {"MULTILINE=NO", nullptr};
@@ -46,6 +44,19 @@ ScanCrs scan_crs_of(const std::string& wkt) {
     out.wkt = text;
   }
   out.epsg = epsg_of(crs.get());
+  out.horizontal_epsg = horizontal_epsg_of(context.get(), crs.get());
+  return out;
+}
+
+ScanCrs scan_crs_of_epsg(std::uint16_t code) {
+  ScanCrs out{"", "EPSG:" + std::to_string(code), code, code};
+  const ProjContext context = start_proj(log_nothing, nullptr);
+  if (!context) return out;
+  const ProjObject crs(proj_create_from_database(
+      context.get(), "EPSG", std::to_string(code).c_str(), PJ_CATEGORY_CRS, 0, nullptr));
+  if (!crs) return out;
+  if (const char* name = proj_get_name(crs.get())) out.name = name;
+  out.horizontal_epsg = horizontal_epsg_of(context.get(), crs.get());
   return out;
 }
 

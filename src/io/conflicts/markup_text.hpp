@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace clearway {
+
+/// As the text of an element or the value of an attribute of HTML or XML. Bytes that are not UTF-8
+/// become U+FFFD, and control characters, which XML cannot hold, blanks.
+std::string markup_text(std::string_view text);
+
+}  // namespace clearway
