@@ -111,7 +111,7 @@ void order_plainly(std::span<StoredPoint> points, std::uint64_t cell_points,
     std::sort(points.begin(), points.end(), by_source);
     return;
   }
-  const auto axis = static_cast<std::size_t>(points.longest_axis());
+  const auto axis = static_cast<std::size_t>(longest_side(points, quantisation));
   std::sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
     return a.q[axis] != b.q[axis] ? a.q[axis] < b.q[axis] : by_source(a, b);
   });

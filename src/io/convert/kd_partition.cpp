@@ -138,7 +138,7 @@ class BucketOrder {
   Parts split(const BucketPoint* from, BucketPoint* to, std::size_t n,
               const QuantumBounds& bounds) const {
     const std::size_t left = left_count(n, n > cell_points_ ? cell_points_ : kBlockPoints);
-    const int axis = bounds.longest_axis();
+    const int axis = longest_side(bounds, scale_);
     const CoordinateRange range{bounds.lo[axis], bounds.hi[axis]};
     Parting parting(to, left, axis, select_split({from, n}, left, axis, range, to));
     for (std::size_t at = 0; at < n; at += kPartedAtOnce) {

@@ -157,7 +157,7 @@ void warn_of_far_bodies(const std::filesystem::path& file, const std::vector<Bod
   double longest = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].model.empty() || !entries[i].trajectory.empty()) continue;
-    const Box box = box_of(bodies[i].model);
+    const Box box = box_of(bodies[i].model.vertices);
     longest = std::max(longest, horizontal_length(box));
     const auto* station = std::get_if<BodyStation>(&entries[i].mount);
     const double at = station != nullptr ? station->at : 0;

@@ -66,7 +66,7 @@ void PathCover::look(const Question& question) {
   bool was_outside = false;
   for (const std::uint32_t i : spread_poses(poses.size(), kCoverPoses)) {
     const bool is_outside = !scan_.within(moved(slice, poses[i]), reach_);
-    const double way = length(poses[i].position() - poses[before].position());
+    const double way = clearway::length(poses[i].position() - poses[before].position());
     length_ += way;
     length_outside_ += way * (int{was_outside} + int{is_outside}) / 2;
     before = i;
