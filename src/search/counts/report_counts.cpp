@@ -25,8 +25,9 @@ void report_sizes(const StoreReader& store, const Query& query, SearchReport& re
 
 void report_finished(const ResultReader& result, SearchReport& report) {
   report.was_finished = true;
-  const std::uint64_t environment_points = report.environment_points;  // a header counts NaN too
-  // What files do not always have.
+  const std::uint64_t environment_points =
+      report.environment_points;  // the count of a result's header includes points with NaN
+  // These are missing in some result files.
   const double spacing = report.model_spacing;
   const std::optional<SearchedLength> searched = report.searched;
   static_cast<Answer&>(report) = answer_of(result);
