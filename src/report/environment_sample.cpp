@@ -15,8 +15,8 @@ namespace {
 // Blocks are counted by the logarithm of their surface. A bin is 1/16 of a power of two.
 constexpr int kBinsPerOctave = 16, kLeastOctave = -64, kOctaves = 128;
 constexpr std::size_t kBins = std::size_t{kBinsPerOctave} * kOctaves;
-constexpr double kFill =
-    0.97;  // share of the points asked for, because bins are coarser than surfaces
+// Share of the points asked for that is aimed at, because bins are coarser than surfaces.
+constexpr double kFill = 0.97;
 
 struct NearBlock {
   /// First point of the block within its cell, and number of its points.

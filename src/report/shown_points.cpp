@@ -7,8 +7,8 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kLeastOfConflict =
-    300;  // points that each conflict keeps, where there is room
+/// The number of points that each conflict keeps, where there is room.
+constexpr std::uint64_t kLeastOfConflict = 300;
 
 /// Picks `kept` of `total` items evenly. next() is called for each item in turn.
 class EvenPick {

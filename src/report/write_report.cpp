@@ -35,8 +35,8 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kMostModelPoints = 200'000;
-constexpr double kStep = 1e-3,
-                 kEnvironmentStep = 2e-3;  // steps in metres of the points on the page
+/// Steps in metres of the lattices of the points on the page.
+constexpr double kStep = 1e-3, kEnvironmentStep = 2e-3;
 
 std::vector<double> classes_of(const Result& result, const std::vector<double>& asked) {
   const QueryParameters& query = result.parameters();

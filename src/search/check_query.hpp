@@ -15,7 +15,7 @@ void check_query(const QueryParameters& query, const SearchOptions& options);
 /// surface.
 void check_surface(const QueryParameters& query, const SearchOptions& options);
 
-/// Throws UsageError where a query with these parameters cannot have a model with solids.
+/// Throws UsageError where these parameters rule out a model with solids, as a tolerance does.
 void check_solid(const QueryParameters& query);
 
 /// Throws InputError where a triangle names a corner that does not exist, where the numbers of

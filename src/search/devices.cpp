@@ -99,8 +99,7 @@ CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted
   std::exception_ptr last;
   for (int gpu = 0; gpu < count; ++gpu) {
     try {
-      CudaDevice device =
-          open(gpu);  // takes most of a second, so that no more GPUs are opened than needed
+      CudaDevice device = open(gpu);  // takes most of a second
       if (allowance(device, wanted_bytes) == wanted_bytes) return device;
       if (!best || device.free_bytes > best->free_bytes) best = device;
     } catch (const ResourceError& error) {

@@ -27,7 +27,8 @@ struct DeviceChoice {
 /// and missing.
 bool may_take_gpus(const SearchOptions& options);
 
-/// Whether the CPU may be taken where a GPU fails, because the user asked for neither.
+/// Whether the CPU may be taken where a GPU fails, because the user named neither a device nor a
+/// GPU.
 inline bool fallback_allowed(const SearchOptions& options) {
   return options.device == Device::kAuto && options.gpus.empty();
 }

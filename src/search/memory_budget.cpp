@@ -49,8 +49,8 @@ std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query) {
 
 std::uint64_t tree_building_bytes(const Query& query) {
   const auto of_model = [](const Model& model) {
-    const std::uint64_t of_solids =
-        400 * model.solid_of.size();  // each triangle is there once more, by solid
+    // For solids each triangle is there once more.
+    const std::uint64_t of_solids = 400 * model.solid_of.size();
     return of_solids +
            (model.is_surface() ? 240 * model.triangles.size() : 52 * model.vertices.size());
   };

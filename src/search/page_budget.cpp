@@ -111,8 +111,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
       fits(as_needed(layout), planned, building, most_poses);
       return true;
     }
-    if (!any_layout && !kind_.needs().on_gpu)
-      break;  // on a GPU, fewer slots cost less than a coarser index
+    if (!any_layout && !kind_.needs().on_gpu) break;  // a GPU gets fewer slots first
   }
   return false;
 }

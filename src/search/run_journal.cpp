@@ -182,8 +182,7 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
 
 void RunJournal::refuse_existing(const ResultHeader& header) const {
   std::error_code unknown;
-  if (!fs::is_regular_file(output_, unknown))
-    return;  // the pending file refuses what is no regular file
+  if (!fs::is_regular_file(output_, unknown)) return;  // left to the pending file
   if (options_.resume) refuse_other_part(header);
   const Remedy overwrite = options_.resume ? Remedy::kOverwriteNotResume : Remedy::kOverwrite;
   const std::string exists = output_.string() + ": exists already, ";

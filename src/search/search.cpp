@@ -188,7 +188,8 @@ class Search {
     return count_on(Device::kCpu);
   }
 
-  /// Whether a GPU pays, by estimate. Always true where the user asked for a device or engine.
+  /// Whether a GPU pays, by estimate. Always true where the user asked for a device, or for engine
+  /// grid or kdtree.
   bool gpu_pays() {
 #ifdef CLEARWAY_CUDA
     const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;

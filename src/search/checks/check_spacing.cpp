@@ -110,8 +110,7 @@ double largest_spacing(const std::vector<Vec3>& model, const std::vector<Vec3>& 
 }  // namespace
 
 void check_model_spacing(const Question& question, MessageLog& log) {
-  if (Sides(question.model).longest == 0)
-    return;  // all points are at one place, so the model is a sphere
+  if (Sides(question.model).longest == 0) return;  // the model is a single place
   Neighbours neighbours(question.query.model.vertices, question.query.radius);
   const std::vector<Vec3> alone = neighbours.find();
   const double share = static_cast<double>(alone.size()) / static_cast<double>(neighbours.size());

@@ -149,8 +149,7 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
   std::uint64_t steps = 0;
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i + 1 < query.poses.size(); ++i) {
-    if (question.number_of(i + 1) != question.number_of(i) + 1)
-      continue;  // the body is not there on the path
+    if (question.number_of(i + 1) != question.number_of(i) + 1) continue;  // no step
     ++steps;
     const Pose &a = query.poses[i], &b = query.poses[i + 1];
     if (coarse_bound(a, b, reach) <= query.radius) continue;

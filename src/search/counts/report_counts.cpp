@@ -25,8 +25,8 @@ void report_sizes(const StoreReader& store, const Query& query, SearchReport& re
 
 void report_finished(const ResultReader& result, SearchReport& report) {
   report.was_finished = true;
-  const std::uint64_t environment_points =
-      report.environment_points;  // the count of a result's header includes points with NaN
+  // The count of environment points in a result's header includes those with NaN.
+  const std::uint64_t environment_points = report.environment_points;
   // These are missing in some result files.
   const double spacing = report.model_spacing;
   const std::optional<SearchedLength> searched = report.searched;

@@ -16,9 +16,8 @@ struct Look {
   std::uint32_t pose;
   /// Length of the path of the model's middle from the first look, straight between looks.
   double along;
-  bool covered =
-      /// Whether the scan has points around the model. If not, below, left and right are unset.
-      false;
+  /// Whether the scan has points around the model. If not, below, left and right are unset.
+  bool covered = false;
   bool below = false, left = false, right = false;
   /// Height of the model above the highest point below its inner part: 0 where it touches a point,
   /// and nothing where there is no point below.
