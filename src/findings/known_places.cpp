@@ -130,7 +130,7 @@ std::vector<std::size_t> match_points(const GroupedResult& a, const GroupedResul
   std::vector<NumberedPoint> open;
   std::vector<bool> added(b.conflicts.listed.size() + 1);
   for (const std::uint32_t id : match.added) added[id] = true;
-  added[0] = true;  // small groups
+  added[0] = true;  // points of small groups count too
   Places places(gap);
   for_each_point(b, [&](const NumberedPoint& point) {
     if (!added[point.conflict]) return;

@@ -4,7 +4,8 @@
 
 namespace clearway {
 
-/// The engine that searches: kSweep, kGrid or kKdtree.
+/// The engine that searches with these options, where kAuto stands for kSweep: kSweep, kGrid or
+/// kKdtree.
 Engine chosen_engine(const SearchOptions& options);
 
 /// Throws UsageError, saying what can answer it, where the engine cannot answer a query with these

@@ -90,7 +90,7 @@ void warn_of_lean(const Drive& drive, MessageLog& log) {
   const double lean = at(0.5);
   if (std::abs(lean) < kLeans || at(0.95) - lean > kSteady || lean - at(0.05) > kSteady) return;
   const double right = drive.right_turns();
-  if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // in a curve
+  if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // it leans into a curve
   log.warn("leans",
            "along the whole path the model leans to the " +
                std::string(lean > 0 ? "right" : "left") + " by " + figure(std::abs(lean)) +

@@ -13,7 +13,7 @@ namespace clearway {
 /// Stretches of the path as a warning describes them: the longest one with its place, the others
 /// with their number and length.
 struct ToldStretches {
-  /// `runs` is not empty.
+  /// runs: at least one.
   ToldStretches(const Question& question, const PathLooks& looks, const std::vector<LookRun>& runs);
 
   LookRun longest;
