@@ -37,8 +37,7 @@ TaskStatus status_of(const std::optional<TaskState>& state, LockState lock) {
     case Ending::kBegun:
       return lock == LockState::kUnknown ? TaskStatus::kBegun : TaskStatus::kInterrupted;
     default:
-      return TaskStatus::kInterrupted;  // a task with Ending::kDone lacks outputs, or has those of
-                                        // another plan
+      return TaskStatus::kInterrupted;  // done, but outputs are missing or of another plan
   }
 }
 

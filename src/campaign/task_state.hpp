@@ -41,8 +41,8 @@ bool has_result(const Task& task, const std::filesystem::path& campaign);
 bool is_done(const Task& task, const std::filesystem::path& campaign,
              const std::optional<TaskState>& state);
 
-/// Whether another try may help. A task that failed is tried again only after exit code 4, or where
-/// an input was not the planned one, which may have been put back.
+/// Whether another try may help. After a failure it may only where the exit code is 4, or where an
+/// input was not the planned one, which may have been put back; so not after a crash.
 bool may_succeed(const TaskLook& look);
 
 /// The file in the task's folder that a process holds locked while it works on the task.

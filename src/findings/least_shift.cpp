@@ -176,7 +176,7 @@ void LeastShift::add_runs(std::size_t body, const Pose& pose, const Pose& of_pat
   Pose turn = pose;
   for (double& t : turn.translation) t = 0;
   Run run{shapes_[body].get(), pulled_back(turn, left), seen.size(), 0};
-  if (!(rounded_dot(run.left, run.left) > 0)) return;  // the matrix of the pose cannot be inverted
+  if (!(rounded_dot(run.left, run.left) > 0)) return;  // the matrix of the pose is no rotation
   for (const Vec3& e : points) {
     const Vec3 x = pulled_back(pose, e);
     const PointWay from_right = run.way(PointWay{x, run.left}.at(-most), 1);
@@ -208,8 +208,8 @@ SideShifts LeastShift::least(std::span<const Vec3> points, std::uint32_t first, 
   }
   const auto to_side = [&](double direction) -> std::optional<double> {
     double shift = 0;
-    // A point that was free may be blocked farther on, so all points are repeated until the shift
-    // no longer grows.
+    // A point that was free may be blocked farther on, so all points are gone through again until
+    // the shift no longer grows.
     for (bool moved = true; moved;) {
       moved = false;
       for (const Run& run : runs) {

@@ -50,7 +50,7 @@ class Neighbourhood {
 
   bool exact_, wide_ = false;
   unsigned __int128 squared_ = 0;  ///< the greatest squared difference
-  /// The greatest difference on one axis, where it is not wide.
+  /// The greatest difference on one axis that is within the gap; not used where `wide_`.
   std::uint64_t reach_ = 0;
   std::array<double, 3> step_{};
   double squared_gap_ = 0;
