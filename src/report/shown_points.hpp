@@ -36,10 +36,9 @@ struct ShownPoints {
   std::array<std::uint64_t, kMostClasses> of_class{};
   /// Number of points of each class on the page.
   std::array<std::uint64_t, kMostClasses> shown_class{};
-  std::uint64_t without_place =
-      /// Number of points that do not collide, are closer than the last class, and have no
-      /// coordinates, because the result has none for clearances.
-      0;
+  /// Number of points that do not collide, are closer than the last class, and have no
+  /// coordinates, because the result has none for clearances.
+  std::uint64_t without_place = 0;
   std::uint64_t inside = 0;            ///< number of points with a clearance below 0
   std::optional<LeastDistance> least;  ///< the least of the clearances
   /// Coordinates of the colliding points whose source was asked for, by source.

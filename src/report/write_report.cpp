@@ -162,7 +162,7 @@ class Report {
 
   bool is_vehicle() const { return !options_.bodies.empty(); }
 
-  /// Finds the body that is nearest, because a profile does not tell.
+  /// Finds the body that is nearest, because a profile does not say which one it is.
   void find_nearest_body() {
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
