@@ -14,8 +14,8 @@
 namespace clearway {
 namespace {
 
-/// Whether the output is there, and intact: what it says follows from the question, but with a
-/// tolerance or in floats.
+/// Whether the output exists and is intact. With a tolerance or in single precision always false,
+/// because the answer then does not follow from the question alone.
 bool is_merged(const PartSet& set, const std::filesystem::path& output, Progress& progress) {
   if (!std::filesystem::exists(output)) return false;
   if (set.header().tolerance > 0 || set.header().float_precision) return false;
@@ -33,7 +33,8 @@ MergeReport report_of(const PartSet& set) {
   return report;
 }
 
-/// Where ignored points may have made the answer: of all parts, since only together they tell.
+/// Warns where ignored points may have made the answer. This can be judged only for all parts
+/// together.
 void warn_of_ignored(const PartSet& set, const MergeOptions& options, MergeReport& report) {
   const ResultPart& part = *set.parts().front().header().part;
   std::vector<Message> warnings;
@@ -44,7 +45,8 @@ void warn_of_ignored(const PartSet& set, const MergeOptions& options, MergeRepor
   }
 }
 
-/// Of a result that is there already too.
+/// Passes on the warnings of the parts, also where the result existed already. Throws where
+/// options.strict treats them as errors.
 void tell_warnings(const std::vector<PartWarning>& warnings, std::uint32_t parts,
                    const MergeOptions& options) {
   for (const PartWarning& warning : warnings) {

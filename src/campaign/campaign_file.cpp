@@ -20,7 +20,8 @@ const std::vector<OptionKey> kModelKeys{{"unit", "--model-unit", ValueKind::kTex
                                         {"spacing", "--model-spacing", ValueKind::kLength},
                                         {"vertices", "--model-vertices", ValueKind::kFlag},
                                         {"above", "--model-above", ValueKind::kLength}};
-/// Options of the search alone: conflicts and reports take the kind of model from the result.
+/// Options that only the search takes, because conflicts and reports know the kind of model from
+/// the result.
 const std::vector<OptionKey> kModelKindKeys{{"as", "--model-as", ValueKind::kText}};
 const std::vector<OptionKey> kAxisKeys{{"forward", "--forward", ValueKind::kText},
                                        {"up", "--up", ValueKind::kText}};
@@ -34,7 +35,7 @@ const std::vector<OptionKey> kTrajectoryKeys{
     {"lever_arm", "--lever-arm", ValueKind::kList}};
 const std::vector<OptionKey> kChainageKeys{
     {"chainage_start", "--chainage-start", ValueKind::kLength}};
-/// The parameters of a query but for the radius, which each run may have another one of.
+/// All parameters of a query except the radius, which may differ from run to run.
 std::vector<OptionKey> query_keys() {
   std::vector<OptionKey> keys;
   const auto add = [&keys](const auto& field) {
@@ -67,7 +68,7 @@ const std::vector<OptionKey> kSearchKeys{
 const std::vector<OptionKey> kLimitKeys{{"memory", "--memory", ValueKind::kSize},
                                         {"threads", "--threads", ValueKind::kCount}};
 
-/// A name becomes a folder of its own and a heading of the page.
+/// Refuses a name that cannot become a folder and a heading of the page.
 void check_name(const KeyReader& at, const std::string& name) {
   constexpr std::size_t kMostBytes = 100;
   const bool control = std::ranges::any_of(
@@ -80,7 +81,7 @@ void check_name(const KeyReader& at, const std::string& name) {
   }
 }
 
-/// The plan is a text of UTF-8.
+/// Refuses a path that is not UTF-8, because the plan is a UTF-8 text.
 void check_utf8(const KeyReader& at, const fs::path& path) {
   if (valid_utf8(path.string()) != path.string()) {
     at.refuse(valid_utf8(path.string()) + ": expected a name in UTF-8");
@@ -89,7 +90,7 @@ void check_utf8(const KeyReader& at, const fs::path& path) {
 
 bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
 
-/// The files that match, by name.
+/// The file that is named, or the files that match a pattern, sorted by name.
 std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder) {
   const std::string given = at.text();
   const fs::path path = folder / given;
@@ -108,7 +109,8 @@ std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder) {
   return files;
 }
 
-/// The entries of a member such as vehicles.truck: a file in short, or an object that has it.
+/// Reads the entries of a member such as vehicles.truck, which is either a file name or an object
+/// that contains one.
 template <typename Kind>
 class EntryReader {
  public:
@@ -234,7 +236,7 @@ void read_shard_seconds(const KeyReader& limits, Campaign& campaign) {
   campaign.shard_seconds = at.value().get<double>();
 }
 
-/// Options that the script sets itself.
+/// Whether an option of sbatch is one that the script sets itself.
 bool is_of_script(const std::string& option) {
   static constexpr std::array kOwn{"--array",      "--signal", "--requeue",
                                    "--no-requeue", "--output", "--open-mode",

@@ -8,46 +8,53 @@
 
 namespace clearway::campaign {
 
-/// An entry of environments, vehicles or routes; of a pattern, one of its matches.
+/// An entry of environments, vehicles or routes, or one match of an entry that is a pattern.
 struct Entry {
   std::string name;
-  std::string key;  ///< of its file in campaign.json, for messages
+  /// The key in campaign.json that names its file, for messages.
+  std::string key;
   std::filesystem::path file;
   Arguments arguments;
 };
 
 struct Vehicle : Entry {
-  /// A JSON file of several bodies, not a model.
+  /// Whether the vehicle's file is a JSON file of several bodies rather than a model.
   bool has_bodies() const { return file.extension() == ".json"; }
 
-  Arguments kind;  ///< what the model is searched as: for the search alone
-  Arguments axes;  ///< for conflicts and reports alone
+  /// Options for what the model is searched as, which only the search takes.
+  Arguments kind;
+  /// Options for the model's axes, which only conflicts and reports take.
+  Arguments axes;
 };
 
 struct Route : Entry {
-  std::size_t environment = 0;  ///< its index
-  Arguments chainage;           ///< for conflicts and reports alone
+  std::size_t environment = 0;  ///< index in Campaign::environments
+  Arguments chainage;           ///< options that only conflicts and reports take
 };
 
-/// A campaign.json, patterns resolved, as far as it can be judged without its inputs.
+/// The contents of a campaign.json with patterns resolved, as far as they can be judged without the
+/// inputs.
 struct Campaign {
   std::string name;
   std::vector<Entry> environments;
   std::vector<Vehicle> vehicles;
   std::vector<Route> routes;
-  Arguments radii;  ///< --radius, one each
+  Arguments radii;  ///< one --radius for each radius
   std::vector<std::string> radius_names;
   Arguments query;
-  std::vector<std::string> conflict_formats;  ///< endings, without dot
+  std::vector<std::string> conflict_formats;  ///< file name extensions, without dot
   bool report = false;
-  Arguments conflicts;  ///< options of conflicts and reports alike
+  Arguments conflicts;  ///< options that both conflicts and reports take
   Arguments classes;
-  Arguments search_limits, limits;  ///< of clearway run alone, of all commands
-  double shard_seconds = 0;         ///< a run that is estimated longer is divided; 0: none is
-  std::vector<std::string> slurm;   ///< options of sbatch
+  /// Options that only `clearway run` takes, and those that all commands take.
+  Arguments search_limits, limits;
+  /// A run that is estimated to take longer is divided into shards; 0: no run is.
+  double shard_seconds = 0;
+  std::vector<std::string> slurm;  ///< options of sbatch
 };
 
-/// Paths of the file are those from its folder. Throws InputError that names the key.
+/// Reads a campaign.json. Paths in it are relative to its folder. Throws InputError that names the
+/// key.
 Campaign read_campaign(const std::filesystem::path& file);
 
 }  // namespace clearway::campaign

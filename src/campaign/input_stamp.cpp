@@ -26,7 +26,7 @@ std::optional<InputStamp> stamp_of(const std::string& what, const fs::path& file
                     std::chrono::duration_cast<Nanoseconds>(modified.time_since_epoch()).count()};
 }
 
-/// The files that a vehicle's file names; none where it cannot be read, which the run will say.
+/// The files that a vehicle's file names; none where it cannot be read, which the run will report.
 std::vector<std::pair<std::string, fs::path>> files_of_bodies(const fs::path& vehicle) {
   std::vector<std::pair<std::string, fs::path>> files;
   try {
@@ -40,7 +40,8 @@ std::vector<std::pair<std::string, fs::path>> files_of_bodies(const fs::path& ve
   return files;
 }
 
-/// The words of the task's `clearway run`: the second command of a merge, otherwise the first.
+/// The words of the task's `clearway run`, which is the second command of a merge and the first of
+/// any other task; null where there is none.
 const Command* run_of_commands(const Task& task) {
   const auto run = std::ranges::find_if(
       task.commands, [](const Command& words) { return !words.empty() && words[0] == "run"; });

@@ -9,14 +9,16 @@ namespace clearway::campaign {
 
 /// A command line option that a key of campaign.json stands for.
 struct Argument {
-  std::string key;     ///< "vehicles.truck.unit"
-  std::string option;  ///< "--model-unit"
-  std::string text;    ///< as on a command line: "--model-unit=mm"
+  std::string key;     ///< for example "vehicles.truck.unit"
+  std::string option;  ///< for example "--model-unit"
+  /// The word of the command line, for example "--model-unit=mm".
+  std::string text;
 };
 
 using Arguments = std::vector<Argument>;
 
-/// What a value of campaign.json may be; what it means is for the command line to judge.
+/// The kind of value that a key of campaign.json has. What the value means is for the command line
+/// to judge.
 enum class ValueKind {
   kLength,
   kText,
@@ -25,7 +27,7 @@ enum class ValueKind {
   kSize,
   kNumber,
   kList,
-  kLists  ///< a list of lists: the option once for each
+  kLists  ///< a list of lists: the option is repeated for each inner list
 };
 
 /// A key and the option that it stands for.
@@ -35,14 +37,14 @@ struct OptionKey {
   ValueKind kind;
 };
 
-/// The options of the keys that the object has, in the order of the table.
+/// The options for the keys that the object has, in the order of the table.
 Arguments arguments_of(const KeyReader& object, const std::vector<OptionKey>& table);
 
-/// Names of the table, and others.
+/// The keys of the table after the names in `others`.
 std::vector<std::string> names_of(const std::vector<OptionKey>& table,
                                   std::vector<std::string> others);
 
-/// A number or a string, as on a command line. Refuses what is neither.
+/// A number or a string, as on a command line. Refuses any other value.
 std::string length_text(const KeyReader& value);
 
 }  // namespace clearway::campaign

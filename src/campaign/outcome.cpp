@@ -49,7 +49,7 @@ Outcome outcome_of(const TaskLook& look) {
 
 RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks) {
   RunLooks runs{{plan.name, {}}, {}};
-  std::optional<TaskLook> failed;  // of the shards before their run
+  std::optional<TaskLook> failed;  // one of the shards that come before their run
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (plan.tasks[i].shard) {
       if (looks[i].status == TaskStatus::kFailed && !failed) {

@@ -10,11 +10,12 @@
 
 namespace clearway::campaign {
 
-/// What is known of a run, as page, status and `campaign run` count it: each run has one of these.
+/// What is known of a run, as the page, `campaign status` and `campaign run` count it. Each run has
+/// exactly one of these.
 enum class Outcome {
   kConflict,
   kUndecided,  ///< the search could not have found anything
-  kDoubtful,   ///< clear, but something was warned of
+  kDoubtful,   ///< clear, but there were warnings
   kClear,
   kFailed,
   kUnfinished
@@ -24,24 +25,29 @@ inline constexpr std::array kOutcomes{Outcome::kConflict, Outcome::kUndecided,
                                       Outcome::kFailed,   Outcome::kUnfinished};
 
 struct OutcomeWords {
-  const char* name;   ///< in JSON, and as a class of styles: "doubtful"
-  const char* sign;   ///< tells it without colour
-  const char* word;   ///< for a count: "clear with warnings"
-  const char* words;  ///< for the legend, with what it means
+  /// The name in JSON, and as a class of the style sheet, for example "doubtful".
+  const char* name;
+  /// A character that tells the outcome without colour.
+  const char* sign;
+  /// The word after a count, for example "clear with warnings".
+  const char* word;
+  /// The text of the legend, which says what the outcome means.
+  const char* words;
 };
 const OutcomeWords& words_of(Outcome outcome);
 
 Outcome outcome_of(const TaskLook& look);
 
-/// The tasks of a plan that are runs, not shards, and how they look: a run one of whose shards
-/// failed has failed.
+/// The tasks of a plan that are runs, not shards, with their state. A run one of whose shards has
+/// failed has failed itself.
 struct RunLooks {
   Plan plan;
   std::vector<TaskLook> looks;
 };
 RunLooks run_looks(const Plan& plan, const std::vector<TaskLook>& looks);
 
-/// How many runs have each outcome, in the order of kOutcomes: together all of them.
+/// How many runs have each outcome, in the order of kOutcomes. The counts add up to the number of
+/// runs.
 class OutcomeCounts {
  public:
   /// looks: those of run_looks().
@@ -49,24 +55,26 @@ class OutcomeCounts {
 
   std::size_t of(Outcome outcome) const { return counts_.at(static_cast<std::size_t>(outcome)); }
   std::size_t all() const;
-  /// "5 runs: 1 conflict, 1 undecided, 1 clear with warnings, 1 clear, 1 failed, 0 not done"
+  /// For example "5 runs: 1 conflict, 1 undecided, 1 clear with warnings, 1 clear, 1 failed, 0 not
+  /// done".
   std::string text() const;
-  /// The counts by the names of outcomes.
+  /// An object with the counts under the names of the outcomes.
   nlohmann::ordered_json json() const;
 
  private:
   std::array<std::size_t, kOutcomes.size()> counts_{};
 };
 
-/// What has to be said beside the verdict of a run that is done: "2 warnings (out-of-reach,
-/// scan-ends); 1,234 points ignored, of which 56 would collide; not exact". Empty where there is
-/// nothing.
+/// What has to be said beside the verdict of a run that is done, for example "2 warnings
+/// (out-of-reach, scan-ends); 1,234 points ignored, of which 56 would collide; not exact". Empty
+/// where there is nothing to say.
 std::string caveats_of(const nlohmann::ordered_json& facts);
 
-/// Whether the run was asked for an exact answer: without a tolerance, and in double precision.
+/// Whether the run was asked for an exact answer, that is, without a tolerance and in double
+/// precision.
 bool is_exact(const nlohmann::ordered_json& facts);
 
-/// "1,234 points ignored, of which 56 would collide"; empty where none is.
+/// For example "1,234 points ignored, of which 56 would collide"; empty where none is ignored.
 std::string ignored_words(const nlohmann::ordered_json& facts);
 
 }  // namespace clearway::campaign

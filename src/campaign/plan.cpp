@@ -70,7 +70,8 @@ class RunCommands {
   }
 
  private:
-  /// Pictures show the model, and sides are seen from bodies; else the trajectory is enough.
+  /// The command that finds the conflicts. It needs the model where pictures show it or where sides
+  /// are seen from bodies; otherwise the trajectory is enough.
   std::pair<Command, Arguments> conflicts() const {
     Command command{"conflicts", kResultName, "--force", "--show=0"};
     bool needs_model = vehicle_.has_bodies();
@@ -96,14 +97,14 @@ Command with_arguments(Command command, const Arguments& arguments, const Argume
   return command;
 }
 
-/// Of a run, or of the shards of a run that is divided: what its commands begin with.
+/// The words that `clearway run` begins with, for a run or for a shard.
 Command run_words(const Task& task) {
   Command words{"run", "--resume", "--json", std::string("--output=") + task.result()};
   if (task.shard) words.push_back("--shard=" + to_string(*task.shard));
   return words;
 }
 
-/// "--memory" and "--threads".
+/// The command that merges the shards. limits: "--memory" and "--threads".
 Command merge_words(const Task& task, const Arguments& limits) {
   Command words{"merge", "--resume", std::string("--output=") + task.result()};
   for (std::uint32_t number = 1; number <= task.shards; ++number) {
@@ -113,7 +114,8 @@ Command merge_words(const Task& task, const Arguments& limits) {
   return words;
 }
 
-/// Of a merge: it finds its result, says what is in it, and searches nothing. So it needs no GPU.
+/// The options of `clearway run` after a merge: it finds its result, says what is in it, and
+/// searches nothing, so it needs no GPU.
 Arguments without_search(const Campaign& campaign, const RunCommands& commands) {
   return commands.run() + Arguments{{"limits.device", "--device", "--device=cpu"}} +
          campaign.limits;

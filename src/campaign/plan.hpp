@@ -13,29 +13,35 @@
 
 namespace clearway::campaign {
 
-/// The command lines of one task, without the program's name; "out.h5" and so on are in its folder.
+/// One command line of a task, without the program's name. Names such as "out.h5" are relative to
+/// the task's folder.
 using Command = std::vector<std::string>;
 
 inline constexpr const char* kResultName = "out.h5";
-inline constexpr const char* kPartName = "part.h5";  ///< of a shard
+inline constexpr const char* kPartName = "part.h5";  ///< the result of a shard
 inline constexpr const char* kReportName = "report.html";
 
-/// What one process does: a run and its outputs; a shard of one; or, of a run that is divided, the
-/// merge of its shards and the outputs.
+/// What one process does: a run and its outputs, a shard of a run, or, for a run that is divided,
+/// the merge of its shards and the outputs.
 // NOLINTNEXTLINE(bugprone-exception-escape): of JSON that is moved
 struct Task {
   std::size_t number = 0;
   std::string vehicle, route, environment, radius;
-  std::string unit;  ///< of lengths, for people: "m"
+  std::string unit;  ///< unit of lengths for people, for example "m"
   nlohmann::ordered_json question;
-  std::optional<Shard> shard;        ///< of a shard
-  std::uint32_t shards = 0;          ///< of a merge: the tasks before it
-  std::string store;                 ///< of a merge: the fingerprint that its shards are of
+  std::optional<Shard> shard;  ///< set for a shard
+  /// The number of shards that a merge merges, whose tasks come directly before it; 0 for other
+  /// tasks.
+  std::uint32_t shards = 0;
+  /// The fingerprint of the store whose points a merge's shards search.
+  std::string store;
   std::vector<std::string> outputs;  ///< names of the files beside the result
-  std::vector<Command> commands;     ///< the first one makes the result
-  std::string outputs_id;            ///< of how the outputs are made, whatever the limits
+  std::vector<Command> commands;     ///< the first command makes the result
+  /// Identifies how the outputs are made, whatever the limits.
+  std::string outputs_id;
 
-  /// "truck/north/0.1", "truck/north/0.1/shards/2": it and its folder below the campaign's.
+  /// The task's name, which is also its folder below the campaign's "runs", for example
+  /// "truck/north/0.1" or "truck/north/0.1/shards/2".
   std::string name() const {
     return vehicle + "/" + route + "/" + radius +
            (shard ? "/shards/" + std::to_string(shard->number) : "");
@@ -50,32 +56,36 @@ struct Plan {
   std::vector<Task> tasks;
 };
 
-/// Of a merge: a task that it waits for, with all but its commands. number: from 1.
+/// The task of one of the shards that a merge waits for, without its number and its `clearway run`.
+/// number: the shard's, from 1.
 Task shard_of(const Task& merge, std::uint32_t number);
 
-/// Of a shard: its run, as far as the result goes: without outputs and commands.
+/// The run that a shard belongs to, as far as its result is concerned: without outputs and
+/// commands.
 Task run_of(const Task& shard);
 
-/// A run as it is to be asked.
+/// A run of the campaign with the command lines that ask for it.
 struct PlannedRun {
   const Vehicle& vehicle;
   const Route& route;
   const Argument& radius;
   const Entry& environment;
-  Arguments arguments;                                 ///< all of its command line
-  std::vector<std::pair<Command, Arguments>> outputs;  ///< the other command lines, for messages
+  Arguments arguments;  ///< the whole command line of the search
+  /// The other command lines, with their options for messages.
+  std::vector<std::pair<Command, Arguments>> outputs;
 };
 
-/// What reading the inputs of a run tells.
+/// What is known of a run once its inputs are read.
 struct RunFacts {
   nlohmann::ordered_json question;
   std::string unit;
-  std::uint32_t shards = 1;  ///< that it is divided into
-  std::string store;         ///< its fingerprint, as text
+  std::uint32_t shards = 1;  ///< number of shards that the run is divided into
+  std::string store;         ///< fingerprint of the store, as text
 };
 
-/// Vehicles, routes and radii in the order of the file, radii innermost. The shards of a run come
-/// before their merge. facts_of reads what a task would read, and refuses what that would refuse.
+/// Plans the tasks of vehicles, routes and radii in the order of the file, radii innermost. The
+/// shards of a run come before their merge. facts_of reads what a task would read, and refuses what
+/// the task would refuse.
 Plan make_plan(const Campaign& campaign,
                const std::function<RunFacts(const PlannedRun&)>& facts_of);
 

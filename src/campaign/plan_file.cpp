@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 2;  // 1: without the stores of shards
+constexpr int kFormat = 2;  // format 1 has no fingerprints of the stores of shards
 constexpr std::string_view kEnd = "]}";
 
 ordered_json json_of(const Task& task) {
@@ -58,7 +58,7 @@ Task task_of(const ordered_json& line) {
   return task;
 }
 
-/// The lines of a plan: a head, one a task, and the end.
+/// The lines of a plan: a head, one line for each task, and the end.
 class PlanLines {
   template <typename Read>
   auto guarded(const Read& read) const {

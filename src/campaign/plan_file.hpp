@@ -10,11 +10,13 @@ namespace clearway::campaign {
 
 inline constexpr const char* kPlanName = "plan.json";
 
-/// One JSON object with a line a task, so that a task is read without reading all of them.
+/// The plan as one JSON object with one line for each task, so that a task can be read without
+/// parsing all of them.
 std::string plan_text(const Plan& plan);
 
-/// Of a campaign's folder, all tasks; tasks: those alone, in their order. Throws UsageError where
-/// there is no plan or no task of a number; InputError where the plan is damaged.
+/// Reads the plan of a campaign's folder: all of its tasks, or those with the numbers in `tasks`,
+/// in their order. Throws UsageError where there is no plan or no task with a number, and
+/// InputError where the plan is damaged.
 Plan read_plan(const std::filesystem::path& folder);
 Plan read_plan(const std::filesystem::path& folder, const TaskList& tasks);
 

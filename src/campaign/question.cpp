@@ -22,7 +22,7 @@ nlohmann::ordered_json ignored_of(const ResultHeader& header) {
   return ignored;
 }
 
-/// Of a complete result.
+/// The question that a complete result or part answers; nothing where there is no such file.
 std::optional<nlohmann::ordered_json> question_in(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown)) return std::nullopt;
@@ -78,7 +78,7 @@ bool is_journal_of_others(const std::filesystem::path& file,
              (name == "trajectory" && question["trajectory_hash"] != value);
     });
   } catch (const Error&) {
-    return false;  // the run says what is wrong with it
+    return false;  // the run reports what is wrong with it
   }
 }
 

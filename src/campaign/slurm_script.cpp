@@ -3,14 +3,15 @@
 namespace clearway::campaign {
 namespace {
 
-/// A word of a shell, whatever is in it.
+/// Quotes any text as one word of a shell.
 std::string shell_word(const std::string& text) {
   std::string word = "'";
   for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
 }
 
-/// Of what the program takes beside --memory: itself, its libraries, the file system's buffers.
+/// Bytes that the program takes beside --memory: itself, its libraries, and buffers of the file
+/// system.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{512} << 20;
 
 std::string resources(const SlurmJob& job) {
@@ -110,7 +111,7 @@ std::string variables(const SlurmJob& job) {
          "\nfolder=" + shell_word(job.folder.string()) + "\nname=" + shell_word(job.name) + "\n";
 }
 
-/// Between quotes of a #SBATCH line, where a percent sign stands for a number.
+/// Escapes a text within quotes on a #SBATCH line, where a percent sign introduces a placeholder.
 std::string sbatch_word(const std::string& text) {
   std::string word;
   for (const char c : text) {

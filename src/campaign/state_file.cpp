@@ -29,7 +29,7 @@ ordered_json place_of(const ordered_json& place) {
   return out;
 }
 
-/// Null where the query ignores nothing.
+/// The counts of ignored points; null where the query ignores nothing.
 ordered_json ignored_of(const ordered_json& ignored) {
   if (ignored.at("classes").empty() && ignored.at("boxes").empty()) return nullptr;
   return {{"points", ignored.at("points")},

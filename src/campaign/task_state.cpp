@@ -21,7 +21,7 @@ LockState task_lock(const fs::path& folder) {
   }
 }
 
-/// Of the plan's question, whatever its outputs.
+/// The state of the last try, where it has the plan's question, whatever its outputs.
 std::optional<TaskState> state_of(const Task& task, const fs::path& folder) {
   std::optional<TaskState> state = read_state(folder);
   if (state && state->question_id != task.question_id()) state.reset();
@@ -37,11 +37,11 @@ TaskStatus status_of(const std::optional<TaskState>& state, LockState lock) {
     case Ending::kBegun:
       return lock == LockState::kUnknown ? TaskStatus::kBegun : TaskStatus::kInterrupted;
     default:
-      return TaskStatus::kInterrupted;  // of a finished one, outputs are missing or of another plan
+      return TaskStatus::kInterrupted;  // done, but outputs are missing or of another plan
   }
 }
 
-/// Whether the try finished its task, whatever became of its inputs since.
+/// Whether the try finished its task, even if its inputs have changed since.
 bool is_finished(const Task& task, const fs::path& campaign,
                  const std::optional<TaskState>& state) {
   if (!state || state->ending != Ending::kDone || state->question_id != task.question_id() ||
@@ -79,7 +79,8 @@ TaskLook look_at(const Task& task, const fs::path& campaign) {
     if (is_done(task, campaign, state)) return {TaskStatus::kDone, state};
     const LockState lock = task_lock(folder);
     if (lock == LockState::kHeld) return {TaskStatus::kRunning, state};
-    // What held the lock may have ended, or begun, between the two looks.
+    // The process that held the lock may have ended, or another may have begun, between the two
+    // looks.
     std::optional<TaskState> again = state_of(task, folder);
     if (again == state) {
       TaskLook look{status_of(state, lock), state};

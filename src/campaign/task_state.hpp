@@ -10,39 +10,42 @@
 
 namespace clearway::campaign {
 
-/// kBegun: by another process, or interrupted; the file system has no locks that tell. kOutdated:
-/// finished, but a file that it read has changed since, so that its verdict is of an earlier file.
+/// What can be said about a task. kBegun: another process works on it, or it was interrupted; the
+/// file system has no locks that tell which. kOutdated: it finished, but a file that it read has
+/// changed since, so its verdict is about an earlier file.
 enum class TaskStatus { kDone, kRunning, kBegun, kInterrupted, kOutdated, kFailed, kMissing };
 inline constexpr TaskStatus kStatuses[]{
     TaskStatus::kDone,     TaskStatus::kRunning, TaskStatus::kBegun,  TaskStatus::kInterrupted,
     TaskStatus::kOutdated, TaskStatus::kFailed,  TaskStatus::kMissing};
 const char* name_of(TaskStatus status);
 
-/// A task as its folder says.
+/// What a task's folder says about it.
 struct TaskLook {
   TaskStatus status = TaskStatus::kMissing;
-  std::optional<TaskState> state;  ///< of the last try of this plan
-  std::uint32_t shard = 0;         ///< whose look it is, where it stands for its run; 0: of none
-  std::string changed = {};        ///< of an outdated one: see changed_since()
+  std::optional<TaskState> state;  ///< state of the last try with this plan
+  /// The shard that this describes where it stands for its run; 0 for none.
+  std::uint32_t shard = 0;
+  /// Which files changed, if the task is outdated: see changed_since().
+  std::string changed = {};
 };
 
-/// campaign: its folder. Changes nothing.
+/// Looks at a task without changing anything. campaign: the campaign's folder.
 TaskLook look_at(const Task& task, const std::filesystem::path& campaign);
 
-/// Whether the result is there, complete, and answers the task's question.
+/// Whether the task's result exists, is complete, and answers the task's question.
 bool has_result(const Task& task, const std::filesystem::path& campaign);
 
-/// Whether a try said so of this plan, and the result is complete and answers the task's question,
-/// and the outputs are there, and no file that the try read has changed since. A shard is done too
-/// where its run has the result: it is not needed.
+/// Whether a task is done: a try with this plan says so, the result is complete and answers the
+/// task's question, the outputs exist, and no file that the try read has changed since. A shard is
+/// also done where its run has the result, because the shard is not needed then.
 bool is_done(const Task& task, const std::filesystem::path& campaign,
              const std::optional<TaskState>& state);
 
-/// Whether another try may help: not after a crash, and after exit codes 2 and 3 only where an
-/// input was not the planned one, which may have been put back.
+/// Whether another try may help. After a failure it may only where the exit code is 4, or where an
+/// input was not the planned one, which may have been put back; so not after a crash.
 bool may_succeed(const TaskLook& look);
 
-/// What a process at work on the task holds locked, in the run's folder.
+/// The file in the task's folder that a process holds locked while it works on the task.
 inline constexpr const char* kLockName = "lock";
 
 }  // namespace clearway::campaign

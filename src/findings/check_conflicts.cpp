@@ -12,7 +12,7 @@
 namespace clearway {
 namespace {
 
-/// Stretches are counted without rounding, on any path.
+/// The shortest stretch in metres, so that stretches of any path are counted without rounding.
 constexpr double kLeastSplit = 1e-9;
 
 void check_options(const ConflictOptions& options) {

@@ -8,12 +8,12 @@
 
 namespace clearway {
 
-/// Throws UsageError for options that make no sense and for a result without first poses,
-/// InputError for poses or bodies of another search.
+/// Throws UsageError for options that make no sense and for a result without first poses, and
+/// InputError for poses or bodies that are not those of the search.
 void check_conflicts(const ResultReader& result, const std::vector<Pose>& poses,
                      const ConflictOptions& options);
 
-/// Throws InputError where a result is not of the vehicle of these bodies.
+/// Throws InputError where a result is not that of the vehicle with these bodies.
 void check_bodies_of(const ResultReader& result, std::span<const Body> bodies);
 
 }  // namespace clearway

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kAll = ~std::size_t{0};
 
-/// Gives the first row that has no stored integers, or kAll.
+/// Computes the stored integers of all rows. Returns the first row whose coordinates are not those
+/// of stored integers, or kAll.
 std::size_t requantize_rows(const Quantisation& quantisation, const std::vector<Vec3>& xyz,
                             QuantumPoint* out) {
   std::atomic<std::size_t> bad{kAll};

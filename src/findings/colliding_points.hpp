@@ -9,7 +9,7 @@
 
 namespace clearway {
 
-/// The rows of a result, of which conflicts are made.
+/// The rows of a result that conflicts are made of.
 struct CollidingPoints {
   static constexpr std::uint64_t kBytesOfPoint =
       sizeof(QuantumPoint) + sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) + 1;
@@ -17,12 +17,14 @@ struct CollidingPoints {
   std::vector<QuantumPoint> quanta;
   std::vector<std::uint64_t> source;  ///< ascending
   std::vector<std::uint32_t> first_pose;
-  std::vector<std::uint32_t> last_pose;  ///< the first one where the result has none
-  std::vector<std::uint8_t> body;        ///< of the first pose; empty without bodies
+  /// The first pose where the result has no last poses.
+  std::vector<std::uint32_t> last_pose;
+  /// The body that collides at the first pose; empty for a result without bodies.
+  std::vector<std::uint8_t> body;
 };
 
-/// Throws InputError as ResultRowStream does, and for coordinates that are not those of stored
-/// integers.
+/// Reads all colliding points of a result. Throws InputError as ResultRowStream does, and for
+/// coordinates that are not those of stored integers.
 CollidingPoints read_colliding_points(const ResultReader& result, Progress& progress);
 
 }  // namespace clearway

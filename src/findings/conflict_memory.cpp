@@ -13,17 +13,18 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kProgram = std::uint64_t{32} << 20;  // buffers of the reader included
+constexpr std::uint64_t kProgram = std::uint64_t{32} << 20;  // includes the reader's buffers
 constexpr std::uint64_t kMostPoints = 0xffff'fffe;
 
-/// Of a cell beside what the grid holds: its set, its group, and the count of its points.
+/// Bytes of a cell: what the grid holds of it, its set, its group, and the count of its points.
 constexpr std::uint64_t kBytesOfCell = CellGrid::kBytesOfCell + 3 * sizeof(std::uint32_t);
-/// Of a point once it is in the grid: its source, its first and last pose, body and part too.
+/// Bytes of a point once it is in the grid, including its source, first and last pose, body and
+/// part.
 constexpr std::uint64_t kBytesOfSortedPoint = CellGrid::kBytesOfPoint + sizeof(std::uint64_t) +
                                               3 * sizeof(std::uint32_t) + 1 + kJoinBytesOfPoint;
 constexpr std::uint64_t kBytesOfUnsortedPoint =
     CollidingPoints::kBytesOfPoint + CellGrid::kBytesOfPoint;
-/// Vectors of conflicts grow to twice their size.
+/// Bytes of a part and its conflict, which counts twice because vectors grow to twice their size.
 constexpr std::uint64_t kBytesOfPart = sizeof(Tally) + 2 * sizeof(Conflict) + 32;
 
 }  // namespace

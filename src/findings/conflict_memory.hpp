@@ -4,18 +4,18 @@
 
 namespace clearway {
 
-/// What find_conflicts takes of the memory budget. The checks throw ResourceError with an amount
+/// What find_conflicts() takes of the memory budget. The checks throw ResourceError with an amount
 /// that is enough.
 class ConflictMemory {
  public:
   ConflictMemory(std::uint64_t allowed, std::uint64_t points, std::uint64_t poses)
       : allowed_(allowed), points_(points), poses_(poses) {}
 
-  /// Before the points are read: they and their grid.
+  /// Called before the points are read: checks the memory of the points and their grid.
   void check_points() const;
-  /// Before the cells of the grid are kept.
+  /// Called before the cells of the grid are kept: checks the memory of that many cells.
   void check_cells(std::uint64_t cells) const;
-  /// Before so many groups and parts are summed up.
+  /// Called before groups are summed up: checks the memory of that many cells and parts.
   void check_parts(std::uint64_t cells, std::uint64_t parts) const;
 
  private:

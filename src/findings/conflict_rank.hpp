@@ -7,8 +7,9 @@
 
 namespace clearway {
 
-/// Below it a distance says only that the surfaces touch, metres: what a scan can tell. Which of
-/// two such distances is smaller by a tenth of a millimetre ranks nothing.
+/// Distances below this, in metres, say only that the surfaces touch, because a scan can tell no
+/// more. Which of two such distances is smaller by a tenth of a millimetre does not matter for the
+/// rank.
 inline constexpr double kTouching = 0.001;
 
 /// The distance by which a conflict is ranked; infinity where none is known.
@@ -17,8 +18,8 @@ inline double ranked_distance(const Conflict& c) {
   return distance >= 0 && distance < kTouching ? 0 : distance;
 }
 
-/// The shorter of the shifts that free it. Infinity where neither side does, 0 where neither was
-/// asked for.
+/// The shorter of the shifts to the left and to the right that free the conflict. Infinity where
+/// neither side frees it, and 0 where no shifts are known.
 inline double ranked_shift(const Conflict& c, bool shifts_known) {
   if (!shifts_known) return 0;
   const double none = std::numeric_limits<double>::infinity();
@@ -26,7 +27,7 @@ inline double ranked_shift(const Conflict& c, bool shifts_known) {
 }
 
 /// Whether a is worse than b: deeper or nearer, then harder to free by a shift, then of more
-/// points, then earlier. shifts_known: any of the conflicts has a shift.
+/// points, then earlier along the path. shifts_known: whether any of the conflicts has a shift.
 inline bool is_worse(const Conflict& a, const Conflict& b, bool shifts_known) {
   const double near_a = ranked_distance(a), near_b = ranked_distance(b);
   if (near_a != near_b) return near_a < near_b;

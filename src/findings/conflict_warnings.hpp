@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// What makes conflicts of little use: "one-long-conflict", a group that spans most of the path.
-/// unit: the symbol of lengths.
+/// Warns of conflicts that are of little use: "one-long-conflict" for a group that spans most of
+/// the path. unit: the symbol of the unit of length.
 std::vector<Message> conflict_warnings(const Conflicts& conflicts, const std::string& unit);
 
 }  // namespace clearway

@@ -31,13 +31,14 @@
 namespace clearway {
 namespace {
 
-/// The work on one result, step by step.
+/// One call of find_conflicts(), step by step.
 class ConflictSearch {
  public:
   static constexpr double kMostShift = 2;  ///< metres
-  /// What shifts are found from: pairs of a point and a pose, which take some 50 ns and, in one
-  /// conflict, 24 bytes each; and points of all conflicts, of 24 bytes each.
+  /// The most pairs of a point and a pose from which shifts are found, in one conflict and in all
+  /// conflicts together. A pair takes some 50 ns, and in one conflict 24 bytes.
   static constexpr std::uint64_t kMostPairs = 4'000'000, kMostPairsOfAll = 200'000'000;
+  /// The most points of all conflicts from which shifts are found, of 24 bytes each.
   static constexpr std::uint64_t kMostPointsOfAll = 5'000'000;
 
   ConflictSearch(const Result& result, const std::vector<Pose>& poses,
@@ -78,7 +79,7 @@ class ConflictSearch {
     out_.small_points = groups_.small_points;
   }
 
-  /// Returns the conflict of each row.
+  /// Lists the conflicts, and returns the conflict of each row.
   std::vector<std::uint32_t> list() {
     const std::uint64_t groups_in_all = groups_.count + groups_.small_groups;
     memory_.check_parts(grid_->cells(), groups_in_all);
@@ -115,7 +116,8 @@ class ConflictSearch {
     });
   }
 
-  /// The chainage at which the touch of a last pose ends.
+  /// The chainage at which the contact of a last pose ends, which between poses is the end of its
+  /// way.
   double end_of(std::uint32_t last_pose) const {
     const bool way = reader_.header().between_poses && last_pose + 1 < chainage_.size();
     return chainage_[last_pose + (way ? 1 : 0)];
@@ -150,7 +152,8 @@ class ConflictSearch {
     return out;
   }
 
-  /// One for each part that is not empty, in the order of the parts; id: the part's number + 1.
+  /// Makes a conflict for each part that is not empty, in the order of the parts. Its id is for now
+  /// the part's index + 1.
   void make_conflicts(const std::vector<Tally>& groups, const GroupParts& parts,
                       const std::vector<Tally>& tallies) {
     const Quantisation& quantisation = reader_.header().quantisation;
@@ -201,8 +204,8 @@ class ConflictSearch {
     for (std::uint32_t& part : part_of_row) part = id_of_part[part];
   }
 
-  /// Of the model's points, or those of each body; none where they are not known. Of a vehicle's
-  /// bodies each has its own frame, so that no one box says on which side a conflict is.
+  /// The boxes of the model or of each body; empty where they are not known. The bodies of a
+  /// vehicle have frames of their own, so no single box says on which side a conflict is.
   static std::vector<Box> boxes_of(const Result& result, const ConflictOptions& options) {
     std::vector<Box> boxes;
     for (const Body& body : options.bodies) boxes.push_back(box_of(body.model.vertices));
@@ -212,7 +215,8 @@ class ConflictSearch {
     return boxes;
   }
 
-  /// Sides, and the places that conflicts without clearances are seen by. Before they are numbered.
+  /// Sets the sides, and finds the places by which conflicts without clearances are seen. Called
+  /// before conflicts are numbered.
   void add_touched_first(const std::vector<Tally>& tallies,
                          std::span<const std::uint32_t> part_of_row) {
     const Quantisation& quantisation = reader_.header().quantisation;
@@ -269,20 +273,21 @@ class ConflictSearch {
     if (!std::isfinite(there.x) || !std::isfinite(there.y) || !std::isfinite(there.z)) return;
     conflict.lateral = there.y;
     conflict.height = there.z;
-    // From the path's pose, not from the body's, whose own x axis may begin anywhere.
+    // Measured from the path's pose and not from the body's, whose own x axis may begin anywhere.
     const double ahead = ahead_left_up(place, poses_[at], options_.forward, options_.up).x;
     if (!std::isfinite(ahead)) return;
     conflict.obstacle_chainage = chainage_[at] + ahead + options_.chainage_start;
   }
 
-  /// Where the conflict's body is at a pose of the path, if bodies are given; null where it has no
-  /// pose there.
+  /// The pose of the conflict's body at a pose of the path; null where the body has no pose there
+  /// or is not known. Without bodies, the path's own pose.
   const Pose* pose_of(std::optional<std::uint32_t> body, std::uint32_t at) const {
     if (options_.bodies.empty()) return &poses_[at];
     return body ? pose_at(options_.bodies[*body], at) : nullptr;
   }
 
-  /// From the points of each conflict; of very many, from every n-th.
+  /// Finds the shifts that free each conflict, from its points; of very many points, from every
+  /// n-th.
   void add_shifts(std::span<const std::uint32_t> conflict_of_row) {
     std::vector<Body> one;
     std::span<const Body> bodies = options_.bodies;
@@ -312,7 +317,8 @@ class ConflictSearch {
     progress_.end();
   }
 
-  /// Of each conflict. The pairs of a point and a pose are bounded, for the time that they take.
+  /// The points of each conflict from which its shifts are found. The number of pairs of a point
+  /// and a pose is bounded because of the time that they take.
   std::vector<std::vector<Vec3>> points_to_free(std::span<const std::uint32_t> conflict_of_row) {
     std::vector<std::uint64_t> every, met(out_.listed.size());
     const std::size_t conflicts = std::max<std::size_t>(1, out_.listed.size());
@@ -347,7 +353,8 @@ class ConflictSearch {
   CollidingPoints points_;
   std::optional<CellGrid> grid_;
   PointGroups groups_;
-  std::vector<Vec3> first_places_;  ///< of each conflict, the first point that is touched
+  /// For each conflict, the place of the first point that is touched.
+  std::vector<Vec3> first_places_;
   Conflicts out_;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 struct NumberedPoint {
   Vec3 xyz;
-  std::uint32_t conflict;  ///< 0: of a small group
+  std::uint32_t conflict;  ///< 0 for a point of a small group
 };
 
 /// A cube of a regular grid.
@@ -33,14 +33,15 @@ struct CubeHash {
   }
 };
 
-/// Cubes at least as long as the gap: what lies within it is in the same cube or beside it.
+/// Points in cubes at least as long as the gap, so that every point within the gap is in the same
+/// cube or in one beside it.
 class Places {
  public:
   explicit Places(double gap) : gap_(gap), edge_(std::max(gap, kShortestEdge)) {}
 
   Cube cube_of(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
 
-  /// Wants the points of a that are near this one.
+  /// Marks the cubes around a place of b, so that the points of a there are kept.
   void want(const Vec3& p) {
     each_beside(p, [&](const Cube& cube) { points_.try_emplace(cube); });
   }
@@ -48,7 +49,8 @@ class Places {
     const auto cube = points_.find(cube_of(point.xyz));
     if (cube != points_.end()) cube->second.push_back(point);
   }
-  /// The conflict of a point within the gap, rather one than a small group; none without a point.
+  /// The conflict of a point of a within the gap: 0 where only points of small groups are near, and
+  /// nothing where no point is.
   std::optional<std::uint32_t> near(const Vec3& p) const {
     std::optional<std::uint32_t> found;
     each_beside(p, [&](const Cube& cube) {
@@ -73,12 +75,12 @@ class Places {
     }
   }
 
-  static constexpr double kShortestEdge = 1e-3;  // so that cubes can be counted
+  static constexpr double kShortestEdge = 1e-3;  // so that the index of a cube fits its integers
   double gap_, edge_;
   std::unordered_map<Cube, std::vector<NumberedPoint>, CubeHash> points_;
 };
 
-/// visit(point) for each row.
+/// Calls visit(point) for each row of a result.
 template <typename Visit>
 void for_each_point(const GroupedResult& of, Visit visit) {
   ResultRowStream stream(of.result.reader());
@@ -88,7 +90,7 @@ void for_each_point(const GroupedResult& of, Visit visit) {
   }
 }
 
-/// The small groups of a result by place.
+/// The small groups of a result, found by place.
 class SmallPlaces {
  public:
   explicit SmallPlaces(const std::vector<SmallGroup>& groups) : groups_(groups) {
@@ -99,7 +101,7 @@ class SmallPlaces {
     std::ranges::sort(order_, {}, [this](std::size_t i) { return groups_[i].box.lo.x; });
   }
 
-  /// Marks those whose boxes hold the place.
+  /// Marks the small groups whose boxes contain the place.
   void mark(const Vec3& p, std::vector<bool>& marks) const {
     auto next = std::ranges::lower_bound(order_, p.x - longest_ - kSlack, {},
                                          [this](std::size_t i) { return groups_[i].box.lo.x; });
@@ -111,14 +113,14 @@ class SmallPlaces {
  private:
   const std::vector<SmallGroup>& groups_;
   std::vector<std::size_t> order_;
-  static constexpr double kSlack = 1e-3;  // more than differences of coordinates round by
+  static constexpr double kSlack = 1e-3;  // more than the rounding of a difference of coordinates
   double longest_ = 0;
 };
 
-/// How the points of a conflict of b lie to those of a.
+/// How the points of a conflict of b lie with respect to the conflicts of a.
 struct Neighbours {
-  bool all = true;                              ///< each is near a conflict of a
-  std::map<std::uint32_t, std::uint64_t> near;  ///< points by that conflict
+  bool all = true;                              ///< whether each point is near a conflict of a
+  std::map<std::uint32_t, std::uint64_t> near;  ///< number of points near each conflict of a
 };
 
 }  // namespace
@@ -128,7 +130,7 @@ std::vector<std::size_t> match_points(const GroupedResult& a, const GroupedResul
   std::vector<NumberedPoint> open;
   std::vector<bool> added(b.conflicts.listed.size() + 1);
   for (const std::uint32_t id : match.added) added[id] = true;
-  added[0] = true;  // small groups
+  added[0] = true;  // points of small groups count too
   Places places(gap);
   for_each_point(b, [&](const NumberedPoint& point) {
     if (!added[point.conflict]) return;

@@ -15,11 +15,12 @@
 namespace clearway {
 namespace {
 
-/// A shift goes on by at least this much beyond what it left, metres: roundings end there.
+/// The least amount in metres by which a shift grows, so that roundings cannot keep it from
+/// growing.
 constexpr double kStep = 1e-9;
 
-/// The way of a point in a body's frame while the body is shifted: at `from` before, against `way`
-/// for each metre.
+/// The motion of a point in a body's frame while the body is shifted: it starts at `from` and moves
+/// by -`way` for each metre of the shift.
 struct PointWay {
   Vec3 from, way;
 
@@ -36,7 +37,8 @@ double leaves(const PointWay& point, const Vec3& m, double radius, double /*shif
   return (along + std::sqrt(std::max(0.0, rest))) / square;
 }
 
-/// The same of a triangle. The distance to it is convex along the way, so it is left once.
+/// The shift at which the point leaves the reach of a triangle that it is within at `shift`. The
+/// distance to a triangle is convex along the motion, so its reach is left only once.
 double leaves(const PointWay& point, const Triangle& t, double radius, double shift) {
   const auto within = [&](double at) {
     return squared_distance(point.at(at), t) < radius * radius;
@@ -57,7 +59,8 @@ bool overlap(double a, double b, double lo, double hi) {
   return std::min(a, b) <= hi && std::max(a, b) >= lo;
 }
 
-/// Into how many parts the way between two poses is divided: half the radius each, at most 64.
+/// Into how many parts the way between two poses is divided: each is at most half the radius long,
+/// but there are at most 64.
 int steps_between(const Pose& a, const Pose& b, double radius) {
   constexpr double kMostSteps = 64;
   double square = 0;
@@ -68,9 +71,9 @@ int steps_between(const Pose& a, const Pose& b, double radius) {
   return static_cast<int>(std::clamp(std::ceil(2 * std::sqrt(square) / radius), 1.0, kMostSteps));
 }
 
-/// Where model points are that move on straight segments from pose a to pose b: no rotation, but
-/// one that shrinks where the poses turn. Seen from it, places are farther away than they are, so a
-/// shift that follows is never too long.
+/// A pose between a and b at which model points are that move on straight segments. Where the poses
+/// turn, its matrix is no rotation but one that also shrinks. Seen from it, places are farther away
+/// than they are, so a shift that is computed from it is never too long.
 Pose between(const Pose& a, const Pose& b, double part) {
   Pose out{};
   for (int k = 0; k < 9; ++k) {
@@ -84,7 +87,7 @@ Pose between(const Pose& a, const Pose& b, double part) {
 
 }  // namespace
 
-/// A body in its own frame.
+/// The model of a body with its trees, in the body's own frame.
 class LeastShift::Shape {
  public:
   Shape(const Model& model, double radius, int threads)
@@ -96,7 +99,7 @@ class LeastShift::Shape {
 
   bool is_empty() const { return points_.size() == 0 && triangles_.size() == 0; }
 
-  /// Whether the point can come within reach at any shift between 0 and `most`.
+  /// Whether the point comes within reach of the body's box at any shift between 0 and `most`.
   bool may_reach(const PointWay& point, double most) const {
     const Vec3 end = point.at(most);
     return overlap(point.from.x, end.x, box_.lo.x, box_.hi.x) &&
@@ -104,7 +107,8 @@ class LeastShift::Shape {
            overlap(point.from.z, end.z, box_.lo.z, box_.hi.z);
   }
 
-  /// The least shift from `shift` on at which the point is free, or one above `most`.
+  /// The least shift from `shift` on at which the point is free, or a shift above `most` where
+  /// there is none.
   double free_from(const PointWay& point, double shift, double most) const {
     while (shift <= most) {
       const Vec3 x = point.at(shift);
@@ -125,7 +129,7 @@ class LeastShift::Shape {
     if (nearest.squared_distance < radius_ * radius_) {
       return leaves(point, tree.element(nearest.element), radius_, shift);
     }
-    // Inside a solid the point stays inside until it has come as far as the nearest surface.
+    // A point inside a solid stays inside until it has moved as far as the nearest surface.
     if (!solids_.ref().contains(x)) return shift;
     return shift +
            std::sqrt(nearest.squared_distance) / std::sqrt(rounded_dot(point.way, point.way));
@@ -150,10 +154,11 @@ LeastShift::LeastShift(std::span<const Body> bodies, const std::vector<Pose>& pa
 
 LeastShift::~LeastShift() = default;
 
-/// Points in the frame of a body at a pose.
+/// A run of points, seen in the frame of a body at a pose.
 struct LeastShift::Run {
   const Shape* shape;
-  Vec3 left;  ///< how the body moves in its own frame for each metre of a shift to the left
+  /// The motion of the body in its own frame for each metre of a shift to the left.
+  Vec3 left;
   std::size_t begin, end;
 
   PointWay way(const Vec3& point, double direction) const {
@@ -171,7 +176,7 @@ void LeastShift::add_runs(std::size_t body, const Pose& pose, const Pose& of_pat
   Pose turn = pose;
   for (double& t : turn.translation) t = 0;
   Run run{shapes_[body].get(), pulled_back(turn, left), seen.size(), 0};
-  if (!(rounded_dot(run.left, run.left) > 0)) return;  // no rotation
+  if (!(rounded_dot(run.left, run.left) > 0)) return;  // the matrix of the pose is no rotation
   for (const Vec3& e : points) {
     const Vec3 x = pulled_back(pose, e);
     const PointWay from_right = run.way(PointWay{x, run.left}.at(-most), 1);
@@ -184,7 +189,7 @@ void LeastShift::add_runs(std::size_t body, const Pose& pose, const Pose& of_pat
 SideShifts LeastShift::least(std::span<const Vec3> points, std::uint32_t first, std::uint32_t last,
                              double most) const {
   std::vector<Run> runs;
-  std::vector<Vec3> seen;  // of all runs, those that any shift brings within reach
+  std::vector<Vec3> seen;  // for all runs, the points that some shift brings within reach
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
     if (shapes_[body]->is_empty()) continue;
     for (std::uint32_t i = first; i <= last; ++i) {
@@ -203,7 +208,8 @@ SideShifts LeastShift::least(std::span<const Vec3> points, std::uint32_t first, 
   }
   const auto to_side = [&](double direction) -> std::optional<double> {
     double shift = 0;
-    // What was free may be blocked farther on, so all are gone through until nothing moves.
+    // A point that was free may be blocked farther on, so all points are gone through again until
+    // the shift no longer grows.
     for (bool moved = true; moved;) {
       moved = false;
       for (const Run& run : runs) {

@@ -12,27 +12,29 @@
 
 namespace clearway {
 
-/// The least shifts to the left and to the right, metres; none where the longest one does not do.
+/// The least shifts to the left and to the right, in metres; nothing on a side where even the
+/// longest shift does not free the points.
 struct SideShifts {
   std::optional<double> left, right;
 };
 
 /// How far a vehicle has to be shifted to one side so that given points no longer collide with it.
-/// A shift by l moves every body at pose i of the path by l times the axis of that pose of the path
-/// that points to the left (docs/design/findings.md, "Shifts"). Thread safe once made.
+/// A shift by l moves every body at pose i of the path by l times the axis of that pose that points
+/// to the left (docs/design/findings.md, "Shifts"). Thread safe once constructed.
 class LeastShift {
  public:
-  /// bodies: without path_pose, their poses are those of the path. All outlive it. left: in the
-  /// frame of the path's poses, +Y for a vehicle whose front points along +X. ways: points move on
-  /// straight segments from pose to pose, which are looked at in steps of half the radius.
+  /// bodies: where one has no path_pose, its poses are those of the path. left: the direction to
+  /// the left in the frame of the path's poses, +Y for a vehicle whose front points along +X. ways:
+  /// whether model points move on straight segments from pose to pose, which are looked at in steps
+  /// of half the radius. All references outlive it.
   LeastShift(std::span<const Body> bodies, const std::vector<Pose>& path, const Vec3& left,
              double radius, bool ways, int threads);
   ~LeastShift();
   LeastShift(const LeastShift&) = delete;
   LeastShift& operator=(const LeastShift&) = delete;
 
-  /// The least shifts, of at most `most`, at which none of the points collides at any pose from
-  /// `first` to `last`.
+  /// The least shifts, of at most `most` metres, at which none of the points collides at any pose
+  /// from `first` to `last`.
   SideShifts least(std::span<const Vec3> points, std::uint32_t first, std::uint32_t last,
                    double most) const;
 
@@ -47,7 +49,7 @@ class LeastShift {
   const Vec3 left_;
   const double radius_;
   const bool ways_;
-  std::vector<std::unique_ptr<Shape>> shapes_;  ///< of each body
+  std::vector<std::unique_ptr<Shape>> shapes_;  ///< one for each body
 };
 
 }  // namespace clearway

@@ -9,9 +9,12 @@ namespace clearway {
 namespace {
 
 struct Candidate {
-  double volume;       ///< common to the grown boxes
-  double sides;        ///< where that is 0: of what the boxes themselves have in common, their sum
-  std::uint32_t a, b;  ///< ids
+  /// Volume that the grown boxes have in common.
+  double volume;
+  /// Where the volume is 0, the sum of the sides that the boxes themselves have in common.
+  double sides;
+  /// Ids of the two conflicts.
+  std::uint32_t a, b;
 
   bool before(const Candidate& other) const {
     return std::tuple(-volume, -sides, a, b) <
@@ -29,8 +32,8 @@ double common_volume(const Box& a, const Box& b) {
   return volume;
 }
 
-/// Of boxes that touch: the sum of the sides that they share, 0 for a point. Beside large
-/// coordinates a small gap is rounded away, and flat boxes share no volume.
+/// The sum of the sides that two boxes share, 0 where they touch in a point; nothing where they do
+/// not touch. Beside large coordinates a small gap is rounded away, and flat boxes share no volume.
 std::optional<double> common_sides(const Box& a, const Box& b) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
@@ -41,7 +44,7 @@ std::optional<double> common_sides(const Box& a, const Box& b) {
   return sum;
 }
 
-/// Of conflicts in the order of their boxes along x.
+/// Indices of the conflicts in the order of their boxes along x.
 std::vector<std::uint32_t> along_x(const Conflicts& conflicts) {
   std::vector<std::uint32_t> order(conflicts.listed.size());
   std::iota(order.begin(), order.end(), 0);
@@ -50,8 +53,9 @@ std::vector<std::uint32_t> along_x(const Conflicts& conflicts) {
   return order;
 }
 
-/// All pairs that overlap. A sweep along x: those of b that begin before one of a ends are looked
-/// at, as long as the longest of b reaches.
+/// All pairs that overlap, found by a sweep along x: for each conflict of a, those of b are looked
+/// at that begin before its box ends, and not farther before its box than the longest box of b
+/// reaches.
 std::vector<Candidate> candidates(const Conflicts& a, const Conflicts& b, double gap) {
   const std::vector<std::uint32_t> order = along_x(b);
   double longest = 0;

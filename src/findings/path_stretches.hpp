@@ -5,17 +5,19 @@
 
 namespace clearway {
 
-/// The path cut at multiples of a length.
+/// The path cut into stretches at multiples of a length.
 class PathStretches {
  public:
-  /// split: above 0, or 0 for one stretch.
+  /// split: the length, above 0, or 0 for one single stretch.
   PathStretches(const std::vector<double>& chainage, double split);
 
-  /// Consecutive numbers of the stretches that have a pose, from 0.
+  /// The number of the stretch that a pose is in. Stretches that have a pose are numbered
+  /// consecutively from 0.
   std::uint32_t operator[](std::uint32_t pose) const { return number_.empty() ? 0 : number_[pose]; }
 
  private:
-  std::vector<std::uint32_t> number_;  ///< for each pose; empty: one stretch
+  /// The stretch of each pose; empty where there is only one.
+  std::vector<std::uint32_t> number_;
 };
 
 }  // namespace clearway

@@ -15,7 +15,8 @@ Vec3 direction_of(Axis axis) {
   return out;
 }
 
-/// By Cramer's rule: rotations from text are not quite orthonormal.
+/// A place in the frame of a pose. Solved by Cramer's rule, because rotations from text are not
+/// quite orthonormal.
 Vec3 in_model_frame(const Vec3& place, const Pose& pose) {
   const double* r = pose.rotation;
   const Vec3 from = place - pose.position();

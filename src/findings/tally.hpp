@@ -9,12 +9,13 @@
 
 namespace clearway {
 
-/// What is summed up of points, in integers: the same in any order.
+/// Sums over a set of points, in integers, so that they are the same in any order.
 struct Tally {
   std::uint64_t points = 0;
   std::uint32_t first_row = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t first_pose = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t first_touched = std::numeric_limits<std::uint32_t>::max();  ///< row of that pose
+  /// The smallest row of a point with that first pose.
+  std::uint32_t first_touched = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t latest_first_pose = 0;
   std::uint32_t last_pose = 0;
   QuantumBox box{{kMost, kMost, kMost}, {kLeast, kLeast, kLeast}};
@@ -41,7 +42,7 @@ struct Tally {
   }
 
  private:
-  /// Of equal poses the smallest row.
+  /// Takes a first pose and its row; of equal poses the smallest row.
   void add_first(std::uint32_t pose, std::uint32_t row) {
     first_touched = pose < first_pose    ? row
                     : pose == first_pose ? std::min(first_touched, row)

@@ -12,7 +12,7 @@ namespace {
 
 using Range = tbb::blocked_range<std::uint32_t>;
 
-/// Tallies that several threads add to.
+/// Tallies that several threads may add to at the same time.
 class SharedTallies {
  public:
   explicit SharedTallies(std::uint64_t count)
@@ -33,7 +33,8 @@ class SharedTallies {
   std::unique_ptr<tbb::spin_mutex[]> locks_;
 };
 
-/// One after the other, as long as they are of the same number.
+/// Tallies consecutive points that have the same number, and hands each such run on at its end, so
+/// that locks are taken rarely.
 class RunOfPoints {
  public:
   explicit RunOfPoints(SharedTallies& into) : into_(into) {}
@@ -60,7 +61,8 @@ class RunOfPoints {
   Tally tally_;
 };
 
-/// number_of(group, row) for every point of a listed group, or of a small one.
+/// Tallies of the points of all listed groups, or of all small ones. number_of(group, row) gives
+/// the index of a point's tally.
 template <typename NumberOf>
 std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, bool small,
                             std::uint64_t count, const TouchPoses& poses, Progress& progress,

@@ -12,31 +12,33 @@
 
 namespace clearway {
 
-/// The first and the last pose that touch each row's point.
+/// The first and the last pose that touch the point of each row.
 struct TouchPoses {
   std::span<const std::uint32_t> first, last;
 };
 
-/// Sums of each listed group. Runs in the caller's arena of oneTBB.
+/// Tallies of the listed groups. Runs in the caller's arena of oneTBB.
 std::vector<Tally> tally_groups(const CellGrid& grid, const PointGroups& groups,
                                 const TouchPoses& poses, Progress& progress);
 
-/// Sums of each small group.
+/// Tallies of the small groups. Runs in the caller's arena of oneTBB.
 std::vector<Tally> tally_small_groups(const CellGrid& grid, const PointGroups& groups,
                                       const TouchPoses& poses, Progress& progress);
 
-/// The parts that groups are cut into: consecutive ones for each group, one for each stretch of the
-/// path from its first to its last pose. Parts may be empty.
+/// The parts that groups are cut into. The parts of a group are consecutive, one for each stretch
+/// of the path from the group's first to its last pose, and may be empty.
 struct GroupParts {
-  std::vector<std::uint64_t> first;    ///< of each group, and their end
-  std::vector<std::uint32_t> stretch;  ///< of each group, the one of its first part
-  std::vector<bool> is_cut;            ///< of each group
+  /// The first part of each group, and at the end the number of all parts.
+  std::vector<std::uint64_t> first;
+  /// The stretch of each group's first part.
+  std::vector<std::uint32_t> stretch;
+  std::vector<bool> is_cut;  ///< whether each group is cut
 
   std::uint64_t count() const { return first.back(); }
 };
 
-/// Sums of each part; part_of_row becomes the part's number + 1 of each row, 0 for rows of small
-/// groups. Fewer than 2^32 - 1 parts.
+/// Tallies of the parts. part_of_row becomes for each row the index of its part + 1, and stays as
+/// it is, namely 0, for rows of small groups. There have to be fewer than 2^32 - 1 parts.
 std::vector<Tally> tally_parts(const CellGrid& grid, const PointGroups& groups,
                                const GroupParts& parts, const PathStretches& stretches,
                                const TouchPoses& poses, std::span<std::uint32_t> part_of_row,

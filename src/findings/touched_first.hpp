@@ -29,12 +29,12 @@ struct AheadLeftUp {
 struct TouchedFirst {
   std::uint32_t first_pose = 0, row = 0;
   std::optional<std::uint32_t> body = {};
-  const Pose* pose = nullptr;  ///< of the body there; null where it is not known
-  Vec3 place{};                ///< of the row's point
-  /// Of the points, ahead, to the left and up of the pose.
+  const Pose* pose = nullptr;  ///< pose of the body there; null where it is not known
+  Vec3 place{};                ///< place of the row's point
+  /// The box around the points, with the axes ahead, to the left and up of the pose.
   Box seen{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
 
-  /// False where the pose cannot be inverted.
+  /// Whether all sides of `seen` are finite; false where the pose cannot be inverted.
   bool is_finite() const {
     for (int k = 0; k < 3; ++k) {
       if (!std::isfinite(seen.lo[k]) || !std::isfinite(seen.hi[k])) return false;
@@ -46,8 +46,8 @@ struct TouchedFirst {
   static constexpr double kMost = std::numeric_limits<double>::infinity();
 };
 
-/// Fills in `place` and `seen` of each part. part_of_row: its number + 1, 0 for rows of none. Runs
-/// in the caller's arena of oneTBB.
+/// Fills in `place` and `seen` of each part. part_of_row: the index of each row's part + 1, 0 for
+/// rows of no part. Runs in the caller's arena of oneTBB.
 void find_touched_first(const CellGrid& grid, const PointGroups& groups,
                         const CollidingPoints& points, std::span<const std::uint32_t> part_of_row,
                         const Quantisation& quantisation, const AheadLeftUp& axes,

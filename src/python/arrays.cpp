@@ -31,7 +31,7 @@ void refuse_masked(const py::handle& object, const char* name) {
   throw UsageError(std::string(name) + ": some values are masked: leave them out before");
 }
 
-/// As numpy.asarray() has it.
+/// The array that numpy.asarray() makes of an object without masked values.
 py::array array_of(const py::handle& object, const char* name) {
   refuse_masked(object, name);
   try {
@@ -45,7 +45,7 @@ py::array array_of(const py::handle& object, const char* name) {
 
 bool is_empty_list(const py::array& array) { return array.size() == 0 && array.ndim() == 1; }
 
-/// It holds real numbers.
+/// The array of an object that holds real numbers. Throws TypeError for anything else.
 py::array numbers(const py::handle& object, const char* name) {
   py::array array = array_of(object, name);
   const char kind = array.dtype().kind();
@@ -87,7 +87,8 @@ Doubles poses_array(const py::handle& object, const char* name) {
       array.ndim() == 3 && array.shape(2) == 4 && (array.shape(1) == 3 || array.shape(1) == 4);
   if (!fits) refuse_shape(name, "n x 4 x 4 or n x 3 x 4 numbers", array);
   Doubles doubles(array);
-  // First, because a pose of NaN alone would be refused for its last row.
+  // Numbers are checked first, because a pose of NaN alone would otherwise be refused for its last
+  // row.
   require_finite(all_of(doubles), static_cast<std::size_t>(4 * doubles.shape(1)), name, "pose");
   if (doubles.shape(1) == 3) return doubles;
   const double* pose = doubles.data();

@@ -11,39 +11,45 @@
 #include "clearway/vec3.hpp"
 #include "python/python.hpp"
 
-/// NumPy arrays in and out. Out: made of the library's vectors without a copy.
+/// Conversion of NumPy arrays from and to values of the library. Arrays that are handed out are
+/// made of the library's vectors without a copy.
 namespace clearway::python {
 
-/// float64 in rows. Made of an array of any other real numbers, long double among them.
+/// An array of float64, row by row. It is converted from an array of any other real numbers,
+/// including long double.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// n x 3, metres, as float64 in rows: the same array where it is so, otherwise a copy. Takes
-/// whatever numpy.asarray() takes. Throws TypeError for what holds no real numbers, UsageError for
-/// another shape and for masked points.
+/// Points as an n x 3 array of float64 in metres, row by row: the same array where it has that form
+/// already, otherwise a copy. Takes whatever numpy.asarray() takes. Throws TypeError for anything
+/// but real numbers, and UsageError for another shape and for masked points.
 Doubles points_array(const py::handle& object, const char* name);
 
-/// n x 3 x 4 or n x 4 x 4, likewise; the last row of the latter has to be 0 0 0 1.
+/// Poses as an n x 3 x 4 or n x 4 x 4 array of float64, row by row: the same array where it has
+/// that form already, otherwise a copy. Throws TypeError for anything but real numbers, UsageError
+/// for another shape, for masked poses and for 4 x 4 matrices whose last row is not 0 0 0 1, and
+/// InputError for numbers that are not finite.
 Doubles poses_array(const py::handle& object, const char* name);
 
-/// Copies. Throw InputError for numbers that are not finite.
+/// Copies of an array's points or poses. Throw InputError for numbers that are not finite.
 std::vector<Vec3> points_of(const Doubles& array, const char* name);
 std::vector<Pose> poses_of(const Doubles& array, const char* name);
 
 /// Throws InputError for a pose that scales, shears or mirrors.
 void require_rigid(const std::vector<Pose>& poses);
 
-/// n x 4 x 4.
+/// The poses as an array of shape n x 4 x 4.
 py::array to_array(const std::vector<Pose>& poses);
-py::array to_array(const Vec3& point);  ///< 3
+/// The point as an array of shape 3.
+py::array to_array(const Vec3& point);
 
-/// Three finite numbers.
+/// A point from three finite numbers.
 Vec3 point_of(const py::handle& object, const char* name);
 
-/// n whole numbers from 0 to 2^32 - 1. Throws TypeError for other numbers, UsageError for another
-/// shape or a number out of range.
+/// An array of n whole numbers from 0 to 2^32 - 1. Throws TypeError for other numbers, and
+/// UsageError for another shape or a number out of range.
 std::vector<std::uint32_t> indices_of(const py::handle& object, const char* name);
 
-/// Python owns the vector.
+/// A Python object that owns the vector.
 template <typename Value>
 py::capsule keep(std::vector<Value> values) {
   using Values = std::vector<Value>;
@@ -53,7 +59,7 @@ py::capsule keep(std::vector<Value> values) {
   return owner;
 }
 
-/// An array that owns the vector.
+/// An array over the vector's memory, which it owns.
 template <typename Number>
 py::array to_array(std::vector<Number> values) {
   const py::capsule owner = keep(std::move(values));
@@ -61,7 +67,7 @@ py::array to_array(std::vector<Number> values) {
   return py::array_t<Number>(static_cast<py::ssize_t>(kept.size()), kept.data(), owner);
 }
 
-/// n x 3, likewise.
+/// The points as an array of shape n x 3 that owns the vector.
 py::array to_array(std::vector<Vec3> points);
 
 }  // namespace clearway::python

@@ -5,7 +5,7 @@
 namespace clearway::python {
 namespace {
 
-/// What Python has as Error.remedy; nullptr: nothing helps.
+/// The name that Python has as Error.remedy; nullptr where nothing helps.
 const char* name_of(Remedy remedy) {
   switch (remedy) {
     case Remedy::kNone:
@@ -96,7 +96,7 @@ const char* name_of(Remedy remedy) {
   return nullptr;
 }
 
-/// The classes, which live as long as the process.
+/// The exception classes, which live as long as the process.
 struct Classes {
   PyObject *error, *usage, *input, *resource, *interrupted;
 };

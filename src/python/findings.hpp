@@ -9,13 +9,13 @@
 
 namespace clearway::python {
 
-/// What find_conflicts() and write_report() take alike.
+/// The options that find_conflicts() and write_report() have in common.
 ConflictOptions conflict_options(double gap, std::uint64_t min_points, double split,
                                  double chainage_start, const std::string& forward,
                                  const std::string& up, std::optional<Box> model_box,
                                  std::uint64_t memory_bytes, int threads);
 
-/// Without the conflict of each row.
+/// The conflicts as a Python object, which lacks the conflict of each row.
 py::object to_python(Conflicts conflicts);
 
 }  // namespace clearway::python

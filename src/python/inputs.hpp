@@ -8,7 +8,7 @@
 
 namespace clearway::python {
 
-/// Of the names that Python has for them. Throws UsageError for an unknown one.
+/// The options for the values that Python has for them. Throws UsageError for an unknown name.
 TrajectoryOptions trajectory_options(const std::string& format, bool allow_non_rigid,
                                      const std::string& angle_unit, const std::string& angle_frame,
                                      const std::string& crs, const std::string& default_crs,

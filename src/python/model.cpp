@@ -29,7 +29,7 @@ py::array triangles_array(const std::vector<Triangle>& triangles) {
   return array;
 }
 
-/// n x 3 whole numbers, each below `points`.
+/// Triangles from an array of n x 3 whole numbers, each below `points`.
 std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points) {
   const py::array array = py::module_::import("numpy").attr("asarray")(object);
   if (array.size() == 0) return {};

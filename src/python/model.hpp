@@ -16,18 +16,19 @@ inline constexpr Named<ModelAs> kModelAs[] = {{"auto", ModelAs::kAuto},
                                               {"surface", ModelAs::kSurface},
                                               {"solid", ModelAs::kSolid}};
 
-/// A Model as it is, anything else as points_array() has it.
+/// A Model is returned as it is, and anything else as points_array() converts it.
 py::object model_object(const py::handle& object);
 
-/// A copy. object: as model_object() has it. Throws InputError for numbers that are not finite.
+/// A copy of a model. object: one that model_object() returned. Throws InputError for numbers that
+/// are not finite.
 Model model_of(const py::object& object);
 
-/// Of the values that Python has for them. Throws UsageError for an unknown unit.
+/// The options for the values that Python has for them. Throws UsageError for an unknown unit.
 ModelOptions model_options(ModelAs as, double spacing, const UnitArgument& unit,
                            const UnitArgument& environment_unit, bool vertices_only,
                            std::optional<double> above);
 
-/// "12 model points", "12 model triangles".
+/// The size of a model in words, such as "12 model points" or "12 model triangles".
 std::string model_words(const py::object& object);
 
 }  // namespace clearway::python

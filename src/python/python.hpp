@@ -14,29 +14,30 @@
 
 #include "clearway/error.hpp"
 
-/// What the parts of the Python module share. They add no logic to the library: they turn Python's
-/// values into its own and back, and let other Python threads run while it works.
+/// What the parts of the Python module have in common. They add no logic to the library: they
+/// convert between Python's values and the library's, and let other Python threads run while the
+/// library works.
 namespace clearway::python {
 
 namespace py = pybind11;
 
-/// A text of the library. It may hold the name of a file in any encoding.
+/// A text of the library as a str. The text may contain the name of a file in any encoding.
 py::str text(std::string_view bytes);
 
-/// str, bytes or os.PathLike, as Python's own open() takes it.
+/// A path from str, bytes or os.PathLike, as Python's own open() takes it.
 std::filesystem::path path_of(const py::handle& object);
 
-/// A pathlib.Path.
+/// The path as a pathlib.Path.
 py::object to_python(const std::filesystem::path& path);
 
-/// One path, or several of them.
+/// The paths from one path or from several of them.
 std::vector<std::filesystem::path> paths_of(const py::handle& object);
 
-/// Runs `call` while other Python threads run too. It must not touch Python.
+/// Runs `call`, which must not touch Python, while other Python threads may run too.
 template <typename Call>
 auto without_gil(Call call) {
-  // Not pybind11's guard: where Python is ending, taking the GIL unwinds this thread, which no
-  // destructor may do.
+  // pybind11's guard is not used: while Python is ending, taking the GIL unwinds this thread, which
+  // no destructor may do.
   PyThreadState* const state = PyEval_SaveThread();
   std::optional<std::invoke_result_t<Call>> result;
   std::exception_ptr thrown;
@@ -50,14 +51,14 @@ auto without_gil(Call call) {
   return std::move(*result);
 }
 
-/// A value of an enumeration by the name that Python has for it.
+/// A value of an enumeration, with the name that Python has for it.
 template <typename Value>
 struct Named {
   const char* name;
   Value value;
 };
 
-/// Throws UsageError where the name is none of the table's.
+/// The value with a name. Throws UsageError where the table does not contain the name.
 template <typename Value, std::size_t Size>
 Value value_of(const char* what, const Named<Value> (&table)[Size], const std::string& name) {
   std::string known;

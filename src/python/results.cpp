@@ -10,7 +10,7 @@
 namespace clearway::python {
 namespace {
 
-/// What a result's columns are read from; arrays are made once and then shared.
+/// The columns of a result, as arrays that are made once and then shared.
 struct Columns {
   py::array source, xyz, distance;
 };
@@ -21,7 +21,7 @@ struct ProfileColumns : Columns {
   py::array chainage;
 };
 
-/// What clearances and profile have alike; the arrays take the vectors.
+/// Makes the columns that clearances and profile have in common. The arrays take over the vectors.
 template <typename Shared, typename Read>
 Shared common_columns(Read& read) {
   Shared columns;

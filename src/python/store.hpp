@@ -17,7 +17,8 @@
 
 namespace clearway::python {
 
-/// A store remembers which of its cells it has checked, so that calls on it take turns.
+/// A store that several Python threads share. Calls on it take turns, because a store remembers
+/// which of its cells it has checked.
 struct SharedStore {
   explicit SharedStore(const std::filesystem::path& path) : store(path) {}
 
@@ -25,8 +26,8 @@ struct SharedStore {
   std::timed_mutex turn;
 };
 
-/// Calls `call` with the store, alone. Without the GIL. Throws Interrupted where it is stopped
-/// while it waits.
+/// Calls `call` with the store while no other call uses it. Called without the GIL. Throws
+/// Interrupted where it is stopped while it waits.
 template <typename Call>
 auto in_turn(SharedStore& shared, StopFlag stop, Call call) {
   std::unique_lock lock(shared.turn, std::defer_lock);
@@ -38,25 +39,29 @@ auto in_turn(SharedStore& shared, StopFlag stop, Call call) {
 
 /// A Body, and what it knows of the path that it was placed on.
 struct PlacedBody : Body {
-  /// That follow() and read_vehicle() placed it on. Null: it was made of its own poses.
+  /// The path that follow() or read_vehicle() placed the body on. Null for a body that was made of
+  /// its own poses.
   std::shared_ptr<const std::vector<Pose>> path = nullptr;
-  bool has_all_poses = false;  ///< path_pose was not given: it has each of the path's
+  /// Whether path_pose was not given, so that the body has one pose for each of the path's.
+  bool has_all_poses = false;
 };
 
-/// The bodies of a query on that path. Throws UsageError where one of them was placed on another
-/// path, or lacks poses without saying which.
+/// The bodies of a query along this path. Throws UsageError where a body was placed on another
+/// path, or has no path_pose and a number of poses that differs from the path's.
 std::vector<Body> bodies_on(const std::vector<PlacedBody>& bodies, const std::vector<Pose>& path);
 
-/// A Query whose model and poses are Python's.
+/// A query whose model and poses are Python objects.
 struct ArrayQuery {
   QueryParameters parameters;
-  py::object model;  ///< as model_object() has it
-  Doubles poses;     ///< as poses_array() has them
+  /// The model that model_object() returned.
+  py::object model;
+  /// The poses that poses_array() returned.
+  Doubles poses;
   bool allow_non_rigid = false;
   std::vector<PlacedBody> bodies = {};
 };
 
-/// With copies of model and poses, so that Python may change them meanwhile.
+/// The query with copies of model and poses, so that Python may change its own meanwhile.
 Query query_of(const ArrayQuery& query);
 
 }  // namespace clearway::python

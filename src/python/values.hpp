@@ -14,13 +14,14 @@ namespace clearway::python {
 
 py::list to_list(const std::vector<Message>& messages);
 
-/// None or messages that the library gave.
+/// The messages of a Python list that the library gave; none for None.
 std::vector<Message> messages_of(const py::handle& object);
 
-/// Appends to a list; None: nowhere.
+/// Appends the messages to a list; does nothing for None.
 void append_to(const py::handle& list, const std::vector<Message>& messages);
 
-/// Reads beside other Python threads. What was noted until an error is kept too.
+/// Runs a function that reads something and notes messages, while other Python threads may run too.
+/// The messages are appended also where the function throws.
 template <typename Read>
 auto read_noting(const py::object& messages, Read call) {
   std::vector<Message> noted;
@@ -34,20 +35,20 @@ auto read_noting(const py::object& messages, Read call) {
   }
 }
 
-/// Metres of a unit of length, or its name.
+/// A unit of length, as its metres or its name.
 using UnitArgument = std::variant<double, std::string>;
 
-/// The unit of a file. Throws UsageError for a name that is none of a unit.
+/// The unit of a file. Throws UsageError where the name is not that of a unit.
 FileUnit file_unit(const UnitArgument& unit);
 
-/// The unit of an environment, also by what Store.length_unit() says.
+/// The unit of an environment, which may be given as Store.length_unit() returns it.
 struct EnvironmentUnit {
   double metres = 1;
-  bool is_assumed = false;  ///< the environment names none
+  bool is_assumed = false;  ///< whether the environment names no unit
 };
 EnvironmentUnit environment_unit_of(const UnitArgument& unit);
 
-/// "; 2 warnings: no-poses, steps", or nothing.
+/// The warnings in words, for example "; 2 warnings: no-poses, steps"; empty where there are none.
 std::string warning_words(const std::vector<Message>& warnings);
 
 }  // namespace clearway::python

@@ -16,17 +16,17 @@ constexpr std::chrono::milliseconds kLook{50};
 struct Calls {
   std::mutex mutex;
   std::condition_variable changed;
-  std::map<std::atomic<bool>*, pid_t> stops;  // a forked process has those of its parent, too
+  std::map<std::atomic<bool>*, pid_t> stops;  // a forked process also has those of its parent
   bool ending = false;
 };
 
 Calls& calls() {
-  static auto* all = new Calls;  // threads may see it until the process has ended
+  static auto* all = new Calls;  // never deleted, because threads may use it until the process ends
   return *all;
 }
 
-/// When Python ends, threads that it does not wait for may be in a call: these end in order before
-/// the libraries that they use.
+/// Stops the calls that are under way, and waits until they have ended. Called when Python ends, so
+/// that threads for which Python does not wait end in order before the libraries that they use.
 void end_calls() {
   const py::gil_scoped_release released;
   Calls& all = calls();
@@ -38,7 +38,7 @@ void end_calls() {
   });
 }
 
-/// A thread that is joined however this scope is left.
+/// A thread that is joined however its scope is left.
 class Joined {
  public:
   Joined(std::atomic<bool>& stop, const std::function<void()>& work) : stop_(stop) {
@@ -71,7 +71,7 @@ Watch::Watch(py::object progress, py::object message, py::object stop)
 
 void Watch::keep(const ProgressUpdate& update) {
   const std::lock_guard lock(mutex_);
-  // Of a stage that goes on only the last is told.
+  // Of several updates of a stage that is not finished, only the last is kept.
   if (!news_.progress.empty() && !news_.progress.back().finished) news_.progress.pop_back();
   news_.progress.push_back({std::string(update.stage), std::string(update.unit), update.done,
                             update.total, update.finished});

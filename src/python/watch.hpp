@@ -17,20 +17,22 @@
 
 namespace clearway::python {
 
-/// A ProgressUpdate that outlives its call.
+/// A ProgressUpdate that outlives the call that it was given to.
 struct KeptProgress {
   std::string stage, unit;
   std::uint64_t done = 0, total = 0;
   bool finished = false;
 };
 
-/// A long call of the library, watched from Python. The work is done on a thread of its own. The
-/// calling thread alone runs Python: every 50 ms it tells the callbacks what is new, looks at the
-/// stop flag, and lets Python handle signals, so that Ctrl-C raises KeyboardInterrupt. What is
-/// raised meanwhile stops the work, which ends in order, and then leaves run().
+/// A long call of the library, watched from Python. The work is done on a thread of its own, and
+/// only the calling thread runs Python: every 50 ms it passes what is new to the callbacks, looks
+/// at the stop flag, and lets Python handle signals, so that Ctrl-C raises KeyboardInterrupt. An
+/// exception that is raised meanwhile stops the work; once the work has ended in order, the
+/// exception leaves run().
 class Watch {
  public:
-  /// Callables, or None; stop: None, or an object with is_set() such as threading.Event.
+  /// progress, message: callables, or None. stop: None, or an object with is_set(), such as a
+  /// threading.Event.
   Watch(py::object progress, py::object message, py::object stop);
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
@@ -44,7 +46,8 @@ class Watch {
     }
   }
 
-  /// What `work` returns or throws. It must not touch Python.
+  /// Runs `work` on the other thread and returns what it returns, or throws what it throws. `work`
+  /// must not touch Python.
   template <typename Work>
   auto run(Work work) {
     std::optional<std::invoke_result_t<Work>> result;
@@ -75,7 +78,7 @@ class Watch {
   News next_news();
   void tell(const News& news);
   void look();
-  /// Calls what may raise; the first error is kept and stops the work.
+  /// Calls a function that may raise. The first exception is kept and stops the work.
   template <typename Call>
   void guarded(Call call);
 

@@ -18,14 +18,15 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kBodiesOfAllPoses = 8;  ///< of more bodies fewer poses are shown
+/// With more bodies than this, fewer poses are shown.
+constexpr std::size_t kBodiesOfAllPoses = 8;
 
 std::int32_t column_value(double value) {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
   return static_cast<std::int32_t>(std::clamp(std::round(value), -kMost, kMost));
 }
 
-/// Evenly along the curve.
+/// Appends at most `most` points of a model, evenly spaced in their order along the curve.
 void append_points(std::span<const Vec3> model, std::size_t most, std::uint8_t tag,
                    const PageLattice& lattice, std::vector<PagePoint>& out) {
   std::vector<PagePoint> all;
@@ -36,7 +37,7 @@ void append_points(std::span<const Vec3> model, std::size_t most, std::uint8_t t
   for (std::size_t i = 0; i < kept; ++i) out.push_back(all[i * all.size() / kept]);
 }
 
-/// For the page to show.
+/// Points on a body's surface for the page to show.
 std::vector<Vec3> surface_points(const DrawnBody& body, std::size_t most) {
   return drawn_points({body.model.vertices, body.model.triangles}, static_cast<double>(most));
 }

@@ -13,40 +13,43 @@
 
 namespace clearway {
 
-/// A rigid thing that the page draws: the model, or a body of a vehicle.
+/// A rigid thing that the page draws: the model, or one body of a vehicle.
 struct DrawnBody {
   std::string name;  ///< empty for the model
   const Model& model;
   std::span<const Pose> poses;
-  std::span<const std::uint32_t> path_pose;  ///< as Body has it; none: poses are the path's
-  Box box{};                                 ///< of the model's points
+  /// Indices of the path's poses as in Body; empty where the poses are those of the path.
+  std::span<const std::uint32_t> path_pose;
+  Box box{};  ///< box of the model's points
   std::size_t shown_points = 0;
 
-  /// At a pose of the path; null where it is not there.
+  /// The body's pose at a pose of the path; null where it has none there.
   const Pose* pose_at(std::uint32_t pose) const;
-  /// The least distance of its points or triangles to a place, where it is there; else infinity.
-  /// Inside its solids the depth, below 0: as a search has it.
+  /// The least distance of the body's points or triangles to a place, at a pose of the path: below
+  /// 0 inside its solids, where it is minus the depth, as in a search. Infinity where the body has
+  /// no pose there.
   double distance_to(const Vec3& place, std::uint32_t pose) const;
 };
 
-/// The bodies of the vehicle, or the model as the only one. All arguments outlive it.
+/// The bodies of the vehicle, or the model as the only one. All arguments outlive them.
 std::vector<DrawnBody> drawn_bodies(const Model& model, const std::vector<Pose>& poses,
                                     const ReportOptions& options);
 
-/// Around all, each in its own frame.
+/// The box around the boxes of all bodies, each in its own frame.
 Box box_around(std::span<const DrawnBody> bodies);
 
-/// Points to draw, body after body; their tag is the body. Sets shown_points. At most `most`,
-/// evenly of all bodies.
+/// The points to draw, body after body, with the index of the body as their tag. At most `most`
+/// points, the same number for each body. Sets shown_points.
 std::vector<PagePoint> points_of_bodies(std::span<DrawnBody> bodies, const PageLattice& lattice,
                                         std::size_t most);
 
-/// Columns body.there (1 where the body has a pose), body.x to body.z, body.r0 to body.r8: of each
-/// body one after the other, at the shown poses.
+/// Appends the columns body.there (1 where the body has a pose), body.x to body.z and body.r0 to
+/// body.r8. Each has the values of one body after the other, at the shown poses.
 void append_body_columns(std::span<const DrawnBody> bodies, std::span<const std::uint32_t> shown,
                          const PageLattice& lattice, std::vector<PageColumn>& columns);
 
-/// So many poses are shown that those of all bodies together stay of one size.
+/// The most poses that the page shows, so few that the columns of all bodies together do not grow
+/// with the number of bodies.
 std::size_t most_shown_poses(std::size_t bodies);
 
 }  // namespace clearway

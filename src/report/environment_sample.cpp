@@ -12,17 +12,20 @@
 namespace clearway {
 namespace {
 
-// Surfaces of blocks are counted by their logarithm: a bin is 1/16 of a power of two.
+// Blocks are counted by the logarithm of their surface. A bin is 1/16 of a power of two.
 constexpr int kBinsPerOctave = 16, kLeastOctave = -64, kOctaves = 128;
 constexpr std::size_t kBins = std::size_t{kBinsPerOctave} * kOctaves;
-constexpr double kFill = 0.97;  // of the points asked for: bins are coarser than surfaces
+// Share of the points asked for that is aimed at, because bins are coarser than surfaces.
+constexpr double kFill = 0.97;
 
 struct NearBlock {
-  std::uint32_t first, count;  ///< points of the cell
-  double surface;              ///< square metres, less for what is far away
+  /// First point of the block within its cell, and number of its points.
+  std::uint32_t first, count;
+  /// Square metres, reduced for blocks that are far away.
+  double surface;
 };
 
-/// The product of a box's two longest sides: points of scans lie on surfaces.
+/// The product of a box's two longest sides, because the points of scans lie on surfaces.
 double surface_of(const Box& box) {
   std::array<double, 3> side{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
   std::ranges::sort(side);
@@ -43,7 +46,7 @@ class Sampler {
   Sampler(const StoreReader& store, const PathPlaces& path, const PageLattice& lattice)
       : store_(store), path_(path), lattice_(lattice) {}
 
-  /// Counts what is near, by surface.
+  /// Counts the points near the path, and their blocks by surface.
   void count(Progress& progress) {
     progress.begin("environment near the path", store_.cells().size(), "cells");
     tbb::parallel_for(std::size_t{0}, store_.cells().size(), [&](std::size_t cell) {
@@ -59,7 +62,7 @@ class Sampler {
 
   std::uint64_t near_points() const { return near_points_; }
 
-  /// The area that a point stands for, so that `most` are picked.
+  /// The area that a point stands for if about `most` points are to be picked.
   double area_for(std::uint64_t most) const {
     double low = 1e-12, high = 1e12;
     for (int i = 0; i < 80; ++i) {
@@ -69,7 +72,7 @@ class Sampler {
     return high;
   }
 
-  /// area: 0 for all points.
+  /// Picks points. area: the area that each stands for, or 0 for all points.
   std::vector<PagePoint> pick(double area, Progress& progress) const {
     std::vector<std::vector<PagePoint>> of_cell(store_.cells().size());
     progress.begin("environment points of the page", of_cell.size(), "cells");
@@ -85,7 +88,7 @@ class Sampler {
   }
 
  private:
-  /// Calls visit(block, places near the cell) for each block near the path.
+  /// Calls visit(block, places near the cell) for each block of a cell that is near the path.
   template <typename Visit>
   void visit(std::uint32_t cell, const Visit& visit) const {
     const Cell& info = store_.cells()[cell];
@@ -115,7 +118,7 @@ class Sampler {
   }
 
   void pick_cell(std::uint32_t cell, double area, std::vector<PagePoint>& out) const {
-    double owed = 0.5;  // parts of points, carried from block to block
+    double owed = 0.5;  // fractions of points, carried from block to block
     std::array<PackedChunk<std::int32_t>, 3> chunks;
     bool decoded = false;
     visit(cell, [&](const NearBlock& block, const std::vector<std::uint32_t>& places) {
@@ -146,7 +149,7 @@ class Sampler {
   const PathPlaces& path_;
   const PageLattice& lattice_;
   std::atomic<std::uint64_t> near_points_ = 0;
-  std::array<std::atomic<std::uint64_t>, kBins> bins_{};  ///< blocks
+  std::array<std::atomic<std::uint64_t>, kBins> bins_{};  ///< number of blocks in each bin
 };
 
 }  // namespace

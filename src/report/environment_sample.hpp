@@ -10,19 +10,21 @@
 
 namespace clearway {
 
-/// Environment points for the page.
+/// The environment points that the page shows.
 struct EnvironmentSample {
-  /// Along the curve. Their tag is the height above the model's top at the nearest place of the
-  /// path, in tenths of a metre, plus 128, from 0 to 255.
+  /// The points in their order along the curve. A point's tag is its height above the top of the
+  /// model at the nearest place of the path, in tenths of a metre plus 128, from 0 to 255.
   std::vector<PagePoint> points;
-  std::uint64_t near_points = 0;  ///< from which they were taken
-  /// Side of the square of surface that one point stands for near the path; 0: all are there.
+  /// How many points near the path they were taken from.
+  std::uint64_t near_points = 0;
+  /// Side of the square of surface that each point stands for near the path; 0 where all points are
+  /// there.
   double spacing = 0;
 };
 
-/// Picks at most `most` points of those near the path, evenly over the surfaces they lie on and
-/// fewer far away. By blocks of the store and their boxes: points that are not picked are not
-/// decoded. The same for any number of threads.
+/// Picks at most `most` of the points near the path, evenly over the surfaces that they lie on, and
+/// fewer far away. Goes by the store's blocks and their boxes, so that a cell of which nothing is
+/// picked is not decoded. The result is the same for any number of threads.
 EnvironmentSample sample_environment(const Store& store, const PathPlaces& path,
                                      const PageLattice& lattice, std::uint64_t most,
                                      Progress& progress);

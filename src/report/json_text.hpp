@@ -14,7 +14,7 @@
 
 namespace clearway {
 
-/// Writes JSON, a value after the other. "<" is escaped, so that the text may stand in a page.
+/// Writes JSON, one value after the other. "<" is escaped, so that the text may stand in a page.
 class JsonText {
  public:
   JsonText& begin(char bracket) {
@@ -58,7 +58,7 @@ class JsonText {
   JsonText& field(std::string_view name, const Value& of) {
     return key(name).value(of);
   }
-  /// JSON as it is.
+  /// Appends a text that is JSON already.
   JsonText& raw(std::string_view json) {
     separate();
     text_ += json;

@@ -14,9 +14,9 @@ namespace clearway {
 namespace {
 
 constexpr int kDeflateLevel = 6;
-constexpr int kCurveBits = 21;  // of each axis
+constexpr int kCurveBits = 21;  // bits of each axis
 
-/// The lowest 21 bits, two zero bits between each two.
+/// The lowest 21 bits, with two zero bits between neighbouring ones.
 std::uint64_t spread_bits(std::uint64_t v) {
   v &= 0x1fffff;
   v = (v | v << 32) & 0x1f00000000ffff;

@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// Writes the page: what the browser runs, the facts (JSON) and the columns. Returns its bytes.
-/// Throws ResourceError.
+/// Writes the page: what the browser runs, the facts (JSON) and the columns. Returns the size of
+/// the page in bytes. Throws ResourceError.
 std::uint64_t write_page(const std::filesystem::path& path, const std::string& title,
                          const std::string& facts, const std::vector<PageColumn>& columns);
 

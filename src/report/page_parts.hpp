@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// The files of src/report/page, as the build put them into the program.
+/// The files of src/report/page, which the build puts into the program.
 namespace clearway::page_parts {
 
 extern const std::string_view kHtml, kStyle, kScript;

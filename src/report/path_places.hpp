@@ -11,8 +11,8 @@
 
 namespace clearway {
 
-/// Where the middles of the bodies' boxes are along the path, at places some way apart: for what is
-/// near the path. A picture's accuracy, not a search's.
+/// The centres of the bodies' boxes along the path, at places some way apart, to tell what is near
+/// the path. They are as accurate as a picture needs, not as a search does.
 class PathPlaces {
  public:
   struct Place {
@@ -20,20 +20,23 @@ class PathPlaces {
     double top;  ///< greatest z of the box there
   };
 
-  /// One body at least.
+  /// bodies: at least one.
   explicit PathPlaces(std::span<const DrawnBody> bodies);
 
-  double half_diagonal() const { return half_diagonal_; }  ///< of the largest box
-  /// Points farther than this from the middle of every body are not on the page.
+  /// Half the diagonal of the largest box.
+  double half_diagonal() const { return half_diagonal_; }
+  /// The distance from the centre of every body beyond which points are not on the page.
   double reach() const { return reach_; }
-  /// Up to this distance all are worth the same, and less and less beyond.
+  /// The distance up to which points are shown equally densely; beyond it they are thinned more and
+  /// more.
   double dense_reach() const { return dense_reach_; }
   std::span<const Place> places() const { return places_; }
-  /// Indices of the places at most reach() from the box.
+  /// Sets `out` to the indices of the places that are at most reach() from the box.
   void near(const Box& box, std::vector<std::uint32_t>& out) const;
-  /// Distance of the box to the nearest of these places; infinity for none.
+  /// The distance of the box to the nearest of the places in `among`; infinity where there are
+  /// none.
   double distance(const Box& box, std::span<const std::uint32_t> among) const;
-  /// The nearest of them to a point; there is one at least.
+  /// The place in `among` that is nearest to a point. `among` is not empty.
   const Place& nearest(const Vec3& point, std::span<const std::uint32_t> among) const;
 
  private:
@@ -43,7 +46,7 @@ class PathPlaces {
   std::vector<Place> places_;
 };
 
-/// Of the model's box at a pose.
+/// The centre of the model's box at a pose.
 Vec3 box_centre_at(const Box& model, const Pose& pose);
 
 }  // namespace clearway

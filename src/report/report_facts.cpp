@@ -23,7 +23,7 @@ void write_box(JsonText& json, const char* name, const Box& box) {
   json.key(name).begin('{').field("lo", box.lo).field("hi", box.hi).end('}');
 }
 
-/// Triangles of parts without an inside.
+/// The number of triangles that belong to no solid.
 std::uint64_t surface_triangles(const Model& model) {
   if (!model.is_solid()) return model.triangles.size();
   return static_cast<std::uint64_t>(std::ranges::count(model.solid_of, kNoSolid));
@@ -52,13 +52,13 @@ void write_bodies(JsonText& json, const ReportFacts& facts) {
   json.end(']');
 }
 
-/// Of a vehicle alone: the name of the body.
+/// Writes the name of a body; nothing for a single model.
 void write_body(JsonText& json, const ReportFacts& facts,
                 const std::optional<std::uint32_t>& body) {
   if (body) json.field("body", facts.bodies[*body].name);
 }
 
-/// Of a mesh that was searched as points.
+/// The spacing of a mesh that was searched as points; nothing for other models.
 std::optional<double> spacing_of(const ResultHeader& header) {
   if (!(header.model_spacing.metres > 0)) return std::nullopt;
   return header.model_spacing.metres;
@@ -93,7 +93,7 @@ void write_inputs(JsonText& json, const ReportFacts& facts) {
   json.field("partly_searched_length", facts.searched.part).end('}').end('}');
 }
 
-/// Where bodies have no pose, so that nothing is known of them.
+/// Writes the stretches where bodies have no pose, so that nothing is known about them.
 void write_unsearched(JsonText& json, const ReportFacts& facts) {
   const double start = facts.options.conflicts.chainage_start;
   json.key("unsearched").begin('[');
@@ -109,7 +109,7 @@ void write_unsearched(JsonText& json, const ReportFacts& facts) {
   json.end(']');
 }
 
-/// What the search left out; null for nothing.
+/// Writes what the search left out; null where it left out nothing.
 void write_ignored_points(JsonText& json, const ResultHeader& header, const Answer& answer) {
   json.key("ignored");
   if (!header.ignores_points()) {
@@ -150,7 +150,7 @@ void write_classes(JsonText& json, const ReportFacts& facts) {
   json.end(']').field("points_without_place", facts.points.without_place);
 }
 
-/// rank: 1 for the worst of all.
+/// Writes a conflict. rank: 1 for the worst of all.
 void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
                     const ReportFacts& facts) {
   json.begin('{').field("id", std::uint64_t{conflict.id}).field("points", conflict.points);
@@ -181,7 +181,7 @@ void write_conflict(JsonText& json, const Conflict& conflict, std::size_t rank,
   json.field("height", conflict.height).end('}');
 }
 
-/// Of the groups that are too small for the list, the first along the path; null without any.
+/// Writes the first group along the path that is too small for the list; null where there is none.
 void write_first_small(JsonText& json, const Conflicts& found) {
   json.key("first_small");
   if (found.small.empty()) {
@@ -198,7 +198,7 @@ void write_first_small(JsonText& json, const Conflicts& found) {
 /// A conflict and its rank, 1 for the worst.
 using RankedConflict = std::pair<const Conflict*, std::size_t>;
 
-/// The worst ones, by id.
+/// The worst conflicts, at most kMostListedConflicts, in the order of their ids.
 std::vector<RankedConflict> listed_in_page(const Conflicts& conflicts) {
   std::vector<const Conflict*> out;
   for (const Conflict& conflict : conflicts.listed) out.push_back(&conflict);
@@ -256,7 +256,8 @@ void write_least(JsonText& json, const ReportFacts& facts) {
   json.field("height", facts.least->height).field("of", facts.least_of).end('}');
 }
 
-/// What is inside solids of the model; null where that is not known.
+/// Writes how many points are inside solids of the model, and how deep; null where that is not
+/// known.
 void write_inside(JsonText& json, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   json.key("inside");
@@ -274,7 +275,7 @@ void write_lattice(JsonText& json, const char* name, const PageLattice& lattice)
   json.key(name).begin('{').field("origin", lattice.origin).field("step", lattice.step).end('}');
 }
 
-/// What the page holds of all there is, and how its columns count.
+/// Writes how much of everything the page holds, and the units of its columns.
 void write_page_facts(JsonText& json, const ReportFacts& facts) {
   json.key("page").begin('{');
   json.field("environment_points", std::uint64_t{facts.environment.points.size()});

@@ -14,36 +14,37 @@
 
 namespace clearway {
 
-/// All that the page says in words and numbers.
+/// Everything that the page says in words and numbers.
 struct ReportFacts {
   const Result& result;
-  Answer answer;  ///< without what only its rows tell
+  /// The answer as far as it is known without the result's rows.
+  Answer answer;
   const Store& store;
   const ReportOptions& options;
   std::string title;
   Box model_box{};
-  std::span<const DrawnBody> bodies;  ///< the model alone, where it is no vehicle
+  std::span<const DrawnBody> bodies;  ///< the model alone where there is no vehicle
   std::vector<double> classes;
   std::vector<UnsearchedStretch> unsearched;
   SearchedLength searched;
-  const Conflicts* conflicts = nullptr;  ///< none where the result has no first poses
+  const Conflicts* conflicts = nullptr;  ///< null where the result has no first poses
   const ShownPoints& points;
   const EnvironmentSample& environment;
-  double reach = 0, dense_reach = 0;  ///< of the environment points, from the model's middle
+  /// How far from the model's centre environment points are shown at all, and densely.
+  double reach = 0, dense_reach = 0;
   std::size_t shown_poses = 0, shown_model_points = 0;
-  std::optional<LeastDistance> least;  ///< of clearances or profile
+  std::optional<LeastDistance> least;  ///< the least of the clearances or of the profile
   double least_chainage = 0;
-  const char* least_of = nullptr;  ///< "clearance" or "profile"
+  const char* least_of = nullptr;  ///< "clearance" or "profile", whichever `least` is from
   PageLattice lattice, environment_lattice, model_lattice;
 };
 
 inline constexpr std::size_t kMostListedConflicts = 5'000;
 
-/// The conflict that matters most: the greatest encroachment, or else the most points; of equals
-/// the first. Null for none.
+/// The conflict that matters most, by is_worse(). Null where there are none.
 const Conflict* worst_of(const Conflicts& conflicts);
 
-/// One JSON object. Keys are in docs/guide/report.md.
+/// The facts as one JSON object. docs/guide/report.md describes its keys.
 std::string json_of(const ReportFacts& facts);
 
 }  // namespace clearway

@@ -7,9 +7,10 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kLeastOfConflict = 300;  // points that stay of each, where there is room
+/// The number of points that each conflict keeps, where there is room.
+constexpr std::uint64_t kLeastOfConflict = 300;
 
-/// Picks `kept` of `total` items evenly, one after the other.
+/// Picks `kept` of `total` items evenly. next() is called for each item in turn.
 class EvenPick {
  public:
   EvenPick(std::uint64_t kept, std::uint64_t total)
@@ -26,7 +27,8 @@ class EvenPick {
   std::uint64_t kept_, total_, sum_ = 0;
 };
 
-/// One for each conflict, the first one for points of none.
+/// The picks of colliding points: one for points of no conflict, and then one for each conflict. A
+/// single pick for all points where nothing is thinned or conflicts are not known.
 std::vector<EvenPick> picks_of(const PointSelection& selection, std::uint64_t collisions) {
   const std::uint64_t most = selection.most_colliding;
   if (selection.conflict_of->empty() || collisions <= most) return {{most, collisions}};
@@ -80,7 +82,8 @@ class PointReader {
   }
 
  private:
-  /// Of a colliding point without a distance: the class of the radius.
+  /// The class of a distance. A colliding point is at most in the class of the radius; one that has
+  /// no distance is given the radius as its distance.
   std::uint8_t class_of(double distance, bool collides) const {
     std::uint8_t k = 0;
     while (std::size_t{k} + 1 < selection_.classes.size() && distance >= selection_.classes[k] &&
@@ -132,7 +135,7 @@ class PointReader {
 
   const ResultReader& result_;
   const double radius_;
-  const bool has_places_;  ///< of clearances
+  const bool has_places_;  ///< whether clearances have coordinates
   const PageLattice& lattice_;
   const PointSelection& selection_;
   std::vector<EvenPick> picks_;

@@ -13,40 +13,52 @@
 
 namespace clearway {
 
-/// The least distance of all that the result knows, and where.
+/// The least distance that the result knows, and where it is.
 struct LeastDistance {
   double distance = 0;  ///< metres
   std::uint32_t pose = 0;
   std::uint64_t source = 0;
   std::optional<Vec3> xyz;
-  Side side = Side::kUnknown;  ///< of xyz at the pose, as of conflicts
+  /// The side on which xyz lies at the pose, as for conflicts.
+  Side side = Side::kUnknown;
   std::optional<double> lateral = {}, height = {};
-  std::optional<std::uint32_t> body = {};  ///< of a vehicle, that is so near
+  /// The body of a vehicle that is so near.
+  std::optional<std::uint32_t> body = {};
 };
 
-/// Points of the result for the page: colliding ones, and others closer than the last class.
+/// The points of the result that the page shows: colliding points, and others that are closer than
+/// the last class.
 struct ShownPoints {
   static constexpr std::size_t kMostClasses = 3;
-  std::vector<PagePoint> points;                       ///< along the curve; their tag is the class
-  std::array<std::uint64_t, kMostClasses> of_class{};  ///< in the result
-  std::array<std::uint64_t, kMostClasses> shown_class{};  ///< and on the page
-  std::uint64_t without_place =
-      0;                     ///< closer than the last class, of a result without their places
-  std::uint64_t inside = 0;  ///< points with a clearance below 0
-  std::optional<LeastDistance> least;    ///< of the clearances
-  std::map<std::uint64_t, Vec3> places;  ///< of the sources asked for that collide
+  /// Points in their order along the curve, with their class as the tag.
+  std::vector<PagePoint> points;
+  /// Number of points of each class in the result.
+  std::array<std::uint64_t, kMostClasses> of_class{};
+  /// Number of points of each class on the page.
+  std::array<std::uint64_t, kMostClasses> shown_class{};
+  /// Number of points that do not collide, are closer than the last class, and have no
+  /// coordinates, because the result has none for clearances.
+  std::uint64_t without_place = 0;
+  std::uint64_t inside = 0;            ///< number of points with a clearance below 0
+  std::optional<LeastDistance> least;  ///< the least of the clearances
+  /// Coordinates of the colliding points whose source was asked for, by source.
+  std::map<std::uint64_t, Vec3> places;
 };
 
 struct PointSelection {
-  std::vector<double> classes;  ///< metres, ascending
+  /// Upper bounds of the classes in metres, ascending.
+  std::vector<double> classes;
   const Conflicts* conflicts = nullptr;
-  const std::vector<std::uint32_t>* conflict_of = nullptr;  ///< of each row; empty: not known
-  std::vector<std::uint64_t> wanted;                        ///< sources, ascending
+  /// The conflict of each row; empty where it is not known.
+  const std::vector<std::uint32_t>* conflict_of = nullptr;
+  /// Source indices of points whose coordinates are wanted, ascending.
+  std::vector<std::uint64_t> wanted;
   std::uint64_t most_colliding = 2'000'000, most_others = 1'000'000;
 };
 
-/// Reads the rows once, front to back. Colliding points beyond `most_colliding` are thinned evenly
-/// in their order, but no conflict to fewer than some hundred. Throws InputError as the rows do.
+/// Reads the rows once, front to back. More than `most_colliding` colliding points are thinned
+/// evenly in their order, but each conflict keeps some hundred points. Throws InputError as reading
+/// the rows does.
 ShownPoints read_shown_points(const Result& result, const PageLattice& lattice,
                               const PointSelection& selection, Progress& progress);
 

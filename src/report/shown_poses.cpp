@@ -14,7 +14,7 @@ std::int32_t whole(double value) {
   return static_cast<std::int32_t>(std::clamp(std::round(value), -kMost, kMost));
 }
 
-/// A column of one number a shown pose.
+/// A column with one number for each shown pose.
 struct NumberColumn {
   const char* name;
   std::vector<std::int32_t> values;
@@ -25,7 +25,7 @@ class PoseColumns {
   PoseColumns(std::span<const std::uint32_t> shown, std::vector<NumberColumn>& columns)
       : shown_(shown), columns_(columns) {}
 
-  /// number(i): of pose i.
+  /// Adds a column. number(i) gives the value of pose i.
   template <typename Number>
   void add(const char* name, const Number& number) {
     NumberColumn column{name, {}};

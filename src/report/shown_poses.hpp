@@ -14,22 +14,24 @@ namespace clearway {
 
 inline constexpr std::size_t kMostShownPoses = 20'000;
 
-/// Poses for the page, ascending: all, or of each of `most` stretches of the list the
-/// nearest to the environment (without a profile its first), and in any case the first, the last
-/// and those that conflicts name.
+/// The indices of the poses for the page, ascending. All poses, or for each of `most` stretches of
+/// the trajectory the pose that is nearest to the environment (without a profile, the first one);
+/// in any case the first pose, the last one, and those that conflicts name.
 std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
                                         const std::vector<Conflict>& conflicts,
                                         std::size_t most = kMostShownPoses);
 
-/// Columns pose.*: index, place, rotation, chainage, and where known distance, point, time, name.
+/// Appends the columns pose.*: index, place, rotation, chainage, and where known distance, point,
+/// time and name.
 void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const Pose> poses,
                          std::span<const double> chainage, const Profile& profile,
                          const PoseLabels& labels, const PageLattice& lattice,
                          std::vector<PageColumn>& columns);
 
-/// What the integers of these columns count.
-/// Of a pose without a point within the profile's distance. Depths are above it.
+/// The value of pose.distance for a pose without a point within the profile's distance. Depths are
+/// greater than it.
 inline constexpr std::int32_t kNoDistance = -2147483647;
+/// The step that an integer counts in the columns of rotations, distances, chainage and time.
 inline constexpr double kRotationStep = 1.0 / (1 << 17), kDistanceStep = 1e-4, kChainageStep = 1e-3,
                         kTimeStep = 1e-3;
 

@@ -35,7 +35,8 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kMostModelPoints = 200'000;
-constexpr double kStep = 1e-3, kEnvironmentStep = 2e-3;  // metres, of the points on the page
+/// Steps in metres of the lattices of the points on the page.
+constexpr double kStep = 1e-3, kEnvironmentStep = 2e-3;
 
 std::vector<double> classes_of(const Result& result, const std::vector<double>& asked) {
   const QueryParameters& query = result.parameters();
@@ -61,7 +62,7 @@ std::vector<double> classes_of(const Result& result, const std::vector<double>& 
   return asked;
 }
 
-/// Of a thing that has a place on the page.
+/// The box around everything that has a place on the page.
 Box page_box(const PathPlaces& path) {
   if (path.places().empty()) return {};
   Box box{path.places()[0].centre, path.places()[0].centre};
@@ -71,15 +72,15 @@ Box page_box(const PathPlaces& path) {
   return box;
 }
 
-/// The answer of the result, doubtful also where a warning that was given with it says so: results
-/// of earlier releases do not keep doubts.
+/// The answer of the result, which is also doubtful where a warning that was given with it says so,
+/// because results of earlier releases do not keep doubts.
 Answer judged(const Result& result, const std::vector<Message>& warnings) {
   Answer answer = counted_answer(result.reader());
   add_doubts(warnings, answer);
   return answer;
 }
 
-/// One call of write_report, step by step.
+/// One call of write_report(), step by step.
 class Report {
  public:
   Report(const Result& result, const Store& store, const Model& model,
@@ -161,7 +162,7 @@ class Report {
 
   bool is_vehicle() const { return !options_.bodies.empty(); }
 
-  /// A profile does not say which body is so near.
+  /// Finds the body that is nearest, because a profile does not say which one it is.
   void find_nearest_body() {
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
@@ -172,7 +173,7 @@ class Report {
     }
   }
 
-  /// Where the nearest point is, seen from the model, or from its body.
+  /// Finds where the nearest point lies, seen from the model or from its body.
   void place_least() {
     if (!least_->xyz) return;
     const ConflictOptions& how = options_.conflicts;
@@ -263,7 +264,8 @@ class Report {
 
 namespace {
 
-/// Adds what the search warned of, which follows from the question alone, unless it was given.
+/// Adds the warnings of the search, which follow from the question alone, except those that were
+/// given already.
 void add_query_warnings(const Result& result, const Store& store, const Model& model,
                         const std::vector<Pose>& poses, ReportOptions& options) {
   Query query(model, poses, result.parameters());

@@ -17,7 +17,8 @@ namespace {
   throw UsageError("engine " + engine + " " + why, Remedy::kSweepEngine);
 }
 
-/// A tolerance is the sweep's, and only for sets.
+/// Throws UsageError where a tolerance cannot be combined with the rest of the query: only engine
+/// sweep has one, and only for sets of colliding points.
 void check_tolerance(const QueryParameters& query, Engine engine) {
   const char* other = query.first_pose      ? "first poses"
                       : query.clearance > 0 ? "clearances"

@@ -4,25 +4,28 @@
 
 namespace clearway {
 
-/// The engine that searches: kSweep, kGrid or kKdtree.
+/// The engine that searches with these options, where kAuto stands for kSweep: kSweep, kGrid or
+/// kKdtree.
 Engine chosen_engine(const SearchOptions& options);
 
-/// Throws UsageError, saying what can do it, where the engine cannot answer such a query, whatever
-/// its model and poses, or where the options contradict each other.
+/// Throws UsageError, saying what can answer it, where the engine cannot answer a query with these
+/// parameters, whatever its model and poses, or where the options contradict each other.
 void check_query(const QueryParameters& query, const SearchOptions& options);
 
-/// The same of a query whose model is a surface.
+/// Throws UsageError where the engine cannot answer a query with these parameters whose model is a
+/// surface.
 void check_surface(const QueryParameters& query, const SearchOptions& options);
 
-/// And where it has solids.
+/// Throws UsageError where these parameters rule out a model with solids, as a tolerance does.
 void check_solid(const QueryParameters& query);
 
-/// Throws InputError where a triangle has a corner that is not there, where solids are not those of
-/// the triangles or too large, and where the trees over model and poses cannot have as many nodes.
+/// Throws InputError where a triangle names a corner that does not exist, where the numbers of
+/// solids do not match the triangles or the model is too large for solids, and where model or
+/// trajectory have more elements than a tree over them can have.
 void check_sizes(const Query& query);
 
-/// Throws UsageError where the engine cannot search bodies so, and InputError where they contradict
-/// each other or the path.
+/// Throws UsageError where the engine cannot search the query's bodies, and InputError where the
+/// bodies contradict each other or the path.
 void check_bodies(const Query& query, const SearchOptions& options);
 
 }  // namespace clearway

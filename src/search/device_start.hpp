@@ -7,17 +7,19 @@
 
 namespace clearway {
 
-/// Starts GPUs on threads of its own: their contexts and the engine's kernels. What goes wrong is
-/// told where the GPU is then used, which tries it once more.
+/// Starts GPUs on threads of their own: makes their contexts and loads the engine's kernels. A
+/// failure is not reported here but where the GPU is used, which tries once more.
 class DeviceStart {
  public:
-  /// Begins, where options may take GPUs: those they name, or the first; all at once.
+  /// Starts the GPUs that options name, or the first one, all at once. Starts none where options
+  /// rule out GPUs.
   explicit DeviceStart(const SearchOptions& options);
 
-  /// Until all have started.
+  /// Waits until all GPUs have started or failed.
   void wait() const;
 
-  /// Wall clock of the slowest one's start. Waits.
+  /// Wall clock of the slowest start in seconds. Waits until all GPUs have started, and throws what
+  /// a start has thrown.
   double seconds() const;
 
  private:

@@ -11,10 +11,11 @@
 namespace clearway {
 namespace {
 
-/// "auto" leaves a GPU alone that has less than this free.
+/// Device "auto" does not take a GPU that has less than this free, in bytes.
 constexpr std::uint64_t kLeastRoom = std::uint64_t{256} << 20;
 
-/// What may be taken of a device: never quite all that is free, for others take some too.
+/// The memory in bytes that may be taken of a device. It is never quite all that is free, because
+/// others take some too.
 std::uint64_t allowance(const CudaDevice& device, std::uint64_t wanted_bytes) {
   return std::min(wanted_bytes, device.free_bytes - device.free_bytes / 20);
 }
@@ -98,7 +99,7 @@ CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted
   std::exception_ptr last;
   for (int gpu = 0; gpu < count; ++gpu) {
     try {
-      CudaDevice device = open(gpu);  // most of a second: no more of them than needed
+      CudaDevice device = open(gpu);  // takes most of a second
       if (allowance(device, wanted_bytes) == wanted_bytes) return device;
       if (!best || device.free_bytes > best->free_bytes) best = device;
     } catch (const ResourceError& error) {
@@ -107,7 +108,7 @@ CudaDevice one_with_room(int count, const OpenDevice& open, std::uint64_t wanted
     }
   }
   if (!best) std::rethrow_exception(last);
-  return open(best->index);  // the last one asked is the current one
+  return open(best->index);  // the GPU that was opened last becomes the current one
 }
 
 DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t wanted_bytes,

@@ -11,7 +11,7 @@ namespace clearway {
 
 namespace {
 
-/// To the end of the run, but for what is found.
+/// Bytes that are kept to the end of the run, besides what is found.
 std::uint64_t kept_by_kdtree(const StoreReader& store, const Query& query, int threads) {
   return program_bytes(threads) + input_bytes(store, query) +
          SearchJournal::most_bytes(store, query, threads);

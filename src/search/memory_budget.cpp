@@ -26,7 +26,7 @@ std::uint64_t input_bytes(const StoreReader& store, const Query& query) {
   std::uint64_t bytes =
       store.allocated_bytes() + bytes_of(query.model) + query.poses.size() * sizeof(Pose);
   for (const Body& body : query.bodies) {
-    // The search has a copy of them.
+    // The search has a copy of model and poses.
     bytes +=
         2 * bytes_of(body.model) + body.poses.size() * (2 * sizeof(Pose) + sizeof(std::uint32_t));
   }
@@ -49,7 +49,8 @@ std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query) {
 
 std::uint64_t tree_building_bytes(const Query& query) {
   const auto of_model = [](const Model& model) {
-    const std::uint64_t of_solids = 400 * model.solid_of.size();  // each once more, by solid
+    // For solids each triangle is there once more.
+    const std::uint64_t of_solids = 400 * model.solid_of.size();
     return of_solids +
            (model.is_surface() ? 240 * model.triangles.size() : 52 * model.vertices.size());
   };

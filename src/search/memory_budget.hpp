@@ -6,31 +6,34 @@
 #include "clearway/query.hpp"
 #include "io/store/store_reader.hpp"
 
-/// What a run takes of the memory budget beside the mapped store.
+/// The bytes that a run takes of the memory budget, beside the mapped store.
 namespace clearway {
 
-/// The program itself: its libraries' data, stacks of threads, buffers of files.
+/// Bytes of the program itself: its libraries' data, stacks of threads, buffers of files.
 std::uint64_t program_bytes(int threads);
 
-/// Index of the store, model and poses.
+/// Bytes of the store's index, of models and of poses.
 std::uint64_t input_bytes(const StoreReader& store, const Query& query);
 
-/// Hits, first and last poses and clearances of all points, nearest points and chainage of all
-/// poses.
+/// Bytes of a search's result: hits, first and last poses and clearances of all points, nearest
+/// points and chainage of all poses.
 std::uint64_t search_result_bytes(const StoreReader& store, const Query& query);
 
-/// What a search for last poses keeps at the same time: the other hits, and a copy of the inputs.
+/// Bytes that a search for last poses keeps besides the result of the first search: the other hits,
+/// and a copy of the inputs; 0 where no first poses are asked for.
 std::uint64_t last_pose_bytes(const StoreReader& store, const Query& query);
 
-/// While the trees over model and poses are built. Choosing what a tolerance keeps takes less.
+/// Bytes that are taken while the trees over model and poses are built. To choose what a tolerance
+/// keeps takes less.
 std::uint64_t tree_building_bytes(const Query& query);
 
-/// Throws ResourceError naming what is needed where that is more than `allowed`.
+/// Throws ResourceError, naming what is needed, where that is more than `allowed`.
 void check_memory(std::uint64_t needed, std::uint64_t allowed);
 
-/// Throws ResourceError that says what to do.
+/// Throws ResourceError that says how much memory is needed and what to do.
 [[noreturn]] void refuse_memory(std::uint64_t needed, std::uint64_t allowed);
-/// short_device: the device whose free memory, not the budget, is the bound; empty: none.
+/// Throws ResourceError that says how much device memory is needed and what to do. short_device:
+/// the device whose free memory is too little; empty where the limit is the budget.
 [[noreturn]] void refuse_device_memory(std::uint64_t needed, std::uint64_t allowed,
                                        const std::string& short_device);
 

@@ -11,10 +11,10 @@
 namespace clearway {
 namespace {
 
-/// With less memory pages get smaller once fewer slots than this are left.
+/// Where memory is short, pages get smaller once the number of slots is down to this.
 constexpr std::uint32_t kFewSlots = 4;
 
-/// The layouts of an engine from the best to the least.
+/// The layouts that an engine may have, from the best to the least.
 std::vector<SlotLayout> layouts(const PageEngineNeeds& needs, std::uint64_t least_page_bytes) {
   std::vector<SlotLayout> out;
   for (std::uint32_t cells = needs.page_cells; cells > 0; cells /= 2) {
@@ -63,7 +63,8 @@ void PageBudget::find() {
                        kind_.needs().short_device);
 }
 
-/// From here to the end of the run. A page under way has one record of the journal at a time.
+/// Bytes that are kept from here to the end of the run. Each page in flight has at most one record
+/// of the journal at a time.
 std::uint64_t PageBudget::kept_bytes(const SlotLayout& layout) const {
   if (!keeps_answer_) return kept_bytes_;
   const std::uint64_t pages = std::uint64_t{kind_.needs().devices} * layout.slots;
@@ -72,10 +73,10 @@ std::uint64_t PageBudget::kept_bytes(const SlotLayout& layout) const {
          SearchJournal::most_bytes(store_, asked_, static_cast<int>(std::min(pages, threads)));
 }
 
-/// What the search starts with: trees, index and plan.
+/// Bytes that the search starts with: trees, index and plan.
 std::uint64_t PageBudget::planned_bytes() const {
   constexpr std::uint64_t kHeapBlock = 16;
-  // While cells are sorted, half of them are there twice.
+  // While cells are sorted, half of them are in memory twice.
   std::uint64_t bytes = trees_.allocated_bytes() + kind_.index_bytes() +
                         3 * cells_.capacity() * sizeof(PlannedCell) / 2 +
                         run_pages_bytes(cells_.size());
@@ -85,7 +86,8 @@ std::uint64_t PageBudget::planned_bytes() const {
   return bytes;
 }
 
-/// Whether there is a plan with such an index, and a layout, or the best of them only, that fit.
+/// Builds an index of this size and a plan, and returns whether a layout fits the memory with them.
+/// any_layout: all layouts are tried, not only the best, as on a GPU.
 bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layout) {
   const std::uint64_t building =
       std::max(trees_.allocated_bytes() + size.while_built, building_bytes_);
@@ -109,12 +111,12 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
       fits(as_needed(layout), planned, building, most_poses);
       return true;
     }
-    if (!any_layout && !kind_.needs().on_gpu) break;  // for a GPU fewer slots are cheaper
+    if (!any_layout && !kind_.needs().on_gpu) break;  // a GPU gets fewer slots first
   }
   return false;
 }
 
-/// No more of it than the plan's pages fill; they stay the same.
+/// The layout reduced to what the plan's pages fill; the pages stay the same.
 SlotLayout PageBudget::as_needed(const SlotLayout& layout) const {
   const auto pages = paginate(store_, cells_, layout.page_bytes, layout.cells, masked_);
   SlotLayout needed{.slots = 1, .page_bytes = 0, .cells = 1};

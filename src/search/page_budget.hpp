@@ -18,9 +18,10 @@ namespace clearway {
 /// down to one cell, before the index gets coarser.
 class PageBudget {
  public:
-  /// asked: as the caller put it; searched: with what a tolerance leaves of it, thinned_bytes.
-  /// only: the cells to plan, null for all. All outlive it. search: where the ignored points are
-  /// searched, they are only counted, so that no answer, journal or result takes memory.
+  /// asked: the query as the caller put it. searched: what a tolerance leaves of it, in
+  /// thinned_bytes bytes. only: the cells to plan, null for all. search: which points are searched;
+  /// ignored points are only counted, so that no answer, journal or result takes memory. All
+  /// references outlive it.
   PageBudget(const StoreReader& store, const Query& asked, const Query& searched,
              std::uint64_t thinned_bytes, std::uint64_t memory_bytes, PageEngineKind& kind,
              const ShardCells* only, IgnoredPoints::Search search = IgnoredPoints::Search::kOthers);
@@ -28,14 +29,14 @@ class PageBudget {
   /// Throws ResourceError naming the smallest budget that works.
   void find();
 
-  // Once found:
+  // The following are valid after find():
   std::vector<PlannedCell>& cells() { return cells_; }
   const SlotLayout& layout() const { return layout_; }
   const IgnoredPoints& ignored() const { return ignored_; }
   double index_seconds() const { return trees_.model_seconds + index_seconds_; }
   double plan_seconds() const { return trees_.motion_seconds + plan_seconds_; }
   std::uint64_t needed_bytes() const { return needed_bytes_; }
-  /// Of the memory, what is left to write the result with.
+  /// The bytes of the memory that are left to write the result with.
   std::uint64_t write_bytes() const { return memory_bytes_ - kept_bytes(layout_); }
 
  private:
@@ -53,15 +54,16 @@ class PageBudget {
   const ShardCells* only_;
   const bool keeps_answer_;
   const IgnoredPoints ignored_;
-  const bool masked_;  ///< pages have masks
+  const bool masked_;  ///< whether pages have masks
   const QueryTrees trees_;
-  const std::uint64_t building_bytes_;  ///< of the trees
-  const std::uint64_t kept_bytes_;      ///< to the end of the run, but for the journal
+  const std::uint64_t building_bytes_;  ///< bytes while the trees are built
+  /// Bytes that are kept to the end of the run, except those of the journal.
+  const std::uint64_t kept_bytes_;
   std::vector<PlannedCell> cells_;
   SlotLayout layout_;
-  double index_seconds_ = 0, plan_seconds_ = 0;  ///< of all that were tried
+  double index_seconds_ = 0, plan_seconds_ = 0;  ///< sums over all indices that were tried
   std::uint64_t needed_bytes_ = 0;
-  std::optional<std::uint64_t> smallest_bytes_;  ///< of what fits the device
+  std::optional<std::uint64_t> smallest_bytes_;  ///< the least of what fits the device
   std::uint64_t smallest_device_bytes_ = std::numeric_limits<std::uint64_t>::max();
 };
 

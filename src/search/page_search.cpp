@@ -13,7 +13,7 @@
 namespace clearway {
 namespace {
 
-/// The query as it is searched: with a tolerance, less of model and trajectory.
+/// The query as it is searched, which with a tolerance has fewer model points and poses.
 class SearchedQuery {
  public:
   SearchedQuery(const Query& asked, SearchReport& report, const MessageLog& log) : asked_(asked) {
@@ -54,7 +54,8 @@ void report_stages(const StageTimes& stages, SearchSeconds& seconds) {
   seconds.search = stages.total;
 }
 
-/// Where memory is scarce, writing waits for that of the engines.
+/// Begins to take the engines down, and waits for that where memory is too scarce to write the
+/// result meanwhile.
 Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines engines, Found found,
             std::uint64_t pinned_bytes) {
   found.engine_end = kind.end(std::move(engines));

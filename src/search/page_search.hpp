@@ -12,17 +12,18 @@
 
 namespace clearway {
 
-/// What was found, and what of the memory is left to write it with, beside an engine that is still
-/// being taken down.
+/// What a search found, and the bytes of memory that are left to write it with while its engines
+/// are still being taken down.
 struct Found {
   SearchResult result;
   std::uint64_t write_bytes = 0;
   EngineEnd engine_end = {};
 };
 
-/// Plans the query, or of it the cells `only`, within options.memory_bytes, makes the engine and,
-/// with the journal that is then asked for, runs it. Throws ResourceError, before the journal is
-/// asked for, naming the smallest budget that works.
+/// Plans the query, or those of its cells that `only` contains, within memory_bytes, makes the
+/// engines, and searches. Asks for the journal once the engines are made, and searches only the
+/// cells that it does not have. Throws ResourceError naming the smallest budget that works, before
+/// the journal is asked for.
 Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
                    PageEngineKind& kind, const ShardCells* only,
                    const std::function<SearchJournal*()>& open_journal, Progress& progress,

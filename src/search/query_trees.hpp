@@ -11,10 +11,10 @@
 
 namespace clearway {
 
-/// The trees over a model's points or triangles and over the poses that every plan of a query
-/// starts from.
+/// The trees over a model's points or triangles and over the poses, with which every plan of a
+/// query starts.
 struct QueryTrees {
-  /// The query outlives it; clock: started now.
+  /// The query outlives the trees. clock: started just before, for model_seconds.
   explicit QueryTrees(const Query& query, int threads = 1, const Stopwatch& clock = {})
       : model(query.model.is_surface() ? std::span<const Vec3>() : query.model.vertices, threads),
         triangles(triangles_of(query.model), threads),
@@ -28,10 +28,10 @@ struct QueryTrees {
            motion.allocated_bytes();
   }
 
-  /// Of the model, which is not empty.
+  /// The model's box. The model is not empty.
   const Box& box() const { return triangles.size() > 0 ? triangles.box() : model.box(); }
 
-  /// Of the model's elements.
+  /// The tree over the model's elements.
   template <typename Element>
   const ModelTreeOf<StoredElement<Element>>& of() const {
     if constexpr (kIsTriangle<Element>) {
@@ -41,16 +41,16 @@ struct QueryTrees {
     }
   }
 
-  /// For a field of these elements; null where they are no solids.
+  /// The model's solids, for a field of these elements; null where the elements are not of solids.
   template <typename Element>
   const SolidParts* solids_of() const {
     return kIsSolid<Element> ? &solids : nullptr;
   }
 
   ModelTree model;         ///< empty for a surface
-  TriangleTree triangles;  ///< of a surface
-  SolidParts solids;       ///< of it, if any
-  double model_seconds;    ///< wall clock
+  TriangleTree triangles;  ///< empty for a model of points
+  SolidParts solids;       ///< empty where the surface has no solids
+  double model_seconds;    ///< wall clock of the model's trees
   MotionTree motion;
   double motion_seconds;
 };

@@ -26,7 +26,7 @@ std::uint64_t triangles_of(const Query& query) {
   return triangles;
 }
 
-/// Of several bodies that of all, each in its own frame.
+/// The box around the model, or around the models of all bodies, each in its own frame.
 Box model_box(const Query& query) {
   if (query.bodies.empty()) return query.model.empty() ? Box{} : box_of(query.model.vertices);
   std::optional<Box> all;

@@ -7,7 +7,7 @@
 
 namespace clearway {
 
-/// Of the result of a search, but for the part that it may be.
+/// The header of the result of a search. For a shard, the part is still missing.
 ResultHeader result_header(const StoreReader& store, const Query& query,
                            const SearchOptions& options);
 

@@ -21,7 +21,8 @@ std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
 std::string text_of(bool value) { return yes_or_no(value); }
 std::string text_of(double value) { return format_number(value); }
 
-/// A journal of version 0.1.0 has "yes" between poses too: its ways did not include their ends.
+/// Whether first poses are asked for, and between poses with "closed way" for ways that include
+/// their ends. Journals of version 0.1.0 have "yes" there, because their ways did not include them.
 std::string first_pose_text(const ResultHeader& header) {
   return header.has_poses_of_ways() ? "closed way" : yes_or_no(header.first_pose);
 }
@@ -71,7 +72,7 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
   if (header.model_triangles > 0) {
     identity.emplace_back("model_as", header.model_solids > 0 ? "solid" : "surface");
   }
-  // Later parameters are named where they are asked for, so that earlier journals stay valid.
+  // Later parameters are named only where they are asked for, so that earlier journals stay valid.
   for_each_value_field([&](const auto& field) {
     const bool known =
         std::ranges::any_of(identity, [&](const auto& named) { return named.first == field.name; });
@@ -79,23 +80,25 @@ JournalIdentity identity_of(const StoreReader& store, const ResultHeader& header
       identity.emplace_back(field.name, text_of(field.of(header)));
     }
   });
-  if (header.tolerance > 0) {  // then the answer depends on the field
+  if (header.tolerance > 0) {  // the answer depends on the field in this case
     identity.emplace_back("field_voxel", format_number(options.field_voxel));
   }
-  if (options.float_precision) {  // then the answer depends on the cells
+  if (options.float_precision) {  // the answer depends on the grid cells in this case
     identity.emplace_back("precision", "float");
     identity.emplace_back("grid_cell", format_number(options.grid_cell));
   }
   return identity;
 }
 
-/// The name of a coordinate reference system, for example, is no more than that.
+/// The text cut to at most 80 bytes, because a coordinate reference system, for example, may be
+/// long.
 std::string shortened(const std::string& text) {
   constexpr std::size_t kMost = 80;
   return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 
-/// "radius: 0.1 m in the file, 0.2 m here; ..."; empty where both ask the same.
+/// How two queries differ, such as "radius: 0.1 m in the file, 0.2 m here; ..."; empty where both
+/// ask the same.
 std::string differences_text(const ResultHeader& found, const ResultHeader& asked) {
   std::string text;
   const auto add = [&](const std::string& what, const std::string& a, const std::string& b) {
@@ -179,7 +182,7 @@ bool RunJournal::already_done(const StoreReader& store, const ResultHeader& head
 
 void RunJournal::refuse_existing(const ResultHeader& header) const {
   std::error_code unknown;
-  if (!fs::is_regular_file(output_, unknown)) return;  // the pending file judges what else it is
+  if (!fs::is_regular_file(output_, unknown)) return;  // left to the pending file
   if (options_.resume) refuse_other_part(header);
   const Remedy overwrite = options_.resume ? Remedy::kOverwriteNotResume : Remedy::kOverwrite;
   const std::string exists = output_.string() + ": exists already, ";
@@ -187,7 +190,7 @@ void RunJournal::refuse_existing(const ResultHeader& header) const {
   try {
     found = ResultReader(output_, Parts::kAccepted).header();
   } catch (const Error&) {
-    if (!options_.resume) return;  // the pending file says that it is there
+    if (!options_.resume) return;  // the pending file says that the output exists
     throw UsageError(exists + "and is no complete result", overwrite);
   }
   const std::string differences = differences_text(found, header);
@@ -205,7 +208,8 @@ void RunJournal::refuse_existing(const ResultHeader& header) const {
   throw UsageError(exists + "and answers the same question", Remedy::kReadOrOverwrite);
 }
 
-/// A part in the place of a result, another part, or a result in the place of a part.
+/// Throws UsageError where the output is a part in the place of a whole result, another part, or a
+/// whole result in the place of a part.
 void RunJournal::refuse_other_part(const ResultHeader& header) const {
   const auto words = [](const std::optional<ResultPart>& part) {
     return part ? in_words(part->shard) : std::string("the whole result");
@@ -214,7 +218,7 @@ void RunJournal::refuse_other_part(const ResultHeader& header) const {
   try {
     found = words(ResultReader(output_, Parts::kAccepted).header().part);
   } catch (const Error&) {
-    return;  // nothing is there, or no result
+    return;  // the output does not exist, or is no result
   }
   if (found == words(header.part)) return;
   throw UsageError(

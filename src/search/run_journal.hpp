@@ -16,43 +16,43 @@
 
 namespace clearway {
 
-/// The journal beside the output of a search: what an earlier run left there, and what this
-/// one keeps.
+/// The journal beside the output of a search: the one that an earlier run left there, and the one
+/// that this run keeps.
 class RunJournal {
  public:
   /// Looks for an earlier journal. Throws UsageError, saying what was found and what to do, where
-  /// there is one and neither options.resume nor options.overwrite.
-  /// The output is this process's alone. All outlive it; pending is of the path `output`.
+  /// there is one and options ask neither to resume nor to overwrite. The output belongs to this
+  /// process alone. All references outlive it; pending is for the path `output`.
   RunJournal(PendingFile& pending, const std::filesystem::path& output,
              const SearchOptions& options, MessageLog& log);
 
-  /// Whether, with options.resume, the output is there, intact, and answers this query: exactly,
-  /// or from an earlier run that was only kept from removing its journal. A journal is removed
-  /// then. Throws as refuse_existing() where another output is there.
+  /// Whether, with options.resume, the output exists, is intact, and answers this query: exactly,
+  /// or from an earlier run that was only kept from removing its journal. In that case a journal is
+  /// removed. Throws as refuse_existing() where another output exists.
   bool already_done(const StoreReader& store, const ResultHeader& header, Progress& progress);
 
-  /// Throws UsageError where there is an output that this run may not overwrite. It says whether
-  /// the output answers this query or which inputs and parameters differ, because whoever reads
-  /// the output next would take its answer for that of this run.
+  /// Throws UsageError where there is an output that this run may not overwrite. The message says
+  /// whether the output answers this query or which inputs and parameters differ, because whoever
+  /// reads the output next would take its answer for that of this run.
   void refuse_existing(const ResultHeader& header) const;
 
-  /// As the run to resume was started with; kAuto where there is none.
+  /// The device of the run that is resumed; kAuto where there is none.
   Device earlier_device() const;
   Engine earlier_engine() const;
 
-  /// The journal of this query, engine and device to keep the answer in. An earlier one is
-  /// removed where options.overwrite or nothing is in it. Throws UsageError, naming what differs,
-  /// where it is of others.
+  /// Opens the journal for this query, engine and device, in which the answer is kept. An earlier
+  /// journal is removed where options ask to overwrite or nothing is in it. Throws UsageError,
+  /// naming what differs, where the earlier journal belongs to another run.
   SearchJournal& open(const StoreReader& store, const Query& query, const ResultHeader& header,
                       Engine engine, Device device);
 
-  /// The output's lock ended with its publication, and another process may have begun: its journal
-  /// is left alone.
+  /// Removes the journal. The output's lock ended with its publication, so another process may have
+  /// begun since; that process's journal is left alone.
   void remove_after_publication();
 
   const std::filesystem::path& output() const { return output_; }
 
-  /// Of the earlier run.
+  /// The work that the earlier run's journal holds.
   const JournalledWork& earlier() const { return earlier_; }
 
  private:
@@ -66,8 +66,9 @@ class RunJournal {
   std::filesystem::path path_;
   std::optional<JournalReader> read_;
   JournalledWork earlier_;
-  std::string unwanted_;  ///< why the journal that is there is removed; empty where it is not
-  bool replaces_;         ///< an existing output is to be overwritten
+  /// Why the journal that exists is to be removed; empty where it is to be kept.
+  std::string unwanted_;
+  bool replaces_;  ///< whether this run overwrites an existing output
   std::optional<SearchJournal> results_;
 };
 

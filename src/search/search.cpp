@@ -37,10 +37,10 @@
 namespace clearway {
 namespace {
 
-/// A GPU is not to be had, which has been told.
+/// Thrown when no GPU is available; the user has already been told why.
 struct NoGpu {};
 
-/// Progress of another search within a search, which bears a name of its own.
+/// Passes on the progress of a search within a search under a name of its own.
 class StageOf final : public Progress {
  public:
   StageOf(Progress& all, std::string_view name) : all_(all), name_(name) {}
@@ -69,13 +69,13 @@ class Search {
         pending_(output, true),
         journal_(pending_, output, options_, log_),
         header_(result_header(store_, query_, options_)) {
-    // Which part a shard is turns out later.
+    // The part that a shard is turns out later.
     if (!options.overwrite && !options.resume && !options.shard) {
       journal_.refuse_existing(header_);
       pending_.refuse_existing();
     }
     end_gpus_ = options_.end_gpus;
-    if (query_.first_pose) options_.end_gpus = false;  // they search twice
+    if (query_.first_pose) options_.end_gpus = false;  // the GPUs are needed for a second search
     if (!options_.started) options_.started = start_devices(options_, &store);
   }
 
@@ -102,7 +102,7 @@ class Search {
   }
 
  private:
-  /// Before anything is searched, and of a result that is there already too.
+  /// Checks the query and warns before anything is searched, also where the result exists already.
   void check() {
     for (const Message& told : options_.input_warnings) {
       if (told.severity == Message::Severity::kWarning) report_.warnings.push_back(told);
@@ -113,7 +113,7 @@ class Search {
     if (options_.strict) refuse_warnings(report_.warnings);
   }
 
-  /// Of a shard, which cells it has.
+  /// Finds out which cells a shard has.
   void divide() {
     if (!options_.shard) return;
     throw_if_stopped(progress_);
@@ -126,7 +126,7 @@ class Search {
 
   const ShardCells* only() const { return shard_ ? &*shard_ : nullptr; }
 
-  /// Device kAuto goes on where the run that is resumed was.
+  /// Where a run is resumed, device kAuto goes on with the device of that run.
   void resolve_device() {
     const Device earlier = journal_.earlier_device();
     if (options_.device == Device::kAuto && options_.gpus.empty() && earlier != Device::kAuto) {
@@ -155,8 +155,8 @@ class Search {
     return found;
   }
 
-  /// A second search, of the ignored points alone. It comes first, because it leaves nothing in
-  /// memory, and it is not kept in the journal: a run that is resumed does it again.
+  /// A second search, of the ignored points alone. It comes first because it leaves nothing in
+  /// memory. The journal does not keep it, so a run that is resumed repeats it.
   void count_ignored_that_collide(bool gpu) {
     if (!query_.ignores_points()) return;
     const Stopwatch clock;
@@ -166,8 +166,8 @@ class Search {
     report_.seconds.ignored = clock.seconds();
   }
 
-  /// The numbers do not depend on the device, so the CPU counts where a GPU that was not asked for
-  /// cannot.
+  /// Searches the ignored points. Their numbers do not depend on the device, so the CPU counts them
+  /// where a GPU that the user did not ask for cannot.
   CollidingIgnored colliding_ignored(bool gpu) {
     const Query query = query_of_ignored(query_);
     SearchOptions options = options_;
@@ -188,7 +188,8 @@ class Search {
     return count_on(Device::kCpu);
   }
 
-  /// By estimate, where neither device was asked for.
+  /// Whether a GPU pays, by estimate. Always true where the user asked for a device, or for engine
+  /// grid or kdtree.
   bool gpu_pays() {
 #ifdef CLEARWAY_CUDA
     const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
@@ -201,12 +202,12 @@ class Search {
               " s, a GPU with its start " + format_brief(cuda) + " s");
     return false;
 #else
-    return true;  // what is asked for in vain is refused later
+    return true;  // a device that is asked for in vain is refused later
 #endif
   }
 
-  /// A GPU that was not asked for and proves too small, or fails, before the journal is open gives
-  /// way to the CPU.
+  /// Searches page by page. A GPU that the user did not ask for gives way to the CPU where it is
+  /// too small or fails before the journal is open.
   Found find_on_pages(bool gpu) {
     if (!gpu) return find_on(Device::kCpu);
     try {
@@ -222,7 +223,7 @@ class Search {
   Found find_on(Device device) {
     report_.device = device;
     report_.device_name = DeviceChoice().name;
-    // What is refused is so before it is planned.
+    // A journal that does not match is refused before anything is planned.
     if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
     const std::unique_ptr<PageEngineKind> kind = kind_on(device, query_, options_);
     return search_pages(
@@ -231,7 +232,7 @@ class Search {
   }
 
   /// Searches the cells that have colliding points once more, with the poses in reverse order. No
-  /// journal keeps this: a run that goes on from one begins it again.
+  /// journal keeps this search, so a run that is resumed begins it again.
   void find_last_poses(Found& found) {
     found.engine_end.clear();
     options_.end_gpus = end_gpus_;
@@ -243,7 +244,7 @@ class Search {
     const ShardCells cells(std::move(hit));
     backwards_ = backwards(query_);
     backwards_options_ = options_;
-    // What the search before took is enough but for roundings of a plan.
+    // What the first search took is enough, except for rounding in the plan.
     backwards_options_.memory_bytes += options_.memory_bytes / 16;
     SearchReport report;
     const MessageCallback silent;
@@ -281,7 +282,7 @@ class Search {
     }
   }
 
-  /// query and options outlive the kind.
+  /// Makes the engine kind for a device. query and options outlive the kind.
   std::unique_ptr<PageEngineKind> kind_on([[maybe_unused]] Device device, const Query& query,
                                           const SearchOptions& options) {
 #ifdef CLEARWAY_CUDA
@@ -298,7 +299,8 @@ class Search {
     return cpu_sweep_kind(store_, query, options);
   }
 
-  /// Where the search needs them: they have been starting meanwhile. Throws NoGpu.
+  /// The GPUs, opened when the search needs them; they have been starting meanwhile. Throws NoGpu
+  /// where none can be used.
   DeviceChoice open_gpus() {
     if (gpus_) return usable(*gpus_);
     const Stopwatch waiting;
@@ -357,8 +359,8 @@ class Search {
     return found;
   }
 
-  /// What merging parts asks of them: how an answer that is not exact was computed, and what was
-  /// warned of.
+  /// Describes what merging needs to know of a part: how an answer that is not exact was computed,
+  /// and which warnings were given.
   void describe_part() {
     if (!header_.part) return;
     header_.part->warnings = report_.warnings;
@@ -372,7 +374,7 @@ class Search {
   const Stopwatch total_;
   const StoreReader& store_;
   const Query& query_;
-  SearchOptions options_;  ///< as resolved so far
+  SearchOptions options_;  ///< as far as resolved
   SearchReport report_;
   CallbackProgress progress_;
   MessageLog log_;
@@ -381,14 +383,16 @@ class Search {
   ResultHeader header_;
   std::optional<ShardCells> shard_;
   CollidingIgnored ignored_;
-  std::optional<DeviceChoice> gpus_;  ///< once they are open
-  Query backwards_;                   ///< for last poses; it and its options outlive the engines
+  std::optional<DeviceChoice> gpus_;  ///< set once they are open
+  /// The query for last poses; it and its options outlive the engines.
+  Query backwards_;
   SearchOptions backwards_options_;
-  bool end_gpus_ = false;  ///< as options.end_gpus asked
+  /// Whether the caller asked to end the GPUs.
+  bool end_gpus_ = false;
   SearchJournal* open_ = nullptr;
 };
 
-/// Or part of one.
+/// Whether a file is a result or a part of one.
 bool is_result(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return false;
@@ -409,7 +413,7 @@ void check_search(const QueryParameters& query, const std::filesystem::path& out
   std::vector<Message> none;
   MessageLog log(silent, none);
   const RunJournal journal(pending, output, options, log);
-  // Whether a result that is there answers this query is known once the inputs are read.
+  // Whether an existing result answers this query is known only once the inputs are read.
   if (!options.overwrite && !options.resume && !is_result(output)) pending.refuse_existing();
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// The names that the tasks have, in the order of the first ones.
+/// The names that the tasks have, each once, in the order of their first tasks.
 template <typename Name>
 std::vector<std::string> names_in(const Plan& plan, const Name& name) {
   std::vector<std::string> names;
@@ -85,7 +85,8 @@ class CampaignPage {
         "distance that is known. It links to the report of its run.</p>\n</section>\n";
   }
 
-  /// One sentence in which every run is counted once, and one on what the verdicts leave out.
+  /// One sentence that counts every run once, and one about runs that left points out of the
+  /// search.
   std::string answer() const {
     const std::size_t all = looks_.size();
     std::vector<std::string> parts;
@@ -142,7 +143,7 @@ class CampaignPage {
     text_ += "</tbody>\n</table>\n</div>\n</section>\n";
   }
 
-  /// A radius as a plain number is in the unit of the environments.
+  /// The unit behind a radius. A radius that is a plain number is in the unit of the environments.
   std::string unit_of(const std::string& radius) const {
     if (radius.find_first_not_of("0123456789.") != std::string::npos) return "";
     for (const Task& task : plan_.tasks) {
@@ -167,7 +168,7 @@ class CampaignPage {
     text_ += link.empty() ? "</td>" : "</a></td>";
   }
 
-  /// The numbers alone; the sections below the tables have the words.
+  /// The caveats of a run as numbers only, because the sections below the tables have the words.
   static std::string cell_caveats(const ordered_json& facts) {
     std::string text;
     if (const std::size_t warnings = facts["warnings"].size(); warnings > 0) {
@@ -181,7 +182,7 @@ class CampaignPage {
     return text.empty() ? "" : "<small>" + text + "</small>";
   }
 
-  /// "truck/north/0.1, ...", with links, the first ones of many.
+  /// Names of runs with links, such as "truck/north/0.1, ..."; only the first ones of many.
   std::string run_links(const std::vector<std::size_t>& runs) const {
     constexpr std::size_t kMost = 12;
     std::string text;
@@ -209,7 +210,7 @@ class CampaignPage {
   }
   void end_list() { text_ += "</tbody>\n</table>\n</div>\n</section>\n"; }
 
-  /// Each cause once, with what the first run says of it.
+  /// Lists each kind of warning once, with the text of the first run that has it.
   void warnings() {
     std::map<std::string, std::vector<std::size_t>> runs_of;
     std::map<std::string, std::string> first_text;
@@ -275,7 +276,7 @@ class CampaignPage {
              (changes.empty() ? "" : "<ul>\n" + changes + "</ul>\n") + "</section>\n";
   }
 
-  /// Nothing in it ends the element that it stands in.
+  /// The page's facts as JSON in which nothing can end the HTML element around it.
   std::string facts_text() const {
     const std::string json = page_facts(plan_, looks_, date_)
                                  .dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A path of a link: what is no plain letter becomes %XX.
+/// A path as the text of a link, in which every byte that is not plain becomes %XX.
 std::string link_text(const std::string& path) {
   constexpr std::string_view kPlain = "/-._~", kDigits = "0123456789ABCDEF";
   std::string link;

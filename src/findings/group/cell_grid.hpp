@@ -10,7 +10,7 @@
 
 namespace clearway {
 
-/// A stored integer on each axis.
+/// The stored integers of a point, one on each axis.
 struct QuantumPoint {
   std::int32_t q[3];
 };
@@ -21,7 +21,7 @@ struct GridPoint {
   std::uint32_t row;
 };
 
-/// Where a cell of the grid lies; in the order of the cells.
+/// The place of a cell in the grid; places are ordered as the cells are.
 struct GridPlace {
   std::uint32_t z, y, x;
   friend bool operator==(const GridPlace&, const GridPlace&) = default;
@@ -30,15 +30,15 @@ struct GridPlace {
   }
 };
 
-/// Points sorted by the cells of a regular grid, so small that all points of a cell are neighbours.
-/// Only cells with points are kept. Runs in the caller's arena of oneTBB.
+/// Points sorted by the cells of a regular grid, which are so small that all points of a cell are
+/// neighbours. Only cells with points are kept. Runs in the caller's arena of oneTBB.
 class CellGrid {
  public:
   static constexpr std::uint64_t kBytesOfPoint = sizeof(GridPoint);
   static constexpr std::uint64_t kBytesOfCell = sizeof(GridPlace) + sizeof(std::uint32_t);
 
   /// points: fewer than 2^32 - 1, by row. check_cells(count) is called before memory is taken for
-  /// so many cells.
+  /// that many cells.
   template <typename CheckCells>
   CellGrid(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
            CheckCells check_cells) {
@@ -53,11 +53,11 @@ class CellGrid {
   std::span<const GridPoint> points(std::uint32_t cell) const {
     return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
-  /// To be put into another order.
+  /// The points of a cell, whose order the caller may change.
   std::span<GridPoint> points(std::uint32_t cell) {
     return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
-  /// The smallest integers of any point: where the cell (0, 0, 0) begins.
+  /// The smallest stored integer of all points on each axis, where the cell (0, 0, 0) begins.
   const QuantumPoint& origin() const { return origin_; }
 
  private:
@@ -69,7 +69,8 @@ class CellGrid {
   /// Until make_cells(), q holds the place of the point's cell: z, y, x.
   std::vector<GridPoint> points_;
   std::vector<GridPlace> places_;
-  std::vector<std::uint32_t> first_;  ///< of each cell's points, and their end
+  /// The first point of each cell, and at the end the number of all points.
+  std::vector<std::uint32_t> first_;
 };
 
 }  // namespace clearway

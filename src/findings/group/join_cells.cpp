@@ -19,12 +19,14 @@ using CellRange = tbb::blocked_range<std::uint32_t>;
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 constexpr std::uint32_t kCellGrain = 16;
 
-/// A row of cells along x, seen from another one: of two rows that see each other only one.
+/// A row of cells along x, as seen from another row. Of two rows that see each other only one has
+/// the step.
 struct RowStep {
   std::int64_t y, z;
 };
 
-/// The near ones first: what they join need not be looked at again.
+/// The rows that may hold neighbours. Near rows come first, because what they join need not be
+/// looked at again.
 std::vector<RowStep> rows_in_reach(const Neighbourhood& neighbourhood) {
   const std::int64_t most_y = neighbourhood.cells_away()[1];
   const std::int64_t most_z = neighbourhood.cells_away()[2];
@@ -43,7 +45,8 @@ std::vector<RowStep> rows_in_reach(const Neighbourhood& neighbourhood) {
   return rows;
 }
 
-/// Visits each cell of a row within reach of a cell, for cells in their order.
+/// Visits each cell of a row that is within reach of a cell. The cells have to be asked for in
+/// their order.
 class RowWalk {
  public:
   RowWalk(const CellGrid& grid, const Neighbourhood& neighbourhood, const RowStep& step)
@@ -82,7 +85,7 @@ class RowWalk {
   bool started_ = false;
 };
 
-/// Decides what a first look left open, with a tree for each cell of these pairs.
+/// Decides the pairs of cells that a first look left open, with a tree for each of their cells.
 class OpenPairs {
  public:
   OpenPairs(CellGrid& grid, const Neighbourhood& neighbourhood, UnionFind& sets,
@@ -130,10 +133,11 @@ class OpenPairs {
   UnionFind& sets_;
   std::vector<Pair> pairs_;
   std::vector<std::uint32_t> cells_;
-  std::vector<std::optional<PointTree>> trees_;  ///< of these cells
+  std::vector<std::optional<PointTree>> trees_;  ///< trees of cells_
 };
 
-/// Returns the pairs that stay open.
+/// Compares each cell with those of one row, and unites cells that hold neighbours. Returns the
+/// pairs that stay open.
 std::vector<Pair> look_along(const CellGrid& grid, const Neighbourhood& neighbourhood,
                              UnionFind& sets, const RowStep& step, Progress& progress) {
   tbb::enumerable_thread_specific<std::vector<Pair>> open;

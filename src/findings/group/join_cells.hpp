@@ -9,7 +9,7 @@
 
 namespace clearway {
 
-/// Of a point, for trees and lists of pairs that stay open, at the most.
+/// The most bytes that trees and lists of open pairs take for a point.
 inline constexpr std::uint64_t kJoinBytesOfPoint = 20;
 
 /// Unites the cells that hold neighbours, directly or through others. Points may change their order

@@ -6,12 +6,12 @@
 namespace clearway {
 namespace {
 
-/// Below this all pairs are cheaper than a look for the nearest points.
+/// Up to this number, comparing all pairs is cheaper than looking for the nearest points.
 constexpr std::size_t kFewPairs = 64;
-/// Below this they are cheaper than a tree.
+/// Up to this number, comparing all pairs is cheaper than building trees.
 constexpr std::size_t kAllPairs = 4096;
 
-/// A place that need not be a point's, in units of the gap.
+/// A place, which need not be that of a point, in units of the gap.
 struct Target {
   double x, y, z;
 };
@@ -27,7 +27,7 @@ Target middle_of(const Neighbourhood& neighbourhood, std::span<const GridPoint> 
   return {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
 }
 
-/// By doubles: a guess.
+/// The point nearest to a place by double precision, which is a guess.
 const GridPoint& nearest(const Neighbourhood& neighbourhood, std::span<const GridPoint> points,
                          const Target& target) {
   double least = std::numeric_limits<double>::infinity();

@@ -10,7 +10,7 @@ namespace clearway {
 
 enum class Nearness { kNear, kFar, kOpen };
 
-/// The differences of two points, without sign.
+/// The absolute difference of two stored integers.
 inline std::uint64_t difference_of(const std::int32_t a, const std::int32_t b) {
   return static_cast<std::uint64_t>(a < b ? std::int64_t{b} - a : std::int64_t{a} - b);
 }
@@ -21,12 +21,13 @@ inline bool are_neighbours(const Neighbourhood& neighbourhood, const GridPoint& 
                               difference_of(a.q[2], b.q[2]));
 }
 
-/// Whether a point of one has a neighbour in the other: all pairs.
+/// Whether a point of one cell has a neighbour in the other, found by comparing all pairs.
 bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const GridPoint> a,
                     std::span<const GridPoint> b);
 
-/// The same in a time that grows as the number of points, which can leave it open: few points are
-/// tried with each other, of many those that seem to be nearest.
+/// Whether a point of one cell has a neighbour in the other, in a time proportional to the number
+/// of points, which may leave it open: few points are all compared with each other, and of many
+/// only those that seem to be nearest.
 Nearness compare_cells(const Neighbourhood& neighbourhood, std::span<const GridPoint> a,
                        std::span<const GridPoint> b);
 

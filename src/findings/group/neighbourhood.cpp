@@ -8,10 +8,12 @@ namespace {
 
 using Wide = unsigned __int128;
 
-constexpr double kAllSteps = 0x1p33;     // more than the diagonal of all stored integers
-constexpr double kLongestEdge = 0x1p32;  // of a grid cell: all stored integers
+/// More than the diagonal of all stored integers.
+constexpr double kAllSteps = 0x1p33;
+/// The longest edge of a grid cell, which holds all stored integers.
+constexpr double kLongestEdge = 0x1p32;
 constexpr double kWholeWithin = 1e-9;
-/// Up to here three squares of differences that are not above the reach fit 64 bits.
+/// Up to this reach, the squares of three differences that are not above it sum up within 64 bits.
 constexpr std::uint64_t kNarrowReach = std::uint64_t{1} << 31;
 
 /// floor(steps^2); a number that is nearly whole is taken as whole.

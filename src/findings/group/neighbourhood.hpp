@@ -7,14 +7,15 @@
 
 namespace clearway {
 
-/// Which differences of stored integers are at most the gap (docs/design/findings.md, 4). The three
-/// steps are equal: in integers. Otherwise in double.
+/// Which differences of stored integers are at most the gap (docs/design/findings.md, 4). It is
+/// decided in integers where the scales of the three axes are equal, otherwise in double precision.
 class Neighbourhood {
  public:
-  /// gap: above 0, of the unit of the scale.
+  /// gap: above 0, in the unit of the scale.
   Neighbourhood(const Quantisation& quantisation, double gap);
 
-  /// Of differences from 0 to 2^32. Where it is true of some, it is true of smaller ones.
+  /// Whether two points with these differences are neighbours. Differences are from 0 to 2^32. What
+  /// holds for some differences also holds for smaller ones.
   bool within(std::uint64_t dx, std::uint64_t dy, std::uint64_t dz) const {
     if (exact_) {
       if (wide_) return within_wide(dx, dy, dz);
@@ -27,16 +28,16 @@ class Neighbourhood {
     return x * x + y * y + z * z <= squared_gap_;
   }
 
-  /// The edges of a grid cell in quanta, so long that all points of a cell are neighbours.
+  /// The edges of a grid cell in quanta, long but such that all points of a cell are neighbours.
   const std::array<std::uint64_t, 3>& cell() const { return cell_; }
-  /// How many cells away a neighbour of a point can lie, for each axis.
+  /// How many cells away a neighbour of a point can lie, on each axis.
   const std::array<std::uint32_t, 3>& cells_away() const { return cells_away_; }
-  /// Whether cells that are so many apart can hold neighbours.
+  /// Whether cells that are this many cells apart can hold neighbours.
   bool cells_within(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     return within(least(x, 0), least(y, 1), least(z, 2));
   }
 
-  /// For guesses: of the unit of the gap.
+  /// The scale of an axis, in the unit of the gap; for guesses only.
   double step(int axis) const { return step_[static_cast<std::size_t>(axis)]; }
 
  private:
@@ -49,7 +50,8 @@ class Neighbourhood {
 
   bool exact_, wide_ = false;
   unsigned __int128 squared_ = 0;  ///< the greatest squared difference
-  std::uint64_t reach_ = 0;        ///< the greatest difference on one axis, unless wide
+  /// The greatest difference on one axis that is within the gap; not used where `wide_`.
+  std::uint64_t reach_ = 0;
   std::array<double, 3> step_{};
   double squared_gap_ = 0;
   std::array<std::uint64_t, 3> cell_{};

@@ -4,8 +4,9 @@ namespace clearway {
 
 PointGroups number_groups(const CellGrid& grid, UnionFind& sets, std::uint64_t min_points) {
   PointGroups out;
-  // A root is the first cell of its set, so it has its number before the others ask for it.
-  std::vector<std::uint32_t> points(grid.cells());  // at a root: of its set
+  // A root is the first cell of its set, so it gets its number before the set's other cells ask for
+  // it.
+  std::vector<std::uint32_t> points(grid.cells());  // at the index of a root, the points of its set
   for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
     points[sets.find(cell)] += static_cast<std::uint32_t>(grid.points(cell).size());
   }

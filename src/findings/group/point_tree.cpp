@@ -25,7 +25,7 @@ double greatest_extent(const QuantumBox& box, const Neighbourhood& neighbourhood
                    extent(box, neighbourhood, 2)});
 }
 
-/// Of points in two intervals: the least difference and the greatest.
+/// The least difference on axis k between a point of one box and a point of the other.
 std::uint64_t least_difference(const QuantumBox& a, const QuantumBox& b, int k) {
   if (a.hi[k] < b.lo[k]) return difference_of(a.hi[k], b.lo[k]);
   return b.hi[k] < a.lo[k] ? difference_of(b.hi[k], a.lo[k]) : 0;
@@ -64,7 +64,7 @@ void PointTree::build(std::uint32_t first, std::uint32_t last, const Neighbourho
   build(middle, last, neighbourhood);
 }
 
-/// Points at one place count as one.
+/// The points of a leaf, where points that are all at one place count as one.
 std::span<const GridPoint> PointTree::points(const Node& node) const {
   return points_.subspan(node.first, is_one_place(node.box) ? 1 : node.last - node.first);
 }

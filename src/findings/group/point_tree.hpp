@@ -14,14 +14,15 @@ namespace clearway {
 class PointTree {
  public:
   static constexpr std::size_t kLeafPoints = 16;
-  /// Of a tree, for each point, at the most.
+  /// The most bytes that a tree takes for each point.
   static constexpr std::uint64_t kBytesOfPoint = 10;
 
-  /// step: for each axis, to choose where to split. The points outlive the tree.
+  /// neighbourhood: gives the scale of each axis, by which the axis to split is chosen. The points
+  /// outlive the tree.
   PointTree(std::span<GridPoint> points, const Neighbourhood& neighbourhood);
 
-  /// Whether a point of one has a neighbour in the other. Pairs of parts that are surely near or
-  /// surely far are not opened.
+  /// Whether a point of one tree has a neighbour in the other. Pairs of nodes that are surely near
+  /// or surely far are not opened.
   static bool any_neighbours(const Neighbourhood& neighbourhood, const PointTree& a,
                              const PointTree& b) {
     return near(neighbourhood, a, a.nodes_.front(), b, b.nodes_.front());
@@ -31,7 +32,8 @@ class PointTree {
   struct Node {
     QuantumBox box;
     std::uint32_t first, last;
-    std::uint32_t right;  ///< child; the left one is next; 0: a leaf
+    /// The right child; the left one is the next node. 0 for a leaf.
+    std::uint32_t right;
   };
   static bool near(const Neighbourhood& neighbourhood, const PointTree& a, const Node& in_a,
                    const PointTree& b, const Node& in_b);

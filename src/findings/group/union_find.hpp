@@ -6,9 +6,9 @@
 
 namespace clearway {
 
-/// Sets of numbers that threads unite at the same time. The root of a set is its smallest number,
-/// whatever the order. Source: Anderson and Woll, Wait-free parallel algorithms for the union-find
-/// problem, 1991.
+/// Disjoint sets of numbers that several threads may unite at the same time. The root of a set is
+/// its smallest number, in whatever order sets are united. Source: Anderson and Woll, Wait-free
+/// parallel algorithms for the union-find problem, 1991.
 class UnionFind {
  public:
   explicit UnionFind(std::uint32_t count) : parent_(count) {
@@ -25,7 +25,8 @@ class UnionFind {
     }
   }
 
-  /// True only where they are in one set; that they are may be missed while others unite them.
+  /// Whether two numbers are in one set. True is always right; false may be wrong while other
+  /// threads unite sets.
   bool together(std::uint32_t a, std::uint32_t b) { return find(a) == find(b); }
 
   void unite(std::uint32_t a, std::uint32_t b) {
@@ -40,7 +41,8 @@ class UnionFind {
   }
 
  private:
-  // Parents only ever go to smaller numbers of the same set: no other memory depends on them.
+  // Parents only ever change to smaller numbers of the same set, and no other memory depends on
+  // them.
   static constexpr auto kRelaxed = std::memory_order_relaxed;
   std::vector<std::atomic<std::uint32_t>> parent_;
 };

@@ -10,7 +10,8 @@
 namespace clearway {
 namespace {
 
-/// The pages are those of the bodies' engines.
+/// The layout of the answers' slots, which have no page: pages are in the slots of the bodies'
+/// engines.
 SlotLayout without_pages(SlotLayout layout) {
   layout.page_bytes = 0;
   return layout;
@@ -30,7 +31,8 @@ BodyEngine::BodyEngine(const PackedCloud& cloud, const Query& query,
       cells_(layout.slots),
       facts_(layout.slots) {}
 
-/// The first body's page is filled: the others get copies of it, before it becomes the first's own.
+/// The caller has filled the first body's page. The other bodies get copies of it before its nodes
+/// are reduced to the first body's own.
 void BodyEngine::start(std::uint32_t slot, const PageShape& shape) {
   cells_[slot] = shape.cells;
   const std::span<const std::byte> filled = page(slot).first(shape.bytes());
@@ -47,14 +49,15 @@ void BodyEngine::start(std::uint32_t slot, const PageShape& shape) {
     while (++body < bodies_.size()) {
       try {
         bodies_[body].engine->finish(slot);
-      } catch (...) {  // the first failure is told
+      } catch (...) {  // only the first failure is thrown
       }
     }
     throw;
   }
 }
 
-/// The nodes of a cell come body after body, numbered over all.
+/// Reduces the nodes of every cell of a page to those of one body, renumbered from 0. A cell's
+/// nodes come body after body, numbered over all bodies.
 void BodyEngine::keep_nodes(std::span<std::byte> page, const PageShape& shape,
                             std::size_t body) const {
   const std::uint32_t begin = bodies_[body].first_node;
@@ -76,7 +79,7 @@ void BodyEngine::keep_nodes(std::span<std::byte> page, const PageShape& shape,
   }
 }
 
-/// Calls it for every body; the first failure is thrown at the end.
+/// Makes the call for every body. The first failure is thrown after the last call.
 template <typename Call>
 void BodyEngine::for_all(Call call) const {
   std::exception_ptr failure;
@@ -113,7 +116,7 @@ PageResult BodyEngine::finish(std::uint32_t slot) {
   return result;
 }
 
-/// For the facts of all bodies, and no more.
+/// Empties the slot's profile facts and reserves memory for those of all bodies, and no more.
 void BodyEngine::make_room(std::uint32_t slot, std::span<const PageResult> found) {
   std::size_t facts = 0;
   for (const PageResult& of_body : found) facts += of_body.profile.size();
@@ -154,7 +157,7 @@ std::uint64_t BodyEngine::answer_bytes(const PackedCloud& cloud, const Query& qu
   const std::uint64_t answers =
       layout.slots * PagePool::slot_bytes(cloud, query, without_pages(layout));
   if (!(query.profile > 0)) return answers;
-  // The same of points and of triangles.
+  // Models of points and of triangles have the same bound.
   const std::uint64_t of_body =
       HostProfileOf<Vec3>::most_facts(cloud, query.poses.size(), layout.cells, most_poses);
   return answers + layout.slots * query.bodies.size() * of_body * sizeof(ProfileFact);

@@ -11,19 +11,22 @@
 
 namespace clearway {
 
-/// A body's engine, which searches its model at its poses.
+/// The engine that searches the model of one body at the poses of that body.
 struct SearchedBody {
   std::unique_ptr<PageEngine> engine;
-  std::span<const std::uint32_t> path_pose;  ///< of each of its poses
-  std::uint32_t first_node;  ///< motion nodes of a page are numbered over all bodies, from here on
+  /// For each pose of the body, the index of the pose of the path that it belongs to.
+  std::span<const std::uint32_t> path_pose;
+  /// The number of the body's first motion node in a page, where nodes are numbered over all
+  /// bodies.
+  std::uint32_t first_node;
 };
 
-/// The engines of several bodies as one: each page is searched by all of them, and of every point
-/// the smallest of the BodyNumbers is kept. On any device.
+/// The engines of several bodies as one engine, on any device. Every page is searched by all of
+/// them, and for each point the smallest of the BodyNumbers is kept.
 class BodyEngine final : public PageEngine {
  public:
-  /// query: with all bodies; layout: as of each body's engine. What the bodies refer to outlives
-  /// it. Allocates answer_bytes().
+  /// query: the query with all bodies. layout: the one that each body's engine has. What the bodies
+  /// refer to outlives this engine. Allocates answer_bytes().
   BodyEngine(const PackedCloud& cloud, const Query& query, std::vector<SearchedBody> bodies,
              const SlotLayout& layout);
 
@@ -38,8 +41,8 @@ class BodyEngine final : public PageEngine {
 
   PageEngine& engine(std::size_t body) const { return *bodies_[body].engine; }
 
-  /// Memory for the answers of all slots, beside what the bodies' engines take; most_poses: of the
-  /// motion nodes of any cell, of all bodies together.
+  /// Bytes of memory for the answers of all slots, beside what the bodies' engines take.
+  /// most_poses: the most poses of the motion nodes of any cell, for all bodies together.
   static std::uint64_t answer_bytes(const PackedCloud& cloud, const Query& query,
                                     const SlotLayout& layout, std::uint64_t most_poses);
 
@@ -53,8 +56,10 @@ class BodyEngine final : public PageEngine {
   const BodyNumbers numbers_;
   std::vector<SearchedBody> bodies_;
   PagePool answers_;
-  std::vector<std::uint32_t> cells_;             ///< of the slot's page
-  std::vector<std::vector<ProfileFact>> facts_;  ///< likewise
+  /// For each slot, the number of cells of its page.
+  std::vector<std::uint32_t> cells_;
+  /// For each slot, the profile facts of its page.
+  std::vector<std::vector<ProfileFact>> facts_;
 };
 
 }  // namespace clearway

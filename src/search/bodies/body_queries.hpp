@@ -6,7 +6,7 @@
 
 namespace clearway {
 
-/// The question of each body by itself: its model at its own poses. Copies both.
+/// One query for each body, with the body's model at its own poses. Copies models and poses.
 inline std::vector<Query> body_queries(const Query& query) {
   std::vector<Query> out;
   out.reserve(query.bodies.size());

@@ -10,8 +10,8 @@
 namespace clearway {
 namespace {
 
-/// Of the vehicle, not of a body: a roof is above the ground, and a bogie has walls of its own side
-/// alone in a cutting.
+/// Codes of warnings that concern the vehicle and not a single body: a roof is always above the
+/// ground, and in a cutting a bogie has a wall on its own side only.
 constexpr std::array<std::string_view, 4> kOfVehicle{"floats", "nothing-below", "nothing-beside",
                                                      "one-side"};
 
@@ -23,32 +23,35 @@ bool is_of_vehicle(const Message& message) {
   return std::ranges::find(kOfVehicle, message.code) != kOfVehicle.end();
 }
 
-/// Whether all bodies near the scan are told so. Of a body that is nowhere near it, another warning
-/// says that.
+/// Whether every body that is near the scan has a warning with this code. For a body that is
+/// nowhere near the scan, another warning says so.
 bool holds_for_vehicle(const std::vector<BodyMessages>& bodies, std::string_view code) {
   return std::ranges::all_of(bodies, [&](const BodyMessages& body) {
     return has(body, code) || has(body, "out-of-reach") || has(body, "no-poses");
   });
 }
 
-/// Of a stretch: the ground is missing there below any body. Beside a low one there may be walls
-/// that a high one does not have.
+/// Whether a warning about a stretch of the path matters for the vehicle. Ground that is missing
+/// there is missing below every body, whereas beside a low body there may be walls that a high one
+/// does not have.
 bool stretch_matters(const std::vector<BodyMessages>& bodies, const Message& message) {
   return message.code == "nothing-below" || message.code == "floats" ||
          holds_for_vehicle(bodies, message.code);
 }
 
-/// Of the whole path: above the ground nothing needs to be beside it.
+/// Whether a warning about the whole path matters for the vehicle. A vehicle above the ground need
+/// not have anything beside it.
 bool path_matters(const std::vector<BodyMessages>& bodies, const Message& message) {
   return holds_for_vehicle(bodies, message.code) &&
          (message.code != "nothing-beside" || !holds_for_vehicle(bodies, "floats"));
 }
 
-/// What is told of the vehicle, once for each code: what holds for its whole path, or else the
-/// longest stretch of it that a body names.
+/// The warning that the vehicle gets for one code: the one about its whole path, or else the one
+/// about the longest stretch that a body names.
 struct OfVehicle {
   const BodyMessages* body = nullptr;
-  const Message* message = nullptr;  ///< nullptr: it does not matter for the vehicle
+  /// nullptr where the warning does not matter for the vehicle.
+  const Message* message = nullptr;
 
   OfVehicle(const std::vector<BodyMessages>& bodies, std::string_view code) {
     for (const BodyMessages& candidate : bodies) {
@@ -72,7 +75,8 @@ void tell(Message message, const std::string& who, MessageLog& log) {
   log.add(std::move(message));
 }
 
-/// Once for all bodies from `first` on that are told the same.
+/// Adds a message once for all bodies that have the same one. `first` is the body that is being
+/// told of; nothing is added where an earlier body has the message too.
 void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, const Message& message,
                 MessageLog& log) {
   const auto is_same = [&](const Message& m) {
@@ -82,7 +86,7 @@ void tell_alike(const std::vector<BodyMessages>& bodies, std::size_t first, cons
   std::size_t count = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (std::ranges::none_of(bodies[i].messages, is_same)) continue;
-    if (i < first) return;  // told there
+    if (i < first) return;  // the earlier body's message named them all
     names += (count == 0 ? "" : ", ") + bodies[i].name;
     ++count;
   }

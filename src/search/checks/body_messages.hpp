@@ -14,9 +14,9 @@ struct BodyMessages {
   std::vector<Message> messages;
 };
 
-/// Tells what was found, with the names of the bodies: what several have in common once. That the
-/// ground, or what is beside the way, is missing holds for the vehicle where it holds for all of
-/// its bodies that the scan covers; otherwise it is not told.
+/// Adds what was found to the log, with the names of the bodies, and once where several have it in
+/// common. A warning that the ground, or what is beside the path, is missing is given for the
+/// vehicle where it holds for all of its bodies that the scan covers; otherwise it is not given.
 void tell_of_bodies(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
 }  // namespace clearway

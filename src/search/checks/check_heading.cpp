@@ -11,7 +11,8 @@
 namespace clearway {
 namespace {
 
-// Shares of the motion along one axis of the model. 0.9: 18 degrees aside on average.
+// The least shares of the motion along one axis of the model. 0.9 means 18 degrees aside on
+// average.
 constexpr double kAlongAxis = 0.9;
 constexpr double kSurelyAlongAxis = 0.95;
 
@@ -30,7 +31,8 @@ constexpr Misreading kMisreadings[] = {
     {Reading::kScalarLast,
      "It moves along its axis when the quaternions are read as x y z w, not as w x y z"}};
 
-/// What the rotations may be instead; nullptr where no reading makes the model move along an axis.
+/// A sentence that says how the rotations may have been misread; nullptr where no reading makes the
+/// model move along an axis.
 const char* misreading(const Drive& drive) {
   for (const Misreading& other : kMisreadings) {
     const bool fits = greatest_share(drive.along_axes(other.reading)) > kSurelyAlongAxis &&
@@ -74,7 +76,8 @@ bool warn_of_tilt(const Drive& drive, MessageLog& log) {
   return true;
 }
 
-/// Roads bank by 4 degrees at most, and rails by 7 in curves, to their inner side.
+/// Warns where the model leans steadily to one side. Roads bank by 4 degrees at most, and rails by
+/// 7 degrees in curves, towards the inside.
 void warn_of_lean(const Drive& drive, MessageLog& log) {
   constexpr double kLeans = 4.5, kSteady = 1.5;  // degrees
   constexpr double kCurve = 0.8;
@@ -87,7 +90,7 @@ void warn_of_lean(const Drive& drive, MessageLog& log) {
   const double lean = at(0.5);
   if (std::abs(lean) < kLeans || at(0.95) - lean > kSteady || lean - at(0.05) > kSteady) return;
   const double right = drive.right_turns();
-  if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // in a curve
+  if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // it leans into a curve
   log.warn("leans",
            "along the whole path the model leans to the " +
                std::string(lean > 0 ? "right" : "left") + " by " + figure(std::abs(lean)) +
@@ -128,8 +131,8 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
            {{"share", shares[axis]}});
 }
 
-/// No mistake where the vehicle reverses, or its front lies along -x; otherwise its parts meet the
-/// scan on the wrong side.
+/// Notes that the model moves backwards. This is no mistake where the vehicle reverses, or its
+/// front points along -x; otherwise its parts meet the scan on the wrong side.
 void tell_backwards(const Drive& drive, MessageLog& log) {
   const double along = drive.forwards(0);
   if (along > -kAlongAxis) return;
@@ -141,7 +144,7 @@ void tell_backwards(const Drive& drive, MessageLog& log) {
        {{"share", -along}}});
 }
 
-/// Whether the poses hardly turn the model: then it is no crane that slews on the spot.
+/// Whether the poses hardly turn the model. If so, it is no crane that slews on the spot.
 bool hardly_turns(const Question& question) {
   constexpr double kThirtyDegrees = 0.866;
   const Pose& first = question.query.poses.front();
@@ -152,7 +155,7 @@ bool hardly_turns(const Question& question) {
   });
 }
 
-/// Whether it moves as a vehicle does all the same, in steps much too small.
+/// Whether the model moves as a vehicle does, although in steps that are much too small.
 bool is_small_drive(const Question& question, double across) {
   constexpr double kPieces = 50;
   if (!(across > 0)) return false;
@@ -171,7 +174,7 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
     path = path.united({p, p});
   }
   const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
-  constexpr double kHuge = 200;  // metres: then the model's unit is what is wrong
+  constexpr double kHuge = 200;  // metres: a longer model has the wrong unit itself
   if (!(across < longest / 4) || longest > kHuge * question.metre) return;
   if (!hardly_turns(question) && !is_small_drive(question, across)) return;
   log.warn("tiny-path",

@@ -10,15 +10,18 @@
 namespace clearway {
 namespace {
 
-// Metres.
+// The following lengths are in metres.
 constexpr double kLeast = 0.5;
 constexpr double kSteady = 0.5;
-constexpr double kSteadyRest = 0.25;  ///< where only a stretch is high up
-constexpr double kLeastFloating = 5;  ///< of a stretch: longer than the shadow below a scanner
-/// Of the looks that are high up, and of the heights: the others may be beside vegetation or noise.
+/// The largest spread of heights on the rest of the path where only a stretch is above the ground.
+constexpr double kSteadyRest = 0.25;
+/// The shortest stretch that floats, longer than the shadow below a scanner.
+constexpr double kLeastFloating = 5;
+/// The share of looks that have to be high above the ground. The others may be beside vegetation or
+/// noise.
 constexpr double kMostHigh = 0.75;
 
-/// Heights above ground, of which a part do not exceed at(part).
+/// Heights above ground in ascending order; at(share) is the quantile.
 class Heights {
  public:
   explicit Heights(const std::vector<Look>& looks) {
@@ -56,8 +59,8 @@ bool stays_above_ground(const Question& question, const PathLooks& looks, Messag
   return true;
 }
 
-/// On a part of the path the model is higher above the ground than on the rest, where it keeps its
-/// height. Which of the two parts is right does not matter.
+/// Warns where the model is higher above the ground on a part of the path than on the rest, where
+/// it keeps its height. Which of the two parts is right does not matter.
 void check_stretches_above(const Question& question, const PathLooks& looks, MessageLog& log) {
   const double low = looks.usual_height() + kLeast * question.metre;
   const std::vector<LookRun> runs = looks.runs(

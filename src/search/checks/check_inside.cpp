@@ -15,13 +15,17 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kMostInside = 65'536;  ///< points that are looked at
-constexpr std::size_t kFewInside = 10;       ///< points: fewer may be noise
+/// At most this many points are looked at.
+constexpr std::size_t kMostInside = 65'536;
+/// Fewer points than this may be noise.
+constexpr std::size_t kFewInside = 10;
 constexpr std::size_t kMeasuredInside = 64;
-constexpr double kOpen = 0.4;  ///< share of the view along the way
+/// The least open share of the model's outline, seen along the direction of motion, that is warned
+/// of.
+constexpr double kOpen = 0.4;
 
-/// The scan's points in the model's box at the first pose, in the model's frame. Without those in
-/// its solids, which collide.
+/// The scan's points in the model's box at the first pose, in the model's frame, except those in
+/// the model's solids, which collide.
 std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
   std::vector<Vec3> inside;
   try {
@@ -31,7 +35,7 @@ std::vector<Vec3> points_in_box(const Question& question, const Query& asked) {
           return inside.size() < kMostInside;
         });
   } catch (const InputError&) {
-    inside.clear();  // a damaged cell is for the search to meet, where it matters
+    inside.clear();  // a damaged cell is reported by the search, where it matters
   }
   if (asked.model.is_solid() && !inside.empty()) {
     const SolidParts solids(asked.model);
@@ -48,7 +52,8 @@ void keep_enclosed(const Question& question, double distance, std::vector<Vec3>&
   }
 }
 
-/// How many of the points no model point comes near; estimated from some of them.
+/// An estimate, from some of the points, of how many of them no model point comes within the radius
+/// of.
 std::uint64_t untouched(const Question& question, const std::vector<Vec3>& points) {
   std::vector<Vec3> some;
   for (const std::uint32_t i : spread_poses(points.size(), kMeasuredInside)) {
@@ -62,7 +67,7 @@ std::uint64_t untouched(const Question& question, const std::vector<Vec3>& point
   return points.size() * some.size() / measured;
 }
 
-/// The axis of the model that it moves along; its longest one where that cannot be told.
+/// The axis of the model along which it moves; the model's longest one where that cannot be told.
 int axis_of_motion(const Question& question) {
   const Drive drive(question);
   if (!drive.is_one()) return question.model.longest_axis();
@@ -78,7 +83,7 @@ void check_inside(const Question& question, const Query& asked, MessageLog& log)
   keep_enclosed(question, question.query.radius, enclosed);
   if (enclosed.size() < kFewInside) return;
   const std::uint64_t count = untouched(question, enclosed);
-  // A rough ground that reaches into the model touches it too, and so is in the result.
+  // A rough ground that reaches into the model also touches it, and so is in the result.
   if (count < kFewInside || count < in_box.size() - untouched(question, in_box)) return;
   log.warn("inside-model",
            "at pose " + std::to_string(question.number_of(0)) + " about " + format_count(count) +

@@ -8,15 +8,16 @@
 namespace clearway {
 namespace {
 
-// Metres. The longest trains and cranes, and what nobody asks a question about.
+// Lengths in metres: above the longest trains and cranes, and below anything that a query is asked
+// about.
 constexpr double kLargest = 200;
 constexpr double kSmallest = 0.01;
-/// On a path longer than this no vehicle is so small.
+/// On a path longer than kLongWay no vehicle is shorter than kSmallVehicle.
 constexpr double kSmallVehicle = 0.5;
 constexpr double kLongWay = 10;
-/// What a pose may stretch: noise of its numbers.
+/// The factor, less 1, by which a pose may stretch the model because of noise of its numbers.
 constexpr double kStretch = 0.01;
-/// No vehicle is so wide and so high.
+/// No vehicle is both wider and higher than this.
 constexpr double kThickest = 30;
 
 struct ModelUnit {
@@ -28,8 +29,9 @@ constexpr ModelUnit kUnits[] = {{kMetresPerMillimetre, "millimetres"},
                                 {kMetresPerInch, "inches"},
                                 {kMetresPerFoot, "feet"}};
 
-/// The model in each unit in which it is as large as a vehicle, because several may be meant; none
-/// where it would be as thin as a sheet, as a train would be in centimetres.
+/// A sentence with the model's size in each unit in which it would be as large as a vehicle,
+/// because several may be meant. A unit in which the model would be as thin as a sheet, as a train
+/// would be in centimetres, is left out.
 std::string unit_guess(const Question& question) {
   constexpr double kShortVehicle = 0.3, kLongVehicle = 60, kThinnest = 0.1;
   const Sides sides(question.model);
@@ -71,7 +73,8 @@ void warn_of_size(const Question& question, MessageLog& log) {
            {{"model_longest", model.longest}, {"environment_longest", environment.longest}});
 }
 
-/// A pose that leaves the model where it stands: the poses are motions of a model in the scan.
+/// Whether a pose leaves the model where it stands. If one does, the poses are motions of a model
+/// that lies in the scan's coordinates.
 bool is_rest(const Pose& pose, double metre) {
   constexpr double kNoise = 1e-3;
   for (int k = 0; k < 9; ++k) {
@@ -111,7 +114,8 @@ void warn_of_same(const Question& question, MessageLog& log) {
            {{"points", static_cast<double>(question.query.model.vertices.size())}});
 }
 
-/// Poses that are not rigid were allowed, perhaps for another reason.
+/// Warns where poses scale the model. Poses that are not rigid were allowed, perhaps for another
+/// reason.
 void warn_of_scale(const Question& question, MessageLog& log) {
   double least = kInfinity, most = 0;
   for (const Pose& pose : question.query.poses) {
@@ -135,7 +139,8 @@ void warn_of_scale(const Question& question, MessageLog& log) {
            {{"least", least}, {"most", most}});
 }
 
-/// Matrices that mirror are accepted only where poses need not be rigid.
+/// Warns where poses mirror the model. Such matrices are accepted only where poses need not be
+/// rigid.
 void warn_of_mirror(const Question& question, MessageLog& log) {
   const auto mirrors = [](const Pose& pose) {
     const auto& r = pose.rotation;

@@ -8,8 +8,10 @@ namespace clearway {
 namespace {
 
 constexpr double kLargestRadius = 10;  ///< metres
-constexpr double kSteps = 10;          ///< of the stored coordinates in a radius
-/// A block of 64 points of a surface is 8 spacings wide and 8 spacings high.
+/// The least number of steps of the stored coordinates in a radius.
+constexpr double kSteps = 10;
+/// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
+/// spacings wide and 8 spacings high.
 constexpr double kSpacingsOfBlock = 11.3;
 
 void warn_of_large_radius(const Question& question, MessageLog& log) {
@@ -27,7 +29,7 @@ void warn_of_fine_radius(const Question& question, MessageLog& log) {
   const double* scale = question.cloud.quantisation().scale;
   const double step = *std::max_element(scale, scale + 3);
   const double radius = question.query.radius;
-  // A radius of ten steps as typed is not refused for its rounding.
+  // A radius of ten steps as typed is not warned of because of its rounding.
   if (radius >= kSteps * step * (1 - 1e-9)) return;
   log.warn("fine-radius",
            "the radius is " + length_text(radius, question.unit) +
@@ -37,14 +39,14 @@ void warn_of_fine_radius(const Question& question, MessageLog& log) {
            {{"radius", radius}, {"step", step}});
 }
 
-/// Between its points a scan says nothing. A radius bridges gaps in walls and ground, not those in
-/// which a post stands.
+/// Warns of a scan whose points are far apart, because it says nothing about what lies between
+/// them. A radius bridges gaps in walls and ground, but not those in which a post stands.
 void check_coarse_scan(const Question& question, MessageLog& log) {
   const ScanProximity scan(question.cloud, 0);
   const double spacing = scan.typical_block() / kSpacingsOfBlock;
   const double radius = question.query.radius, metre = question.metre;
   const double width = Sides(question.model).middle;
-  // Metres.
+  // The following lengths are in metres.
   constexpr double kTold = 0.1, kWide = 0.3, kVeryWide = 0.5;
   const bool is_wide = spacing > 5 * radius && spacing > std::min(width / 5, kWide * metre);
   const bool is_very_wide = spacing > 2 * radius && spacing > kVeryWide * metre;

@@ -6,7 +6,7 @@
 namespace clearway {
 namespace {
 
-/// The box that the model's box sweeps.
+/// The box around the model's boxes at all poses.
 Box swept_box(const Question& question) {
   Box box = moved(question.model, question.query.poses.front());
   for (const Pose& pose : question.query.poses) box = box.united(moved(question.model, pose));

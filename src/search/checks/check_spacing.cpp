@@ -13,10 +13,12 @@ namespace {
 constexpr std::size_t kModelSample = 512;
 constexpr std::size_t kMeasuredPoints = 16;
 constexpr std::size_t kMarks = (1 << 19) - 1;
-constexpr double kSomeAlone = 0.01;  ///< share of points that may stand alone, such as antennas
+/// The share of points that may stand alone, such as antennas.
+constexpr double kSomeAlone = 0.01;
 
-/// Which points of a sample have no other point of the model within the radius. One pass over the
-/// model: the sample's surroundings are in a table of cubes as wide as the radius.
+/// Finds which points of a sample of the model have no other model point within the radius, in one
+/// pass over the model. The surroundings of the sample are in a table of cubes as wide as the
+/// radius.
 class Neighbours {
  public:
   Neighbours(const std::vector<Vec3>& model, double radius)
@@ -27,7 +29,8 @@ class Neighbours {
     fill();
   }
 
-  /// The sample's points that stand alone; some of them where they are as few as may be.
+  /// The points of the sample that stand alone. Stops early where they are as few as is allowed,
+  /// and may then return too many.
   std::vector<Vec3> find() {
     std::size_t left = sample_.size();
     const auto enough = static_cast<std::size_t>(kSomeAlone * static_cast<double>(left));
@@ -60,7 +63,8 @@ class Neighbours {
     return whole - (cubes < static_cast<double>(whole) ? 1 : 0);
   }
 
-  /// Different cubes may share one: their points are compared by distance all the same.
+  /// A key of a cube. Different cubes may share one, because their points are compared by distance
+  /// anyway.
   static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
     return static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u ^
            static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fu ^
@@ -84,11 +88,12 @@ class Neighbours {
   double radius_, per_radius_;
   std::vector<Vec3> sample_;
   std::vector<bool> alone_;
-  std::vector<bool> marked_ = std::vector<bool>(kMarks);  ///< cubes by key: rules most points out
+  /// Marks cubes by their key modulo kMarks, which rules out most points.
+  std::vector<bool> marked_ = std::vector<bool>(kMarks);
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cubes_;
 };
 
-/// The largest of the distances from some of `alone` to their nearest other model points.
+/// The largest distance from a sample of `alone` to the nearest other model point.
 double largest_spacing(const std::vector<Vec3>& model, const std::vector<Vec3>& alone) {
   std::vector<Vec3> some;
   for (const std::uint32_t i : spread_poses(alone.size(), kMeasuredPoints))
@@ -105,7 +110,7 @@ double largest_spacing(const std::vector<Vec3>& model, const std::vector<Vec3>& 
 }  // namespace
 
 void check_model_spacing(const Question& question, MessageLog& log) {
-  if (Sides(question.model).longest == 0) return;  // one place: a sphere is what is asked about
+  if (Sides(question.model).longest == 0) return;  // the model is a single place
   Neighbours neighbours(question.query.model.vertices, question.query.radius);
   const std::vector<Vec3> alone = neighbours.find();
   const double share = static_cast<double>(alone.size()) / static_cast<double>(neighbours.size());

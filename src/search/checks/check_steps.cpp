@@ -18,7 +18,8 @@
 namespace clearway {
 namespace {
 
-/// Never below the way of any model point from a pose to the next: cheap, for the many short steps.
+/// An upper bound of the way of any model point from one pose to the next, cheap because most steps
+/// are short. reach: greatest distance of the model from its origin.
 double coarse_bound(const Pose& a, const Pose& b, double reach) {
   double turned = 0, moved = 0;
   for (int k = 0; k < 9; ++k) {
@@ -32,13 +33,13 @@ double coarse_bound(const Pose& a, const Pose& b, double reach) {
   return std::sqrt(moved) + std::sqrt(turned) * reach;
 }
 
-/// The poses from which a step starts, as users count them.
+/// Poses from which steps start, as users count them, in ascending order.
 using Steps = std::vector<std::uint32_t>;
 
 bool has(const Steps& steps, std::uint32_t pose) { return std::ranges::binary_search(steps, pose); }
 
-/// Runs of poses of the question that follow one another on the path, as first and past the last:
-/// between two runs the body has no pose, so there is no step.
+/// Runs of the question's poses that follow one another on the path, each as the first index and
+/// the one past the last. Between two runs the body has no pose, so there is no step.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> runs_of(const Question& question) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> runs;
   const auto count = static_cast<std::uint32_t>(question.query.poses.size());
@@ -55,7 +56,7 @@ std::span<const Pose> poses_of(const Question& question,
   return std::span(question.query.poses).subspan(run.first, run.second - run.first);
 }
 
-/// The jumps of all runs, which name poses as users count them.
+/// The jumps of all runs; they name poses as users count them.
 std::vector<Jump> jumps_in(const Question& question) {
   std::vector<Jump> jumps;
   for (const auto& run : runs_of(question)) {
@@ -70,11 +71,12 @@ std::vector<Jump> jumps_in(const Question& question) {
 
 /// A step whose straight way can leave the true motion.
 struct Deviation {
-  std::uint32_t pose;  ///< from which it starts, in the question
+  /// Index in the question of the pose from which the step starts.
+  std::uint32_t pose;
   double distance;
 };
 
-/// Those that are farther than `least`, and how many steps there are.
+/// The deviations that are larger than `least`. Adds the number of all steps to `steps`.
 std::vector<Deviation> deviations_above(const Question& question, double least,
                                         std::uint64_t& steps) {
   const double reach = farthest_from_origin(question.query.model.vertices);
@@ -89,11 +91,12 @@ std::vector<Deviation> deviations_above(const Question& question, double least,
   return out;
 }
 
-/// What the search takes for the motion from one pose to the next, against what it may have been.
-/// Returns the steps that it warned of.
+/// Warns where the true motion from one pose to the next may leave the straight way that is
+/// searched by more than the radius, and notes where by more than a tenth of it. Returns the poses
+/// from which the steps that it warned of start.
 Steps check_straight_ways(const Question& question, const std::vector<Jump>& jumps,
                           MessageLog& log) {
-  constexpr double kToBeNoted = 0.1;  // of the radius
+  constexpr double kToBeNoted = 0.1;  // share of the radius
   const double radius = question.query.radius;
   std::uint64_t steps = 0;
   std::vector<Deviation> found = deviations_above(question, kToBeNoted * radius, steps);
@@ -135,8 +138,8 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
   return told;
 }
 
-/// How far the model moves between poses that are searched alone. known: steps that need no other
-/// warning.
+/// Warns where the model moves farther than the radius between two poses, of which only the poses
+/// are searched. known: steps that another warning is given for.
 void check_poses_alone(const Question& question, const Steps& known, MessageLog& log) {
   const Query& query = question.query;
   const Vec3 far = reach_of(question.model);
@@ -146,7 +149,7 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
   std::uint64_t steps = 0;
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i + 1 < query.poses.size(); ++i) {
-    if (question.number_of(i + 1) != question.number_of(i) + 1) continue;  // it is not there
+    if (question.number_of(i + 1) != question.number_of(i) + 1) continue;  // no step
     ++steps;
     const Pose &a = query.poses[i], &b = query.poses[i + 1];
     if (coarse_bound(a, b, reach) <= query.radius) continue;

@@ -8,18 +8,22 @@
 namespace clearway {
 namespace {
 
-// Shares of the looks.
+// The following numbers are shares of the looks.
 constexpr double kMissing = 0.5;
 constexpr double kNowhere = 0.1;
 constexpr double kOneSideOnly = 0.2, kOtherSide = 0.8;
-constexpr double kElsewhere = 0.8;  ///< of those outside the stretches
-/// A stretch without walls is so many times longer than the gaps that are usual on the path.
+/// Least share of the looks outside the stretches.
+constexpr double kElsewhere = 0.8;
+/// A stretch without walls has to be this many times longer than the gaps that are usual on the
+/// path.
 constexpr double kUnusuallyLong = 3;
-constexpr double kPartBeside = 0.05;  ///< of the path
-/// Metres of the path. A scanner on a tripod leaves a shadow of up to 4 m, in which a slice of the
-/// model hardly moves, and streets open to side roads.
+/// Least length of a stretch with nothing beside it, as a share of the path.
+constexpr double kPartBeside = 0.05;
+/// Least lengths of a stretch along the path in metres. A scanner on a tripod leaves a shadow of up
+/// to 4 m, in which a slice of the model hardly moves, and streets open to side roads.
 constexpr double kLeastBelow = 3, kLeastBeside = 20;
-constexpr double kFloats = 0.5;  ///< metres above what is usual: then another warning tells it
+/// Metres above the usual height from which on the warning "floats" tells of a look.
+constexpr double kFloats = 0.5;
 
 bool has_below(const Look& look) { return look.below; }
 bool has_left(const Look& look) { return look.left; }
@@ -63,8 +67,8 @@ void warn_one_side(const Question& question, const PathLooks& looks, MessageLog&
            {{"share", empty}, {"left", left}, {"right", right}});
 }
 
-/// Looks for what a stretch of the path lacks and the rest has. What is missing below explains what
-/// is missing beside; so do heights, which "floats" tells of.
+/// Looks for what a stretch of the path lacks and the rest has. What is missing below the model
+/// explains what is missing beside it. Heights, of which "floats" tells, explain it too.
 class Stretches {
  public:
   Stretches(const Question& question, const PathLooks& looks)
@@ -125,7 +129,8 @@ class Stretches {
     return looks_.runs(least * question_.metre, holds);
   }
 
-  /// Beside the path there are gaps, such as side roads. Those of usual length do not count.
+  /// Runs that are unusually long for this path. Beside the path there are gaps, such as side
+  /// roads, and those of usual length do not count.
   std::vector<LookRun> unusual_runs(const std::function<bool(const Look&)>& holds) const {
     const double least =
         std::max(kLeastBeside * question_.metre, kPartBeside * looks_.all().back().along);
@@ -136,7 +141,7 @@ class Stretches {
     return looks_.runs(std::max(least, kUnusuallyLong * usual), holds);
   }
 
-  /// Where nothing is on one side, and mostly something on the other.
+  /// Runs where nothing is on one side, and mostly something on the other.
   std::vector<LookRun> empty_sides(bool (*one)(const Look&), bool (*other)(const Look&)) const {
     std::vector<LookRun> runs =
         unusual_runs([&](const Look& look) { return is_on_ground(look) && !one(look); });
@@ -158,7 +163,8 @@ class Stretches {
     return sum;
   }
 
-  /// Whether it is remarkable that a stretch lacks it.
+  /// Whether `has` holds for most looks outside the runs, so that it is remarkable where a run
+  /// lacks it.
   bool is_usual(bool (*has)(const Look&), const std::vector<LookRun>& runs) const {
     std::vector<Look> rest = looks_.rest(runs);
     std::erase_if(rest, [](const Look& look) { return !look.covered; });
@@ -171,7 +177,8 @@ class Stretches {
   double high_;
 };
 
-/// What a stretch needs to be noticed, where the path is long or its poses are far apart.
+/// Notes how long a stretch has to be to be noticed, where the path is long or its poses are far
+/// apart.
 void tell_resolution(const Question& question, const PathLooks& looks, MessageLog& log) {
   const double longest = Sides(question.model).longest;
   const double resolved = 2 * looks.apart();

@@ -8,57 +8,63 @@
 #include "search/checks/facts/path_looks.hpp"
 #include "search/checks/question.hpp"
 
-/// Each looks for one kind of misunderstanding and warns of it, at most once a code. None changes
-/// the answer. Thresholds and reasons: docs/design/inputs.md, "Checks of a query".
+/// Checks of a query. Each looks for one kind of misunderstanding and warns of it, at most once for
+/// each code. No check changes the answer. Thresholds and reasons: docs/design/inputs.md, "Checks
+/// of a query".
 namespace clearway {
 
-/// The path passes where nothing was scanned: "out-of-reach", "leaves-scan".
+/// Warns where the path passes where nothing was scanned: "out-of-reach", "leaves-scan".
 void check_reach(const Question& question, const PathCover& cover, MessageLog& log);
 
-/// The model never comes down to the ground, or not on a stretch of the path: "floats". Returns
-/// whether it warned of the whole path.
+/// Warns where the model stays above the ground on the whole path or on a stretch of it: "floats".
+/// Returns whether it warned of the whole path.
 bool check_height(const Question& question, const PathLooks& looks, MessageLog& log);
 
-/// What was scanned below and beside the model, on the whole path or on stretches of it:
-/// "nothing-below", "nothing-beside", "one-side". `floats`: the model is known to be above the
-/// ground.
+/// Warns where nothing was scanned below or beside the model, on the whole path or on stretches of
+/// it: "nothing-below", "nothing-beside", "one-side". floats: whether the model is known to be
+/// above the ground.
 void check_surroundings(const Question& question, const PathLooks& looks, bool floats,
                         MessageLog& log);
 
-/// Unit and frame of the model: "model-size", "model-origin", "model-is-environment".
+/// Warns of a wrong unit or frame of the model: "model-size", "model-origin",
+/// "model-is-environment", "scaled-poses", "mirrored-poses".
 void check_model(const Question& question, MessageLog& log);
 
-/// The model stands over something at the first pose: "inside-model". Reads the points there.
-/// asked: the question's query, before its surface was sampled; what its solids contain collides.
+/// Warns where the model stands over something at the first pose: "inside-model". Reads the points
+/// there. asked: the question's query before its surface was sampled; points in its solids collide
+/// and are not counted.
 void check_inside(const Question& question, const Query& asked, MessageLog& log);
 
-/// Things can pass through the model: "open-model".
+/// Warns where things can pass through the model: "open-model".
 void check_open_model(const Question& question, MessageLog& log);
 
-/// Holes between the model's points: "model-spacing".
+/// Warns of holes between the model's points: "model-spacing".
 void check_model_spacing(const Question& question, MessageLog& log);
 
-/// The radius against model and scan: "radius-size", "fine-radius", "coarse-scan".
+/// Compares the radius with model and scan: "radius-size", "fine-radius", "coarse-scan".
 void check_radius(const Question& question, MessageLog& log);
 
-/// What lies between two poses: "large-steps", and "trajectory-jump" for steps of which it does not
-/// warn. Of a vehicle's bodies, a jump of the path that they follow is told of once.
+/// Warns of what may lie between two poses: "large-steps", and "trajectory-jump" for steps that
+/// "large-steps" does not warn of. A jump of the path that the bodies of a vehicle follow is told
+/// once, not for each body.
 class StepChecks {
  public:
   StepChecks() = default;
-  /// path: of a vehicle, whose bodies are checked next. Its jumps are left to check_path.
+  /// path: the path of a vehicle, whose bodies are checked next. Jumps of the path are left to
+  /// check_path().
   explicit StepChecks(const Question& path);
 
   void check(const Question& question, MessageLog& log);
-  /// After all bodies: the jumps of the path where "large-steps" has not warned of any of them.
+  /// Called after all bodies: warns of jumps of the path that "large-steps" has not warned of.
   void check_path(const Question& path, MessageLog& log) const;
 
  private:
-  std::vector<std::uint32_t> path_jumps_, told_;  ///< poses from which a step starts, ascending
+  /// Poses from which a step starts, ascending.
+  std::vector<std::uint32_t> path_jumps_, told_;
 };
 
-/// The way that the model goes, against its own axes: "tilted", "rotations", "sideways",
-/// "leans", "flat-model", "scaled-poses", "tiny-path".
+/// Compares the motion with the model's own axes: "tilted", "rotations", "leans", "sideways",
+/// "flat-model", "drives-backwards", "tiny-path".
 void check_heading(const Question& question, MessageLog& log);
 
 }  // namespace clearway

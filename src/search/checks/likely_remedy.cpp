@@ -14,8 +14,10 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kTried = 64;  ///< poses
-constexpr double kHelps = 0.75;     ///< share of the poses that have to meet the scan
+/// At most this many poses are tried.
+constexpr std::size_t kTried = 64;
+/// The least share of the tried poses that has to meet the scan.
+constexpr double kHelps = 0.75;
 
 using Change = Pose (*)(const Pose&);
 
@@ -52,7 +54,7 @@ struct Hypothesis {
   bool scales = false;
 };
 
-// The first of several that fit is named.
+// Changes of the poses in order of preference: the first that fits is named.
 constexpr Hypothesis kHypotheses[] = {
     {scaled<1>, "The path fits when its positions are divided by 1000: they seem to be millimetres",
      true},
@@ -131,7 +133,8 @@ class Trial {
     return most_of([&](const Pose& pose) { return cover_.covers(moved(slice_, change(pose))); });
   }
 
-  /// A path much shorter than the model fits at any place: that is no hint.
+  /// Whether the change makes the path so much shorter than the model that it fits at any place,
+  /// which is no hint.
   bool fits_anywhere(Change change) const {
     const Vec3 lo = change(at_corner(path_.lo)).position();
     const Vec3 hi = change(at_corner(path_.hi)).position();
@@ -142,7 +145,8 @@ class Trial {
     return shorter < half_diagonal(path_) && shorter < longest / 2;
   }
 
-  /// A factor often brings a path near some scanned place, wherever it belongs.
+  /// Reasons to doubt a change of scale, because a factor often brings a path near some scanned
+  /// place, wherever the path belongs.
   std::string doubts(Change change) const {
     std::string text;
     if (!meets_ground(change)) text += ". But then the model would not stand on the ground";
@@ -162,7 +166,7 @@ class Trial {
         return height && *height < kHigh * question_.metre;
       });
     } catch (const InputError&) {
-      return true;  // a damaged cell is for the search to meet
+      return true;  // a damaged cell is reported by the search
     }
   }
 
@@ -179,7 +183,7 @@ class Trial {
     return small && short_path && grid && question_.query.poses.size() > 1;
   }
 
-  /// How far the path lies above the scan, where it would meet it without regard to height.
+  /// How far the path lies above the scan, if it would meet the scan without regard to height.
   std::optional<double> height_difference() const {
     std::vector<double> heights;
     const bool in_plan = most_of([&](const Pose& pose) {

@@ -7,9 +7,9 @@
 
 namespace clearway {
 
-/// How model, path and environment would meet, as a sentence: in another unit, with axes swapped,
-/// with the poses inverted, after a shift. A guess for people; nothing is changed. Where no such
-/// change helps it names what to compare.
+/// A sentence that tells how model, path and environment would meet: in another unit, with axes
+/// swapped, with the poses inverted, or after a shift. It is a guess for people; nothing is
+/// changed. Where no such change helps, it names what to compare.
 std::string likely_remedy(const Question& question, const PathCover& cover);
 
 }  // namespace clearway

@@ -32,7 +32,8 @@ void warn_of_unit(LengthUnit unit, MessageLog& log) {
   }
 }
 
-/// All points in one plane along two axes: a column of the scan was lost, or is all zeros.
+/// Warns where all points are in a plane across an axis: a column of the scan was lost, or is all
+/// zeros.
 void warn_of_flat_scan(const Question& question, MessageLog& log) {
   constexpr double kFlat = 0.01;  // metres
   const Sides sides(question.environment);
@@ -43,7 +44,7 @@ void warn_of_flat_scan(const Question& question, MessageLog& log) {
            {{"thickness", sides.shortest}});
 }
 
-/// What was understood, for people to compare with what they meant.
+/// Notes the sizes as they were understood, for people to compare with what they meant.
 void note_sizes(const Question& question, MessageLog& log) {
   const double length = path_length(question.query.poses);
   log.note("model " + size_text(question.model, question.unit) + ", path " +
@@ -52,10 +53,12 @@ void note_sizes(const Question& question, MessageLog& log) {
            length_text(question.query.radius, question.unit));
 }
 
-/// What a model is for the checks that look at it from outside.
+/// What the checks that look at a model from outside see: its own points, samples as close as the
+/// radius, or samples farther apart than that.
 enum class ModelForm { kPoints, kSurface, kCoarseSurface };
 
-/// Points of the surface, as close as the radius asks for where these are not too many.
+/// The query with a model of samples of the surface, as close as the radius where these are not too
+/// many.
 Query sampled(const Query& query, ModelForm& view) {
   constexpr double kMostSamples = 1e5;
   const TriangleMesh mesh{query.model.vertices, query.model.triangles};
@@ -64,31 +67,32 @@ Query sampled(const Query& query, ModelForm& view) {
   return {sample_mesh(mesh, spacing, "the model"), query.poses, query};
 }
 
-/// asked: the question before its surface was sampled.
+/// asked: the query before its surface was sampled.
 void check_model_itself(const Question& question, const Query& asked, ModelForm view,
                         MessageLog& log) {
-  const bool close = view != ModelForm::kCoarseSurface;  // else gaps are those of the samples
+  const bool close = view != ModelForm::kCoarseSurface;  // otherwise gaps are those between samples
   if (close) check_inside(question, asked, log);
   check_model(question, log);
   if (close) check_open_model(question, log);
   if (view == ModelForm::kPoints) check_model_spacing(question, log);
 }
 
-/// What was scanned below and beside the model. Reads points.
+/// Checks what was scanned below and beside the model. Reads points.
 void check_what_is_around(const Question& question, const PathCover& cover, bool of_body,
                           MessageLog& log) {
   std::optional<PathLooks> looks;
   try {
     looks.emplace(question, cover);
   } catch (const InputError&) {
-    return;  // a damaged cell is for the search to meet, where it matters
+    return;  // a damaged cell is reported by the search, where it matters
   }
   const bool floats = check_height(question, *looks, log);
-  // Of a body, what is beside it is told in any case: other bodies may stand on the ground.
+  // For a body, what is beside it is checked in any case, because other bodies may stand on the
+  // ground.
   check_surroundings(question, *looks, floats && !of_body, log);
 }
 
-/// What can be said of one body. Whether that matters depends on the others.
+/// Checks one body by itself. Whether its warnings matter depends on the other bodies.
 void warn_of_body(const StoreReader& store, const Body& body, const Query& query,
                   std::span<const double> chainage, StepChecks& steps, MessageLog& log) {
   if (body.poses.empty()) {
@@ -109,7 +113,7 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   check_heading(question, log);
 }
 
-/// path: the vehicle's, with a model of one point.
+/// path: the vehicle's path, with a model of one point.
 void warn_of_bodies(const StoreReader& store, const Question& path, const Query& query,
                     MessageLog& log) {
   std::vector<BodyMessages> told;
@@ -128,7 +132,7 @@ void warn_of_bodies(const StoreReader& store, const Question& path, const Query&
   steps.check_path(path, log);
 }
 
-/// query: of points. asked: the same, before its surface was sampled.
+/// query: with a model of points. asked: the query before its surface was sampled.
 void warn_of_points(const StoreReader& store, const Query& query, const Query& asked,
                     ModelForm view, MessageLog& log) {
   const LengthUnit unit = store.metadata().unit;

@@ -6,9 +6,9 @@
 
 namespace clearway {
 
-/// Warns of what makes a query answer something else than was meant: a path in another frame, a
-/// model in another unit, steps that skip things. Reads the store's index, and the points below a
-/// few poses. The model is not empty. Deterministic.
+/// Warns where a query may answer something else than was meant, because of a path in another
+/// frame, a model in another unit, or steps that skip things. Reads the store's index, and the
+/// points below a few poses. The model is not empty. Deterministic.
 void warn_of_query(const StoreReader& store, const Query& query, MessageLog& log);
 
 }  // namespace clearway

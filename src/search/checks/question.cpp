@@ -7,11 +7,7 @@
 #include "core/trajectory/chainage.hpp"
 
 namespace clearway {
-namespace {
-
-/// Of a foot, international or of the US survey: the checks need no more digits.
-
-}  // namespace
+namespace {}  // namespace
 
 Question::Question(const PackedCloud& environment_points, LengthUnit length_unit,
                    const Query& asked)
@@ -27,6 +23,7 @@ Question::Question(const PackedCloud& environment_points, LengthUnit length_unit
       path_chainage(chainages),
       environment(position_box(cloud.quantisation(), cloud.tree()[0].box)),
       model(box_of(query.model.vertices)),
+      // An international foot also stands for a US survey foot: the checks need no more digits.
       metre(unit == LengthUnit::kFoot || unit == LengthUnit::kUsSurveyFoot ? 1 / kMetresPerFoot
                                                                            : 1) {}
 

@@ -7,7 +7,8 @@
 namespace clearway {
 namespace {
 
-/// Whether the engine kdtree can answer, and its time is known well enough to be compared.
+/// Whether engine kdtree can answer the query within the memory, and its time is known well enough
+/// to be compared.
 bool may_be_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options) {
   const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.tolerance > 0 ||
                               query.between_poses || query.model.is_surface() ||

@@ -7,10 +7,11 @@
 
 namespace clearway {
 
-/// Sets options.engine where it is kAuto, for a search on the CPU (on_gpu: on GPUs): to the engine
-/// that will be faster by estimate, of those that can answer the query within the memory. The
-/// report gets the estimates where they decided, and the log the reason. earlier: of the run that
-/// is resumed, which goes on; kAuto for none. options.threads is not 0.
+/// Where options.engine is kAuto, sets it to the engine that will be faster by estimate, of those
+/// that can answer the query within the memory. on_gpu: the search is on GPUs, which takes the
+/// sweep. earlier: the engine of the run that is resumed, which goes on with it; kAuto for none.
+/// Where the estimates decided, the report gets them and the log the reason. options.threads is not
+/// 0.
 void choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
                    SearchOptions& options, SearchReport& report, const MessageLog& log);
 

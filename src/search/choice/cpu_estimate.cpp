@@ -16,8 +16,8 @@ double sweep_seconds(const Workload& work, int threads) {
   return alone + search / threads;
 }
 
-/// Time of kdtree over that of sweep. Their own times follow from much that the two have in common;
-/// their ratio from little.
+/// Time of kdtree divided by that of sweep. This ratio follows from few quantities, while the two
+/// times follow from many that they have in common.
 double kdtree_ratio(const Workload& work) {
   const double poses = std::log(work.poses), radius = std::log(work.radius);
   return std::exp(-0.0158 + 0.0109 * poses * poses + 0.2487 * radius + 0.0441 * radius * radius);

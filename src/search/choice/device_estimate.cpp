@@ -9,13 +9,13 @@ namespace {
 
 // Measured as docs/design/pipeline.md says ("Start and end of a GPU").
 
-/// What a GPU adds to a run, seconds: of its start and end, what nothing runs beside.
+/// Seconds that a GPU adds to a run: the part of its start and end beside which nothing else runs.
 constexpr double kStart = 0.5;
-/// Cores that search as fast as a GPU does.
+/// How many cores of a CPU search as fast as a GPU does.
 constexpr double kCores = 350;
-/// How much longer a search on the CPU takes with distances beyond the radius.
+/// By what factor a search on the CPU takes longer where it has distances beyond the radius.
 constexpr double kDistances = 6;
-/// Environment points that a core searches in a second.
+/// How many environment points a core searches in a second.
 constexpr double kPointsPerCore = 13e6;
 
 }  // namespace

@@ -7,15 +7,15 @@
 
 namespace clearway {
 
-/// Wall clock of answering on the CPU with so many threads, and on a GPU with its start and end.
-/// work: of the model, or of each body. engine: that searches on the CPU, not the grid; kAuto: the
-/// faster one, of a model. For choosing only.
-/// docs/design/pipeline.md says how its constants are measured.
+/// Estimates the wall clock of answering a query on the CPU with this many threads, and on a GPU
+/// including its start and end. work: one for the model, or one for each body. engine: the one that
+/// searches on the CPU, which is not the grid; kAuto for the faster one where there is one model.
+/// Used for choosing only. docs/design/pipeline.md says how its constants are measured.
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
                                 Engine engine, int threads);
 
-/// Environment points from which on a GPU is started before the query is known. With fewer the CPU
-/// answers most queries before a GPU has started.
+/// The number of environment points from which on a GPU is started before the query is known. With
+/// fewer points the CPU answers most queries before a GPU has started.
 std::uint64_t surely_many_points(int threads);
 
 }  // namespace clearway

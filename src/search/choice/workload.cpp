@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSampledPoses = 16;
 
-/// Points of the blocks whose middle is in the model's box at a pose.
+/// Counts the points of the blocks whose centre is in the model's box at a pose.
 class NearPoints {
  public:
   NearPoints(const PackedCloud& cloud, const Box& model, const Pose& pose)
@@ -96,12 +96,12 @@ Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, con
   }
   const Box reach = model.grown(work.radius);
   const std::size_t samples = std::min(kSampledPoses, poses.size());
-  double near_points = 0;  // of a pose
+  double near_points = 0;  // at one pose, on average
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t pose = (2 * i + 1) * poses.size() / (2 * samples);
     near_points += NearPoints(cloud, reach, poses[pose]).count() / static_cast<double>(samples);
   }
-  // A model that goes on by its length meets as many points again.
+  // A model that moves on by its length meets as many points again.
   const double places = std::min(work.poses, 1 + path_length_of(poses) / length);
   work.reached_points = std::min(static_cast<double>(cloud.point_count()), near_points * places);
   return work;

@@ -25,8 +25,9 @@ void report_sizes(const StoreReader& store, const Query& query, SearchReport& re
 
 void report_finished(const ResultReader& result, SearchReport& report) {
   report.was_finished = true;
-  const std::uint64_t environment_points = report.environment_points;  // a header counts NaN too
-  // What files do not always have.
+  // The count of environment points in a result's header includes those with NaN.
+  const std::uint64_t environment_points = report.environment_points;
+  // These are missing in some result files.
   const double spacing = report.model_spacing;
   const std::optional<SearchedLength> searched = report.searched;
   static_cast<Answer&>(report) = answer_of(result);

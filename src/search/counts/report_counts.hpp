@@ -6,16 +6,16 @@
 #include "io/store/store_reader.hpp"
 #include "stream/write_result.hpp"
 
-/// What a report of a search counts.
+/// Fills in what the report of a search counts.
 namespace clearway {
 
-/// How much there is to search.
+/// Fills in how much there is to search.
 void report_sizes(const StoreReader& store, const Query& query, SearchReport& report);
 
-/// Of a result that was there already.
+/// Fills in the answer of a result that was complete already.
 void report_finished(const ResultReader& result, SearchReport& report);
 
-/// Of one that was written now.
+/// Fills in the answer of a result that was just written.
 void report_written(const WrittenResult& written, const ProfileSet& profile, SearchReport& report);
 
 }  // namespace clearway

@@ -19,18 +19,18 @@
 namespace clearway {
 namespace {
 
-/// Metres above the model's lowest point. Ground and rails are lower, and are ignored because the
-/// model stands on them; nobody wants to ignore what it hits further up.
+/// The height in metres above the model's lowest point from which on an ignored point is
+/// suspicious. Ground and rails are lower, and are ignored because the model stands on them; nobody
+/// wants to ignore what the model hits further up.
 constexpr double kHigh = 0.5;
 
-/// kHigh in the unit of the environment. Where it is not known, or no length, it is taken as
-/// metres.
+/// kHigh in the environment's unit. Where the unit is unknown, or is no length, metres are assumed.
 double high_in(LengthUnit unit) {
   const double metres = metres_of(unit);
   return metres > 0 ? kHigh / metres : kHigh;
 }
 
-/// Where points are in the frame of the body that touches them.
+/// Tells how high points are in the frame of the body that touches them.
 class Heights {
  public:
   Heights(const StoreReader& store, const Query& query)
@@ -47,7 +47,8 @@ class Heights {
     limit_ = high_in(store.metadata().unit);
   }
 
-  /// Whether the point is well above the model's lowest point at its first pose.
+  /// Whether a point is well above the model's lowest point at the pose at which it is first
+  /// touched. number: the number that BodyNumbers gives that pose and body.
   bool is_high(const Vec3& e, std::uint32_t number) const {
     const std::uint32_t pose = numbers_.pose_of(number);
     const Pose* of = query_.bodies.empty() ? &query_.poses[pose]
@@ -55,7 +56,7 @@ class Heights {
     return of != nullptr && pulled_back(*of, e).z - lowest_ > limit_;
   }
 
-  /// How many of the points of a cell are, of which hits tells those that collide.
+  /// Counts the high points among the points of a cell that collide, which hits marks.
   std::uint64_t count(std::uint32_t cell, std::span<const std::uint64_t> hits,
                       std::span<const std::uint32_t> first_poses) const {
     const auto q = store_.coordinates(cell);

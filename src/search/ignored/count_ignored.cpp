@@ -18,11 +18,12 @@
 namespace clearway {
 namespace {
 
-/// With a smaller share of the points left, most of the scan is ignored, and not some of it.
+/// Where a smaller share of the points is left, most of the scan is ignored and not just a part of
+/// it.
 constexpr double kFewLeft = 0.01;
 
-/// Calls visit(cell, searched) for the cells in which `ignored` may leave out something; several
-/// threads at once. searched: room for the words of a cell.
+/// Calls visit(cell, searched) for each cell in which `ignored` may leave out something, from
+/// several threads at once. searched: room for the words of the cell's mask.
 template <typename Visit>
 void for_each_touched(const StoreReader& store, const IgnoredPoints& ignored, const Visit& visit) {
   const ParallelScope scope;
@@ -48,7 +49,7 @@ QueryParameters only_boxes(std::vector<Box> boxes) {
   return out;
 }
 
-/// Of the cells that boxes touch, what all of `query` leaves out and its classes alone do not.
+/// Counts the points that the boxes of `query` leave out and its classes do not.
 std::uint64_t count_in_boxes(const StoreReader& store, const QueryParameters& query) {
   const IgnoredPoints all(store, query), classes(store, only_classes(query));
   const IgnoredPoints boxes(store, only_boxes(query.ignore_boxes));
@@ -61,7 +62,7 @@ std::uint64_t count_in_boxes(const StoreReader& store, const QueryParameters& qu
   return points;
 }
 
-/// "2", "2, 5-7"
+/// The classes as a list of ranges, such as "2" or "2, 5-7".
 std::string list_of(const std::vector<std::uint32_t>& classes) {
   std::string text;
   for (const std::string& range : number_ranges(classes)) {

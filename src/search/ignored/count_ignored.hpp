@@ -7,15 +7,15 @@
 
 namespace clearway {
 
-/// What the query leaves out of the whole store. query: its lists as sort_ignored() leaves them.
-/// Reads points of cells that a box cuts, and with classes named the classes of cells that a box
-/// touches. Throws UsageError where classes are named and the store has none, InputError for a
-/// damaged cell.
+/// Counts what the query leaves out of the whole store. query: one whose lists sort_ignored() has
+/// sorted. Reads the points of cells that a box cuts, and where classes are named also the classes
+/// of cells that a box touches. Throws UsageError where classes are named and the store has none,
+/// and InputError where a cell is damaged.
 IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters& query,
                                  int threads);
 
-/// Warns of what leaves nothing out: "absent-class", "empty-box"; and where that is all there is,
-/// or nearly so: "all-ignored", "most-ignored".
+/// Warns of classes and boxes that leave nothing out: "absent-class", "empty-box". Warns too where
+/// they leave out all points or nearly all: "all-ignored", "most-ignored".
 void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
                      const IgnoredPointCounts& counts, MessageLog& log);
 

@@ -9,8 +9,9 @@
 namespace clearway {
 namespace {
 
-/// A slot of a GPU has the page once for each body, and takes as much longer to make. A page is
-/// searched for as much longer too, so that fewer are under way.
+/// The fewest slots of a GPU for a vehicle. Each slot of a GPU holds the page once for each body,
+/// and takes that much longer to make. A page is also searched that much longer, so fewer pages are
+/// in flight.
 constexpr std::uint32_t kFewestSlotsOfGpu = 8;
 
 PageEngineNeeds needs_of_bodies(PageEngineNeeds needs, std::size_t bodies) {
@@ -20,7 +21,7 @@ PageEngineNeeds needs_of_bodies(PageEngineNeeds needs, std::size_t bodies) {
   return needs;
 }
 
-/// make: a body's kind of its query.
+/// make: makes the engine kind of one body from that body's query.
 template <typename Make>
 std::unique_ptr<PageEngineKind> body_kind(const StoreReader& store, const Query& query, Make make) {
   std::vector<Query> queries = body_queries(query);
@@ -44,7 +45,7 @@ BodyKind::BodyKind(const StoreReader& store, const Query& query, std::vector<Que
   }
 }
 
-/// Of all bodies together.
+/// Index sizes for all bodies together.
 std::vector<PageEngineKind::IndexSize> BodyKind::index_sizes() const {
   std::vector<IndexSize> sizes = kinds_.front()->index_sizes();
   for (IndexSize& size : sizes) {
@@ -67,8 +68,8 @@ const PoseReach& BodyKind::build_index(const QueryTrees& trees, std::uint64_t mo
   return *reaches_.front();
 }
 
-/// The cells of all bodies, each with the nodes of one body after the other, in the order in which
-/// the first of the bodies reaches them.
+/// Plans the cells that any body reaches, ordered by the first pose of the path at which a body
+/// reaches them. Each cell has the motion nodes of one body after the other.
 std::vector<PlannedCell> BodyKind::plan_cells(const PackedCloud& cloud, const PoseReach&) const {
   struct Reached {
     PlannedCell cell;

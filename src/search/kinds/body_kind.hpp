@@ -9,16 +9,16 @@
 
 namespace clearway {
 
-/// The sweep of a query with bodies: an engine with its own index for each of them, on any device.
+/// The sweep of a query with bodies: one engine with its own index for each body, on any device.
 class BodyKind final : public PageEngineKind {
  public:
   using Kinds = std::vector<std::unique_ptr<PageEngineKind>>;
 
-  /// query: with all bodies; queries, kinds: of each body by itself, all on the same devices.
-  /// References outlive it.
+  /// query: the query with all bodies. queries, kinds: the query and the engine kind of each body
+  /// by itself, all on the same devices. What is referred to outlives this object.
   BodyKind(const StoreReader& store, const Query& query, std::vector<Query> queries, Kinds kinds);
 
-  /// The trees that it is given are those of the first body.
+  /// The query of the first body, because build_index() gets that body's trees.
   const Query& whose_trees(const Query&) const override { return queries_.front(); }
   std::vector<IndexSize> index_sizes() const override;
   const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
@@ -43,16 +43,20 @@ class BodyKind final : public PageEngineKind {
   const Query& query_;
   const std::vector<Query> queries_;
   const Kinds kinds_;
-  std::vector<std::unique_ptr<QueryTrees>> trees_;  ///< of all bodies but the first
-  std::vector<const PoseReach*> reaches_;           ///< by body, once there is an index
-  std::vector<std::uint32_t> first_nodes_;          ///< of each body's motion nodes
+  std::vector<std::unique_ptr<QueryTrees>> trees_;  ///< trees of all bodies except the first
+  /// The reach of each body, once there is an index.
+  std::vector<const PoseReach*> reaches_;
+  /// The number of each body's first motion node, where nodes are numbered over all bodies.
+  std::vector<std::uint32_t> first_nodes_;
 };
 
-/// The sweep's form on the CPU; options.threads is not 0. All references outlive it.
+/// The sweep of a query with bodies on the CPU. options.threads is not 0. All references outlive
+/// it.
 std::unique_ptr<PageEngineKind> cpu_body_kind(const StoreReader& store, const Query& query,
                                               const SearchOptions& options);
 
-/// As cuda_kind(); `open` is called for every body, and always chooses the same.
+/// The CUDA engines of a query with bodies, made as by cuda_kind(). `open` is called for every
+/// body, and always chooses the same GPUs.
 std::unique_ptr<PageEngineKind> cuda_body_kind(const StoreReader& store, const Query& query,
                                                const SearchOptions& options, const OpenGpus& open);
 

@@ -15,22 +15,23 @@ namespace clearway {
 namespace {
 
 constexpr std::uint32_t kMostSlots = 64;
-/// Pages on the way to a device, on it and back, beside those that are read. A slot takes 4 ms to
-/// make, so that more of them cost more than they spare.
+/// Slots for pages on the way to a device, on it and on the way back, besides the pages that are
+/// being read. A slot takes 4 ms to make, so more slots would cost more than they save.
 constexpr std::uint32_t kPagesOnDevice = 8;
-/// Small pages, many in flight: a page takes a reading thread about a millisecond.
+/// Cells of a page. Pages are small and many are in flight: a thread reads one in about a
+/// millisecond.
 constexpr std::uint32_t kPageCells = 16;
-/// A third of the usual voxel: a GPU has the bandwidth for a larger field, and fewer exact searches
-/// keep its warps together.
+/// By what factor voxels are finer than usual. A GPU has the bandwidth for a larger field, and
+/// fewer exact searches keep its warps together.
 constexpr double kFieldFineness = 3;
 
-/// x, y and z of a full page of typical cells, their boxes and nodes.
+/// Bytes of a full page of typical cells: their x, y and z, boxes and nodes.
 std::uint64_t usual_page_bytes(const StoreReader& store) {
   const std::uint64_t a_cell = 6 * std::uint64_t{store.cell_points()} + 4096;
   return kPageCells * a_cell;
 }
 
-/// waiting: threads that wait for each device.
+/// waiting: the number of threads that wait for each device.
 PageEngineNeeds needs_of(const StoreReader& store, const SearchOptions& options,
                          std::uint32_t waiting) {
   const std::size_t gpus = std::max<std::size_t>(options.gpus.size(), 1);
@@ -44,7 +45,7 @@ PageEngineNeeds needs_of(const StoreReader& store, const SearchOptions& options,
           .on_gpu = true};
 }
 
-/// The GPUs of an engine, once they are needed.
+/// The GPUs of an engine, chosen once they are needed.
 class Gpus {
  public:
   Gpus(OpenGpus open, bool end_contexts) : open_(std::move(open)), end_contexts_(end_contexts) {}
@@ -58,11 +59,12 @@ class Gpus {
   }
   std::size_t size() const { return indices_.size(); }
 
-  /// An engine on each, made at once.
+  /// Makes an engine on each GPU, all at once.
   template <typename Make>
   PageEngines engines(Make make) const {
     std::vector<std::future<std::unique_ptr<PageEngine>>> making;
-    // One alone needs no thread. Where there is none to be had, std::async does without.
+    // A single engine needs no thread. Where no thread can be started, std::async works without
+    // one.
     constexpr auto kBeside = std::launch::async | std::launch::deferred;
     const auto how = indices_.size() > 1 ? kBeside : std::launch::deferred;
     for (const int gpu : indices_) making.push_back(std::async(how, make, gpu));
@@ -71,7 +73,8 @@ class Gpus {
     return engines;
   }
 
-  /// To unlock memory takes 0.15 s a GiB, and to end a context 0.3 s.
+  /// Takes the engines down on other threads, because unlocking memory takes 0.15 s for each GiB,
+  /// and ending a context 0.3 s.
   EngineEnd end(PageEngines engines) const {
     EngineEnd ending;
     for (std::size_t i = 0; i < engines.size(); ++i) {
@@ -90,7 +93,7 @@ class Gpus {
   std::vector<int> indices_;
 };
 
-/// Adds up what the engines took, and their statistics.
+/// Adds up the statistics of the engines, and reports the memory that they took.
 template <typename Engine, typename Statistics>
 Statistics report_of(EngineList engines, SearchReport& report) {
   Statistics total;

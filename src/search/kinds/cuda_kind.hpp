@@ -10,11 +10,12 @@ namespace clearway {
 
 class StoreReader;
 
-/// Waits for GPUs, and chooses some: as many as options name, or one.
+/// Waits for GPUs to start, and chooses as many as the options name, or one.
 using OpenGpus = std::function<DeviceChoice()>;
 
-/// The CUDA form of the engine that options choose, one on each of the GPUs that `open` gives once
-/// there is a plan. Only in a build with CUDA. options.threads is not 0; all references outlive it.
+/// The CUDA form of the engine that options choose, with one engine on each of the GPUs that `open`
+/// gives once there is a plan. Only in a build with CUDA. options.threads is not 0; all references
+/// outlive it.
 std::unique_ptr<PageEngineKind> cuda_kind(const StoreReader& store, const Query& query,
                                           const SearchOptions& options, OpenGpus open);
 

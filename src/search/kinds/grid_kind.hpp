@@ -9,7 +9,7 @@
 
 namespace clearway {
 
-/// What the grid engine's forms share: its scene, and how far the model reaches.
+/// What the grid engine's kinds for CPU and GPU share: the scene, and how far the model reaches.
 class GridKind : public PageEngineKind {
  public:
   /// options.threads is not 0. All references outlive it.

@@ -17,37 +17,45 @@
 
 namespace clearway {
 
-/// One for each device.
+/// The engines of a search, one for each device.
 using PageEngines = std::vector<std::unique_ptr<PageEngine>>;
 using EngineList = std::span<const PageEngine* const>;
 
-/// Engines that are taken down on threads of their own. Its end waits for them.
+/// Engines that are being taken down on other threads. Its destructor waits for them.
 using EngineEnd = std::vector<std::future<void>>;
 
-/// Slots of an engine on the CPU beside those that are searched: for pages that are read meanwhile.
+/// How many slots an engine on the CPU has besides those being searched, for pages that are read
+/// meanwhile.
 inline constexpr std::uint32_t kSlotsAhead = 2;
 
-/// What an engine that works on pages wants, at the most and at the least.
+/// The resources that an engine that works on pages wants.
 struct PageEngineNeeds {
-  std::uint32_t most_slots = 1;  ///< with less memory, fewer
+  /// Slots of each device; fewer where memory is short.
+  std::uint32_t most_slots = 1;
   std::uint32_t page_cells = 1;  ///< the most cells of a page
-  std::uint64_t page_bytes = 0;  ///< wanted; more where a cell needs it, less with little memory
-  int threads = 1;               ///< that run the pipeline, those that wait for a device included
-  int waiting_threads = 0;       ///< of them, those that wait
-  std::uint32_t devices = 1;     ///< engines that are made
+  /// Bytes of a page; more where a cell needs it, fewer where memory is short.
+  std::uint64_t page_bytes = 0;
+  /// Threads that run the pipeline, including those that wait for a device.
+  int threads = 1;
+  int waiting_threads = 0;    ///< how many of the threads wait for a device
+  std::uint32_t devices = 1;  ///< the number of engines, one for each device
   bool on_gpu = false;
-  std::uint64_t most_device_bytes = 0;  ///< of each GPU, once resolved
-  std::string short_device = {};        ///< likewise, as refuse_device_memory takes it
+  /// Bytes that may be taken on each GPU, once devices are resolved.
+  std::uint64_t most_device_bytes = 0;
+  /// Once devices are resolved, the name that refuse_device_memory() takes.
+  std::string short_device = {};
 };
 
-/// An engine that works on pages before it is made: builds its index of the query, with which the
-/// cells are planned, says what memory it takes, and makes it.
+/// An engine that works on pages, before it is made: builds its index of the query, with which the
+/// cells are planned, says how much memory it takes, and makes the engines.
 class PageEngineKind {
  public:
-  /// What an index may take, bytes.
+  /// Bytes that an index may take.
   struct IndexSize {
     std::uint64_t bytes = 0;
-    std::uint64_t while_built = 0;  ///< beside the trees, more than afterwards; 0: not counted
+    /// Bytes that building it takes beside the trees, more than it keeps afterwards; 0 where these
+    /// are not counted.
+    std::uint64_t while_built = 0;
   };
 
   explicit PageEngineKind(PageEngineNeeds needs) : needs_(std::move(needs)) {}
@@ -55,44 +63,47 @@ class PageEngineKind {
 
   const PageEngineNeeds& needs() const { return needs_; }
 
-  /// From the best to the least. With a smaller one the search is slower, never another.
+  /// Index sizes from the best to the least. With a smaller index the search is slower, but its
+  /// answer is the same.
   virtual std::vector<IndexSize> index_sizes() const { return {IndexSize{}}; }
 
-  /// Of which query build_index() gets the trees; searched: the query.
+  /// The query whose trees build_index() gets. searched: the whole query as it is searched.
   virtual const Query& whose_trees(const Query& searched) const { return searched; }
 
   /// Builds the index, in the place of an earlier one. The trees outlive it.
   virtual const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) = 0;
 
-  /// The plan with that index; `reach` is what build_index() gave.
+  /// Plans the cells with the index. reach: what build_index() returned.
   virtual std::vector<PlannedCell> plan_cells(const PackedCloud& cloud,
                                               const PoseReach& reach) const {
     return plan(cloud, reach);
   }
-  /// Of the nodes of any of these cells; motion: of the trees.
+  /// The most poses of the motion nodes of any of these cells. motion: the one of the trees.
   virtual std::uint64_t most_poses(const MotionTree& motion,
                                    std::span<const PlannedCell> cells) const;
 
-  /// Waits for the devices: from here on needs() has their limits. Called with a plan, before
-  /// memory is asked for; may be called again.
+  /// Waits for the devices, after which needs() has their limits. Called when there is a plan,
+  /// before memory is asked for; may be called more than once.
   virtual void resolve_devices() {}
 
-  // With an index, and all but index_bytes() with devices:
+  // The following need an index, and all but index_bytes() also resolved devices.
 
   virtual std::uint64_t index_bytes() const = 0;
-  /// Memory on the host with this layout, bytes: what make() allocates and what searches do.
-  /// most_poses: of the motion nodes of any planned cell.
+  /// Bytes of memory on the host with this layout: what make() allocates and what searches take.
+  /// most_poses: the most poses of the motion nodes of any planned cell.
   virtual std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const = 0;
-  /// Memory on each device likewise.
+  /// Bytes of memory on each device with this layout: what make() allocates and what searches take.
   virtual std::uint64_t device_bytes(const SlotLayout&) const { return 0; }
-  /// For the log and the report.
+  /// Describes the index in the log and in the report.
   virtual void report_index(SearchReport& report, const MessageLog& log) const = 0;
-  /// Slots of the layout are those of each device. The index outlives the engines' searches.
+  /// Makes an engine for each device, each with the layout's number of slots. The index outlives
+  /// the engines' searches.
   virtual PageEngines make(const SlotLayout& layout) = 0;
-  /// Called once after the last page: for the log, and for what only the engines can report.
+  /// Called once after the last page: describes the search in the log, and reports what only the
+  /// engines know.
   virtual void report_search(EngineList engines, SearchReport& report,
                              const MessageLog& log) const = 0;
-  /// Takes the engines down, beside the caller where that takes long.
+  /// Takes the engines down, on other threads where that takes long.
   virtual EngineEnd end([[maybe_unused]] PageEngines engines) const {
     engines.clear();
     return {};

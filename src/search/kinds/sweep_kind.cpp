@@ -10,24 +10,26 @@
 namespace clearway {
 namespace {
 
-/// The coarse lattice is a quarter more.
+/// The index size of a field with this many mebibytes. While it is built, the coarse lattice adds a
+/// quarter.
 constexpr PageEngineKind::IndexSize size_of(std::uint64_t mebibytes) {
   const std::uint64_t bytes = mebibytes << 20;
   return {bytes, bytes + bytes / 4};
 }
 
-/// Of the field on the CPU: at every pose a profile looks at all points near the model, and the
-/// field decides which of them need a search of it.
+/// Fineness of the field on the CPU for a profile. A profile looks at all points near the model at
+/// every pose, and the field decides which of them need a search of the model.
 constexpr double kProfileFineness = 2;
 
-/// From so many poses on the field is as fine as it pays for many (docs/design/sweep.md,
-/// "Fineness").
+/// The number of poses from which on the field is as fine as pays for many poses
+/// (docs/design/sweep.md, "Fineness").
 constexpr double kPosesOfFullFineness = 1000;
 constexpr double kLeastFineness = 0.25;
 
 }  // namespace
 
-/// With a tolerance the result depends on the field, which memory must not decide.
+/// With a tolerance there is one size only, because the result depends on the field, which memory
+/// must not decide.
 template <typename Element>
 std::vector<PageEngineKind::IndexSize> SweepKindOf<Element>::index_sizes() const {
   constexpr std::uint64_t kMost = std::uint64_t{64} << 20, kLeast = std::uint64_t{1} << 20;
@@ -53,8 +55,9 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
   return filter_.emplace(query_, trees.motion, model, *field_, store_, options_.threads);
 }
 
-/// Coarser for few poses, which ask for few exact tests. Not with a tolerance, whose result depends
-/// on the field; and other modes ask more of it.
+/// The fineness of the field, which is coarser for few poses, because they need few exact tests. It
+/// is not coarser with a tolerance, where the result depends on the field, nor with clearances or a
+/// profile, which ask more of it.
 template <typename Element>
 double SweepKindOf<Element>::fineness_for_query() const {
   if (query_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;

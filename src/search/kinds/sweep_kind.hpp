@@ -9,12 +9,12 @@
 
 namespace clearway {
 
-/// What the sweep engine's forms share: the model field and the filter over it. Element: what the
-/// model consists of.
+/// What the sweep engine's kinds for CPU and GPU share: the model field and the filter over it.
+/// Element: what the model consists of, which is points, triangles or triangles of solids.
 template <typename Element>
 class SweepKindOf : public PageEngineKind {
  public:
-  /// options.threads is not 0. fineness: of the field (core/sweep/field/model_field.hpp). All
+  /// options.threads is not 0. fineness: the field's (core/sweep/field/model_field.hpp). All
   /// references outlive it.
   SweepKindOf(PageEngineNeeds needs, const StoreReader& store, const Query& query,
               const SearchOptions& options, double fineness)

@@ -18,14 +18,15 @@ namespace {
 
 constexpr std::uint64_t kFieldBytes = std::uint64_t{16} << 20;
 
-/// Blocks that are looked at: many of each cell where there are few cells, as their errors do not
-/// even out then.
+/// The number of blocks that are looked at: more of each cell where there are few cells, because
+/// then their errors do not even out.
 constexpr std::size_t kBlocks = 400'000, kLeastBlocksOfCell = 32;
 
-/// In the unit of the estimate: of a cell that is read, and of a block with one pose.
+/// The work to read a cell, and the work of a block with one pose, in the unit of the estimate.
 constexpr double kCell = 1, kPose = 64;
 
-/// One filter for all machines and budgets: that of a search may be coarser, or on a GPU.
+/// A filter that is the same on all machines and for all memory budgets; that of a search may be
+/// coarser, or on a GPU.
 template <typename Element>
 class WorkFilter {
  public:
@@ -45,14 +46,15 @@ class WorkFilter {
   SweepFilterOf<Element> filter_;
 };
 
-/// A pose costs less where there are many: most points collide, or are dismissed, at the first
-/// ones. The exponent is measured (docs/design/campaign.md).
+/// The work of a block with this many poses. A pose costs less where there are many, because most
+/// points collide, or are dismissed, at the first ones. The exponent is measured
+/// (docs/design/campaign.md).
 double work_of_poses(std::uint64_t poses) {
   const double root = std::sqrt(static_cast<double>(poses));
-  return root * std::sqrt(root);  // to the power of 3/4
+  return root * std::sqrt(root);  // poses to the power of 3/4
 }
 
-/// The poses that a search has to look at, block by block.
+/// The work of a cell, estimated from the poses that a search has to look at in each block.
 template <typename Element>
 double work_of(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
                const PlannedCell& planned, std::size_t most_blocks) {
@@ -67,7 +69,7 @@ double work_of(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
     const std::size_t block = (2 * i + 1) * blocks / (2 * looks);
     const QuantumBox box = decode_block_box(cell.box, cloud.blocks()[first + block]);
     if (filter.narrow(position_box(cloud.quantisation(), box), planned.nodes, kept, not_counted)) {
-      continue;  // it collides as a whole
+      continue;  // the whole block collides
     }
     work += work_of_poses(pose_count(filter.motion(), kept));
   }
@@ -102,8 +104,8 @@ std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& quer
 }
 
 std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query) {
-  constexpr std::uint64_t kCellBytes = 128;  // with its motion nodes
-  // What the filter keeps of model and motion for clearances, at the most.
+  constexpr std::uint64_t kCellBytes = 128;  // a cell with its motion nodes
+  // The most bytes that the filter keeps of model and motion for clearances.
   const std::uint64_t for_clearances =
       query.clearance > 0 ? 64 * (query.model.element_count() + query.poses.size()) : 0;
   return kFieldBytes + kFieldBytes / 4 + kCellBytes * cloud.cells().size() + for_clearances;

@@ -9,13 +9,13 @@
 
 namespace clearway {
 
-/// Of every cell an estimate of the work that a search has with it, in no unit; 0 where the model
-/// comes nowhere near. Follows from the store's index and the query alone, by operations that give
-/// the same on every machine. Reads no points. threads: at least 1.
+/// An estimate, for each cell, of the work that a search has with it, in an arbitrary unit; 0 where
+/// the model comes nowhere near. It follows from the store's index and the query alone, by
+/// operations that give the same numbers on every machine. Reads no points. threads: at least 1.
 std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
                                      const QueryTrees& trees, int threads);
 
-/// Memory that it takes beside the trees, bytes.
+/// Bytes of memory that cell_work() takes beside the trees.
 std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query);
 
 }  // namespace clearway

@@ -12,7 +12,7 @@ std::vector<std::uint32_t> divide_cells(std::span<const std::uint64_t> work, std
   std::vector<std::uint32_t> order(work.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, std::greater(), [&](std::uint32_t cell) { return work[cell]; });
-  using Load = std::pair<std::uint64_t, std::uint32_t>;  // work and part
+  using Load = std::pair<std::uint64_t, std::uint32_t>;  // the part's work, and its number
   std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
   for (std::uint32_t shard = 0; shard < shards; ++shard) loads.emplace(0, shard);
   std::vector<std::uint32_t> parts(work.size());

@@ -11,20 +11,20 @@
 
 namespace clearway {
 
-/// The cells of one part of a query. Every cell of the store is in exactly one part, those that no
-/// pose reaches too: so it does not matter which of them an engine would plan.
+/// The cells of one part of a query. Every cell of the store is in exactly one part, including
+/// cells that no pose reaches, so it does not matter which cells an engine would plan.
 class ShardCells {
  public:
   /// threads: at least 1. Throws ResourceError where the memory is too little.
   ShardCells(const StoreReader& store, const Query& query, const Shard& shard, int threads,
              std::uint64_t memory_bytes);
 
-  /// Of no part: any cells.
+  /// A set of any cells, which are those of no part.
   explicit ShardCells(std::vector<bool> cells) : own_(std::move(cells)) {}
 
   bool contains(std::uint32_t cell) const { return own_[cell]; }
   const ResultPart& part() const { return part_; }
-  /// Its estimated work over the mean of all parts.
+  /// The estimated work of the part divided by the mean of all parts.
   double share() const { return share_; }
 
  private:

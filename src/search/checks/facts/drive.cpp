@@ -6,7 +6,8 @@
 namespace clearway {
 namespace {
 
-/// x, y, z, w of a rotation, of unit length. Source: Shepperd 1978, by the largest of the four.
+/// The quaternion x, y, z, w of a rotation, of unit length. Source: Shepperd 1978, by the largest
+/// of the four numbers.
 std::array<double, 4> quaternion_of(const std::array<double, 9>& r) {
   const double squares[4] = {1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8],
                              1 + r[0] + r[4] + r[8]};
@@ -37,7 +38,8 @@ std::array<double, 9> unscaled(const Pose& pose) {
   return out;
 }
 
-constexpr double kShortest = 0.5;  ///< metres: farther than positions wander at rest
+/// The shortest piece in metres: farther than positions wander while a vehicle stands.
+constexpr double kShortest = 0.5;
 
 }  // namespace
 
@@ -45,11 +47,11 @@ std::array<double, 9> reread(const std::array<double, 9>& r, Reading reading) {
   switch (reading) {
     case Reading::kTransposed:
       return {r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]};
-    case Reading::kScalarFirst: {  // w x y z was read as x y z w
+    case Reading::kScalarFirst: {  // a quaternion w x y z was read as x y z w
       const auto [x, y, z, w] = quaternion_of(r);
       return rotation_of({y, z, w, x});
     }
-    case Reading::kScalarLast: {  // x y z w was read as w x y z
+    case Reading::kScalarLast: {  // a quaternion x y z w was read as w x y z
       const auto [x, y, z, w] = quaternion_of(r);
       return rotation_of({w, x, y, z});
     }
@@ -109,7 +111,7 @@ double Drive::upright(Reading reading) const {
 }
 
 double Drive::straightness() const {
-  // The sum of d d^T, and its greatest eigenvalue by the power method.
+  // The greatest eigenvalue of the sum of d d^T, by the power method.
   double m[3][3] = {};
   for (const Piece& piece : pieces_) {
     for (int i = 0; i < 3; ++i) {

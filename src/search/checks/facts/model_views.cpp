@@ -9,7 +9,8 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kMostColumns = 64;
-constexpr std::size_t kFewColumns = 6;  ///< with fewer a view tells nothing of holes
+/// With fewer columns along a side, a view cannot show whether the model has holes.
+constexpr std::size_t kFewColumns = 6;
 
 }  // namespace
 
@@ -44,7 +45,7 @@ double ModelView::open_share() const {
   const auto [width, height] = count_;
   if (std::min(width, height) < kFewColumns) return 0;
   const std::size_t size = width * height;
-  // Whether a cell with points lies in each direction.
+  // For each cell, whether a cell with points lies in each of the four directions.
   std::array<std::vector<bool>, 4> seen;
   for (auto& one : seen) one.resize(size);
   const auto walk = [&](std::vector<bool>& to, std::size_t lines, std::size_t length,

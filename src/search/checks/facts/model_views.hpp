@@ -7,24 +7,26 @@
 
 namespace clearway {
 
-/// A model as it is seen along an axis: which cells of a grid across it hold points, and from where
-/// to where along the axis.
+/// A model as seen along one of its axes: a grid across that axis, with the range along the axis
+/// that the points of each cell cover.
 class ModelView {
  public:
-  /// Cells are as wide as `cell`, but not so narrow that there are more than 64 a side.
-  /// The model has a point.
+  /// Cells are as wide as `cell`, but there are at most 64 along a side. The model has at least one
+  /// point.
   ModelView(const std::vector<Vec3>& model, const Box& box, int axis, double cell);
 
-  /// Whether there are model points before and behind a place, both farther away than `distance`.
+  /// Whether there are model points before and behind `p` along the axis, both farther away than
+  /// `distance`.
   bool encloses(const Vec3& p, double distance) const;
 
-  /// Of the cells with points, and of those empty ones that have such cells to all four sides, the
-  /// share of the empty ones; 0 where the grid is too coarse to tell.
+  /// The share of empty cells in the model's outline. The outline consists of the cells with points
+  /// and of the empty cells that have such cells in all four directions. 0 where the grid is too
+  /// coarse to tell.
   double open_share() const;
 
  private:
   struct Depth {
-    double nearest, farthest;  ///< nearest > farthest: no point
+    double nearest, farthest;  ///< nearest > farthest where the cell has no point
     bool filled() const { return nearest <= farthest; }
   };
   std::size_t column(int side, double x) const;

@@ -8,13 +8,14 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kCoverPoses = 16'384;  ///< poses
+/// At most this many poses are searched for gaps of the scan.
+constexpr std::size_t kCoverPoses = 16'384;
 constexpr std::size_t kMeasuredPoses = 64;
-/// Metres.
+// The next three lengths are in metres.
 constexpr double kFar = 10;
 constexpr double kNear = 3;
 constexpr double kLongestBlock = 5;
-/// A gap is this many times farther from the scan than is usual on this path.
+/// The scan has a gap where it is this many times farther away than is usual on the path.
 constexpr double kUnusual = 4;
 
 }  // namespace

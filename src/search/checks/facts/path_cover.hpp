@@ -8,33 +8,34 @@
 
 namespace clearway {
 
-/// Every n-th pose, the first and the last among them: at most `most`.
+/// Indices of at most `most` poses, evenly spread, the first and the last pose among them.
 std::vector<std::uint32_t> spread_poses(std::size_t poses, std::size_t most);
 
-/// Where along the path the scan has points around the model. What moves is a slice of the model's
-/// box across its longest side, as thick as the box's middle side: so a gap in the scan shows that
-/// is shorter than the model. Why these lengths: docs/design/inputs.md, "Checks of a query".
+/// Where along the path the scan has points around the model. It moves a slice of the model's box
+/// across its longest side, as thick as the box's middle side, so that gaps of the scan that are
+/// shorter than the model show too. The reasons for these lengths: docs/design/inputs.md, "Checks
+/// of a query".
 class PathCover {
  public:
   explicit PathCover(const Question& question);
 
-  /// Farther than this from every scanned place, a path passes somewhere else.
+  /// The distance from every scanned place beyond which a path passes somewhere else.
   double far() const { return far_; }
-  /// Poses with no scanned place within this distance lie where the scan has a gap.
+  /// The distance to the nearest scanned place beyond which a pose lies in a gap of the scan.
   double reach() const { return reach_; }
-  /// The distance to the scan that half of the poses do not exceed; `far()` at the most.
+  /// The median distance from the path to the scan; at most `far()`.
   double usual() const { return usual_; }
 
-  /// The slice at another pose, or of another model.
+  /// Whether the scan comes within `reach()` of this slice, which may be that of another model.
   bool covers(const Box& slice) const { return scan_.within(slice, reach_); }
   const ScanProximity& scan() const { return scan_; }
 
-  /// What was found at the poses that were looked at.
+  /// How many poses were looked at.
   std::uint64_t looked_at() const { return looked_at_; }
   std::uint64_t outside() const { return outside_; }
   std::uint32_t first_outside() const { return first_outside_; }
   std::uint32_t last_outside() const { return last_outside_; }
-  /// Of the path, straight from one pose that was looked at to the next.
+  /// Length of the path, straight from each pose that was looked at to the next.
   double length() const { return length_; }
   double length_outside() const { return length_outside_; }
 
@@ -48,7 +49,7 @@ class PathCover {
   std::uint32_t first_outside_ = 0, last_outside_ = 0;
 };
 
-/// The slice of a model's box that PathCover moves.
+/// The slice of a model's box that PathCover moves along the path.
 Box body_slice(const Box& model);
 
 }  // namespace clearway

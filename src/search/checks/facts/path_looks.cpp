@@ -11,33 +11,41 @@ namespace clearway {
 namespace {
 
 constexpr std::size_t kMostLooks = 1024, kFewLooks = 32, kFewestLooks = 8;
+/// A run consists of at least this many looks.
 constexpr std::size_t kLooksOfRun = 3;
-constexpr double kLooksOfModel = 4;  ///< while the model goes on by its own length
-// Points: fewer may be noise. A reflecting ground has some far below it.
+/// Looks are taken this many times while the model moves on by its own length.
+constexpr double kLooksOfModel = 4;
+// Numbers of points; fewer may be noise. A reflecting ground has some points far below it.
 constexpr std::uint64_t kSurelyBelow = 10, kFewestBelow = 3;
 constexpr std::uint64_t kSurelyBeside = 3;
 constexpr double kPartOfGround = 1.0 / 32;
-// Metres.
-constexpr double kBesideMargin = 1;  ///< along the way, so that scanned points may be expected
-constexpr double kIntoModel = 0.3;   ///< ground may reach so far above the model's lowest point
+// The following lengths are in metres.
+/// Added to the box along the path, so that scanned points may be expected in it.
+constexpr double kBesideMargin = 1;
+/// How far the ground may reach above the model's lowest point.
+constexpr double kIntoModel = 0.3;
 constexpr double kAbove = 3;
-constexpr double kClosestApart = 0.5, kFarthestApart = 2;  ///< looks of short and long vehicles
-/// Around a scanner on a tripod or a vehicle: nothing was where it stood. Below a model that is
-/// smaller than this, ground may be expected at its edge only.
+/// Bounds of the distance between looks, which short and long vehicles reach.
+constexpr double kClosestApart = 0.5, kFarthestApart = 2;
+/// How far around a scanner on a tripod or a vehicle nothing is scanned, because it stands there.
+/// Below a model that is smaller than this, ground may be expected only at the model's edge.
 constexpr double kScannerShadow = 1;
-constexpr double kNarrowest = 1;  ///< a column below a small model holds points of the ground
-/// A block of 64 points of a surface is 8 spacings wide and 8 spacings high.
+/// Width in metres of the narrowest column below a small model, which has to hold points of the
+/// ground.
+constexpr double kNarrowest = 1;
+/// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
+/// spacings wide and 8 spacings high.
 constexpr double kSpacingsOfBlock = 11.3;
 
-/// Beside the model, in metres: from and to a distance, and from a height above its bottom. Ground
-/// that falls or rises across the way by 4 degrees is not in it.
+/// A range of distances beside the model and the least height above the model's bottom, in metres.
+/// A ground that falls or rises across the path by 4 degrees stays below the bands.
 struct Band {
   double from, to, height;
 };
 constexpr Band kBands[] = {{0, 4, 0.3}, {4, 10, 0.75}, {10, kLooksBeside, 1.5}};
 
-/// The inner part of a slice of the model, so that walls and kerbs beside it do not count, nor
-/// wires that its upper part meets.
+/// The inner part of a slice of the model. Walls and kerbs beside the model do not count there, nor
+/// do wires that its upper part meets.
 Box inner_body(const Box& model, double metre) {
   constexpr double kInner = 0.6;
   Box body = body_slice(model);
@@ -73,24 +81,26 @@ class Looking {
   }
 
  private:
-  /// In the model's frame.
+  /// A metre of the scan in the model's frame at a pose.
   double metre(const Pose& pose) const { return question_.metre / scale_of(pose); }
 
   double spacing(const Pose& pose) const {
     return cover_.scan().typical_block() / kSpacingsOfBlock / scale_of(pose);
   }
 
-  /// A part of the points of a ground that fills the box: a tunnel's floor may be narrow, and
-  /// around a scanner that stands still points are scarce where others are dense.
+  /// The number of points that are surely ground: a part of what a ground that fills the box would
+  /// have. The floor of a tunnel may be narrow, and around a scanner that stands still points are
+  /// scarce where others are dense.
   std::uint64_t surely_below(const Box& ground, const Pose& pose) const {
     const double area = (ground.hi.x - ground.lo.x) * (ground.hi.y - ground.lo.y);
     const double part = kPartOfGround * area / (spacing(pose) * spacing(pose));
-    return part >= kSurelyBelow  // also where points are at one place
+    return part >= kSurelyBelow  // large also where all points are at one place
                ? kSurelyBelow
                : std::max(kFewestBelow, static_cast<std::uint64_t>(part));
   }
 
-  /// By `margin` on both sides, and farther where the scan has too few points for such a box.
+  /// Widens the box by `margin` on both sides of an axis, and farther where the scan has too few
+  /// points for such a box.
   void widen(Box& box, int axis, double margin, const Pose& pose) const {
     const double half = (box.hi[axis] - box.lo[axis]) / 2;
     const double expected = cover_.scan().typical_block() / 4 / scale_of(pose);
@@ -99,8 +109,9 @@ class Looking {
     box.hi[axis] += more;
   }
 
-  /// The footprint of the slice and a spacing of the scan more, no farther: ground beside the model
-  /// says nothing of the way that it takes. It reaches out of the shadow of a scanner.
+  /// The column below the slice, wider by one spacing of the scan and no more, because ground
+  /// beside the model tells nothing of the way that it takes. The column reaches out of the shadow
+  /// of a scanner.
   Box below(const Pose& pose) const {
     Box box = slice_;
     for (int k = 0; k < 2; ++k) {
@@ -112,7 +123,7 @@ class Looking {
     return box;
   }
 
-  /// side: 1 is left of a model whose longer side is forward, -1 right.
+  /// side: 1 for the left of a model whose longer side points forward, -1 for its right.
   bool is_beside(int side, const Pose& pose) const {
     return std::ranges::any_of(kBands, [&](const Band& band) {
       return points_.has(beside(side, band, pose), pose, kSurelyBeside);
@@ -140,7 +151,8 @@ class Looking {
   Box slice_, inner_;
 };
 
-/// The poses at which a point of the model has gone on by `apart`, straight from one to the next.
+/// Looks at the poses where a point of the model has moved on by at least `apart` since the last
+/// one, straight from one look to the next.
 std::vector<Look> looks_every(double apart, const std::vector<Pose>& poses, const Vec3& point) {
   std::vector<Look> looks{{0, 0}};
   Vec3 at = transform(poses.front(), point);
@@ -154,7 +166,8 @@ std::vector<Look> looks_every(double apart, const std::vector<Pose>& poses, cons
   return looks;
 }
 
-/// For a model that hardly goes on, and for poses that jump beyond all measure.
+/// Looks evenly spread over the indices of the poses, for a model that hardly moves and for poses
+/// that jump beyond all measure.
 std::vector<Look> looks_by_number(const std::vector<Pose>& poses, const Vec3& point) {
   std::vector<Look> looks;
   Vec3 at = transform(poses.front(), point);

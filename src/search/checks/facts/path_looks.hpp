@@ -12,31 +12,34 @@ namespace clearway {
 
 /// A place of the path, and what was scanned there below and beside the model.
 struct Look {
-  std::uint32_t pose;  ///< of the question
-  double along;  ///< the way of the model's middle from the first look, straight between looks
-  bool covered =
-      false;  ///< whether the scan has points around the model; if not, the rest is unset
+  /// Index of a pose of the question.
+  std::uint32_t pose;
+  /// Length of the path of the model's middle from the first look, straight between looks.
+  double along;
+  /// Whether the scan has points around the model. If not, below, left and right are unset.
+  bool covered = false;
   bool below = false, left = false, right = false;
-  /// Of the model above the highest point below its inner part: 0 where it touches one, none where
-  /// there is none.
+  /// Height of the model above the highest point below its inner part: 0 where it touches a point,
+  /// and nothing where there is no point below.
   std::optional<double> height = {};
 };
 
-/// Consecutive looks, from the first to the last one, as indices into PathLooks::all().
+/// Consecutive looks from the first to the last one, as indices into PathLooks::all().
 struct LookRun {
   std::size_t first, last;
 };
 
-/// Looks at the scan below and beside the model, evenly spaced by the way that the model's middle
-/// goes, so that a vehicle that stops is looked at once. Each reads a few blocks of points.
+/// Looks at the scan below and beside the model, evenly spaced along the path of the model's
+/// middle, so that a vehicle that stops is looked at once there. Each look reads a few blocks of
+/// points.
 class PathLooks {
  public:
   /// Throws InputError where a cell is damaged.
   PathLooks(const Question& question, const PathCover& cover);
 
   const std::vector<Look>& all() const { return looks_; }
-  /// The distance from look to look; more than was wished where the path is too long for that, or
-  /// its poses are too far apart.
+  /// The mean distance from one look to the next. It is larger than desired where the path is too
+  /// long for that, or its poses are too far apart.
   double apart() const;
 
   /// How many looks the scan covers.
@@ -44,12 +47,14 @@ class PathLooks {
   /// The share of the covered looks for which `holds`; 0 where there are none.
   double share(const std::function<bool(const Look&)>& holds) const;
 
-  /// The height above ground that a quarter of the looks do not exceed: of a vehicle that stands on
-  /// it, although a part of the scan may be too low. 0 where nothing is below.
+  /// The lower quartile of the heights above ground: the height of a vehicle that stands on the
+  /// ground, although a part of the scan may be too low. 0 where no look has a point below the
+  /// model.
   double usual_height() const;
 
-  /// Of three looks at least, and `least` long at least, for all of which `holds`. Beside looks
-  /// that the scan does not cover they are longer by its reach: their rim is not told twice.
+  /// Runs of covered looks for all of which `holds`. A run has at least three looks and a length of
+  /// at least `least`. Beside looks that the scan does not cover it has to be longer by the scan's
+  /// reach, so that the rim of a gap, of which another warning tells, is not told twice.
   std::vector<LookRun> runs(double least, const std::function<bool(const Look&)>& holds) const;
   double length(const LookRun& run) const {
     return looks_[run.last].along - looks_[run.first].along;
@@ -67,7 +72,7 @@ class PathLooks {
   double reach_;
 };
 
-/// At the sides, at the height of the model: how far beside it is looked, in metres.
+/// How far beside the model the scan is looked at, at the model's height, in metres.
 inline constexpr double kLooksBeside = 20;
 
 }  // namespace clearway

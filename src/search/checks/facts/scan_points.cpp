@@ -11,10 +11,11 @@
 namespace clearway {
 namespace {
 
-/// For one box: a quarter of a million points.
+/// The most blocks that are read for one box: a quarter of a million points.
 constexpr std::uint32_t kMostBlocks = 4096;
 
-/// The way back from the scan into the model's frame: of a rotation, or of one that scales too.
+/// The inverse of a pose, from the scan's frame into the model's. The pose may be rigid or scale
+/// uniformly.
 class Inverse {
  public:
   explicit Inverse(const Pose& pose) : pose_(pose) {
@@ -32,7 +33,7 @@ class Inverse {
             r[6] * d.x + r[7] * d.y + r[8] * d.z};
   }
 
-  /// The box around a box of the scan.
+  /// The box in the model's frame around a box of the scan.
   Box operator()(const Box& box) const {
     const Vec3 centre = (*this)(box.centre());
     Box out{centre, centre};
@@ -85,7 +86,7 @@ class Visit {
     return box.distance(place_) == 0 && inverse_(box).distance(region_) == 0;
   }
 
-  /// A look at a cell checks all of its bytes: once.
+  /// The packed chunks of a cell, kept because reading them checks all bytes of the cell.
   const ScanPoints::Chunks& chunks_of(std::uint32_t cell) {
     const auto known = chunks_.find(cell);
     return known != chunks_.end() ? known->second

@@ -12,9 +12,9 @@
 namespace clearway {
 namespace {
 
-/// Blocks that are looked at for the typical one.
+/// How many blocks are sampled to find the typical one.
 constexpr std::uint64_t kBlockSample = 4096;
-/// A block longer than this many typical ones lies across a gap.
+/// A block that is longer than this many typical blocks lies across a gap.
 constexpr double kUsual = 4;
 
 std::uint32_t blocks_of(const Cell& cell) {

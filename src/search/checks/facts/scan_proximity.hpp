@@ -7,30 +7,31 @@
 
 namespace clearway {
 
-/// How near the scan comes to a box, by the boxes of its blocks of 64 points: no point is read.
-/// A block far longer than is usual in the scan lies across a gap between scanned places. Such
-/// blocks do not count. Of one thread.
+/// How near the scan comes to a box, by the boxes of its blocks of 64 points; no point is read. A
+/// block that is far longer than usual in the scan lies across a gap between scanned places, and
+/// does not count. Not thread-safe.
 class ScanProximity {
  public:
-  /// A cloud with a point at least, which outlives it.
-  /// `longest_block`: blocks up to this diagonal count in any case.
+  /// The cloud has at least one point and outlives this object. longest_block: blocks with a
+  /// diagonal up to this length count in any case, in the environment's unit.
   ScanProximity(const PackedCloud& cloud, double longest_block);
 
-  /// The diagonal that half of the blocks do not exceed; of a sample where they are many.
+  /// The median diagonal of the blocks, found from a sample where there are many.
   double typical_block() const { return typical_block_; }
 
-  /// A block's distance to the box, and its own box.
+  /// A block of the scan and its distance to the box that was asked about.
   struct Nearest {
     double distance = 0;
     Box block{};
     bool found = false;
   };
 
-  /// The nearest block that is at most `most` away.
+  /// The nearest block that is at most `most` away from the box; found is false where there is
+  /// none.
   Nearest nearest(const Box& box, double most) const;
 
-  /// Whether there is a block that is at most `reach` away. Fast where it was so for a box nearby
-  /// just before.
+  /// Whether there is a block at most `reach` away from the box. Fast where this held for a nearby
+  /// box just before.
   bool within(const Box& box, double reach) const;
 
  private:

@@ -7,8 +7,8 @@
 
 namespace clearway {
 
-/// A box and what is within a distance of it, in a cell's steps of block boxes: leaves out most
-/// blocks before they are decoded, and none that is within the distance.
+/// The surroundings of a box, up to a distance, in the steps of a cell's block boxes. Dismisses
+/// most blocks before they are decoded, and none that is within the distance.
 class StepRange {
  public:
   StepRange(const Box& cell, const Box& box, double distance) {
