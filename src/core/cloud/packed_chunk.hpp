@@ -40,13 +40,13 @@ class PackedChunk {
   /// caller adds file and cell).
   PackedChunk(std::span<const std::byte> bytes, std::uint32_t count);
 
-  /// A chunk that was validated before, from the parts of its header and the payload after it.
+  /// A chunk that was validated before, made from the parts of its header and the payload after it.
   static PackedChunk of_payload(const std::byte* payload, std::uint32_t count, unsigned minbits,
                                 Value minimum);
 
   std::uint32_t size() const { return count_; }
   unsigned minbits() const { return minbits_; }
-  /// Of the header: not that of the values where minbits() is the full width.
+  /// Minimum from the header; not that of the values if minbits() is the full width.
   Value minimum() const { return static_cast<Value>(minimum_); }
   /// The bytes after the header.
   const std::byte* payload() const { return payload_; }

@@ -9,10 +9,11 @@
 /// error is bounded in docs/design/numerics.md ("Triangles").
 namespace clearway {
 
-/// Its corners, metres. None is refused: without area it is its edges, without length a point.
+/// The corners of a triangle, metres. None is refused: a triangle without area counts as its edges,
+/// one without length as a point.
 struct Triangle {
   Triangle() = default;
-  /// So that three numbers in braces are never a triangle.
+  /// Declared so that three numbers in braces are never taken for a triangle.
   CLEARWAY_HD Triangle(const Vec3& at_a, const Vec3& at_b, const Vec3& at_c)
       : a(at_a), b(at_b), c(at_c) {}
 
@@ -33,13 +34,13 @@ CLEARWAY_HD inline Vec3 along(const Vec3& a, double g, const Vec3& v) {
           rounded_sum(a.z, rounded_product(g, v.z))};
 }
 
-/// What lies nearer lowers `least`; what is no number does not.
+/// Lowers `least` to the squared length of `place` if that is less; NaN changes nothing.
 CLEARWAY_HD inline void lower(double& least, const Vec3& place) {
   const double squared = rounded_dot(place, place);
   if (squared < least) least = squared;
 }
 
-/// Where the origin's foot on a line lies: at n / length of the way v from a.
+/// The foot of the origin on a line, at n / length of the vector v from a.
 struct Foot {
   double n, length;
 
@@ -47,7 +48,7 @@ struct Foot {
       : n(-rounded_dot(a, v)), length(rounded_dot(v, v)) {}
 
   CLEARWAY_HD double share() const { return rounded_quotient(n, length); }
-  /// Both strictly: an end is decided as a corner.
+  /// Strictly between both ends, because an end is decided as a corner.
   CLEARWAY_HD bool is_inside() const { return (0 < n) & (n < length); }
 };
 
@@ -56,7 +57,8 @@ CLEARWAY_HD inline void lower_by_edge(double& least, const Vec3& a, const Vec3& 
   if (foot.is_inside()) lower(least, along(a, foot.share(), v));
 }
 
-/// The foot on the plane, where it lies strictly within the triangle; on_ab: the foot on line ab.
+/// Lowers `least` by the foot on the plane if it lies strictly within the triangle. on_ab: the foot
+/// on line ab.
 CLEARWAY_HD inline void lower_by_face(double& least, const Vec3& a, const Vec3& ab, const Vec3& ac,
                                       const Foot& on_ab) {
   const double t = on_ab.share();

@@ -14,7 +14,7 @@ namespace {
 /// boxes too wide for the distance to them to tell much (measured).
 constexpr double kMostMotion = 0.1;
 /// Greatest error of a useful curve as a share of the spacing of the model's points, and greatest
-/// gap between its poses, in about half such spacings.
+/// gap between its poses, in units of about two such spacings.
 constexpr double kMostError = 0.125, kMostGap = 1;
 
 /// The box, in the model's frame, of places that may be near the model at a pose.
