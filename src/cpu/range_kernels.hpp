@@ -6,18 +6,18 @@
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 
-/// The inner loops of range searches, compiled for several vector widths. All of them round as the
-/// predicate does: they are the predicate, over columns.
+/// The inner loops of range searches, compiled for several vector widths. They round as the
+/// predicate does, because they are the predicate, over columns.
 namespace clearway {
 
-/// Coordinates of points by axis, metres. Does not own them.
+/// Coordinates of points by axis, metres. A view that does not own them.
 struct Columns {
   const double* x;
   const double* y;
   const double* z;
 };
 
-/// The same, to write to.
+/// Coordinates of points by axis to write to, metres. A view that does not own them.
 struct MutableColumns {
   double* x;
   double* y;

@@ -16,7 +16,7 @@ enum class JournalRecordKind : std::uint8_t {
 
 /// How much of a run a journal holds. Throws InputError for a record that is not of a run.
 struct JournalledWork {
-  std::uint64_t cells = 0;  ///< finished cells, of engines that work on pages
+  std::uint64_t cells = 0;  ///< finished cells, for engines that work on pages
   std::uint64_t poses = 0;
 };
 JournalledWork journalled_work(const JournalReader& journal);

@@ -7,10 +7,10 @@
 namespace clearway {
 namespace {
 
-/// Blocks looked at for the density.
+/// Number of blocks that are looked at for the density.
 constexpr std::size_t kSamples = 4096;
 
-/// What looking up a grid cell costs, in tests of a point.
+/// Cost of looking up a grid cell, in tests of a point.
 constexpr double kLookUpCost = 3;
 
 }  // namespace

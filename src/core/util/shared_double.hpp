@@ -25,10 +25,10 @@ CLEARWAY_HD inline void store_shared(double* value, double to) {
 #endif
 }
 
-/// Lowers a value; neither is negative.
+/// Lowers a value; neither the value nor `to` is negative.
 CLEARWAY_HD inline void lower_shared(double* value, double to) {
 #ifdef __CUDA_ARCH__
-  // Such doubles are in the order of their bits.
+  // Doubles that are not negative have the order of their bits.
   atomicMin(reinterpret_cast<unsigned long long*>(value),
             static_cast<unsigned long long>(__double_as_longlong(to)));
 #else
@@ -39,7 +39,7 @@ CLEARWAY_HD inline void lower_shared(double* value, double to) {
 #endif
 }
 
-/// Lowers a value to one below 0.
+/// Lowers a value to one that is below 0.
 CLEARWAY_HD inline void lower_shared_below_0(double* value, double to) {
 #ifdef __CUDA_ARCH__
   auto* const bits = reinterpret_cast<unsigned long long*>(value);
