@@ -82,7 +82,7 @@ struct Answer {
   const std::optional<FoundPlace>& nearest() const;
   /// How many points are inside the model; nullopt without solids or clearances.
   std::optional<std::uint64_t> points_inside() const;
-  /// The greatest depth of a point inside the model in metres, 0 where none is inside; nullopt
+  /// The greatest depth of a point inside the model in metres, 0 if no point is inside; nullopt
   /// without solids, or without distances.
   std::optional<double> greatest_depth() const;
 };

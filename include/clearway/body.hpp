@@ -9,11 +9,11 @@
 
 namespace clearway {
 
-/// One of several rigid parts of a vehicle, which moves in its own way while the vehicle follows
-/// its path: the query's poses.
+/// One of several rigid parts of a vehicle. It moves in its own way while the vehicle follows its
+/// path, which is given by the query's poses.
 struct Body {
   std::string name;  ///< a single line of text, not empty and unique among the bodies of a vehicle
-  Model model;       ///< in the body's own frame
+  Model model;       ///< the body's model, in the body's own frame
   std::vector<Pose> poses;  ///< the poses that the body has, in the order of the path
   /// For each entry of `poses`, the index of the path's pose; ascending
   std::vector<std::uint32_t> path_pose;

@@ -138,7 +138,7 @@ struct Conflicts {
   /// a conflict's last pose is the greatest first pose of its points, or the nearest pose if that
   /// is greater, and the model may touch the points later still.
   bool has_last_poses = false;
-  double path_length = 0;  ///< metres
+  double path_length = 0;  ///< length of the path, metres
   /// Longest stretch of the path that a single group has before it is cut, in metres.
   double longest_group = 0;
   std::uint64_t longest_group_points = 0;

@@ -19,12 +19,12 @@ struct ConvertOptions {
   /// of ten from 1e-6 to 1e-3 that fits.
   std::optional<double> scale = std::nullopt;
   std::uint32_t cell_points = 65536;  ///< points of a cell, 64 to 2^20
-  std::optional<double> regular_size =
-      std::nullopt;  ///< metres: cells are cubes of it; none: adaptive
+  /// Side of the cubes that cells are, in metres; none: cells are adaptive.
+  std::optional<double> regular_size = std::nullopt;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;  ///< 0: all cores
   /// The unit of the coordinates of inputs that name none: the metre, or a foot. Inputs that name a
-  /// unit must name this one. None: the unit stays unknown and is taken for the metre.
+  /// unit must name this one. None: the unit stays unknown and is treated as the metre.
   FileUnit unit = {};
   bool ignore_crs = false;  ///< takes coordinates in degrees, or in different units, as they are
   /// Columns of x, y and z in texts: numbers counted from 1, or names of the header. Empty: as the
@@ -53,7 +53,7 @@ struct ConvertReport {
   std::uint64_t non_finite_points = 0;
   /// Number of records without a point, such as beams without a return
   std::uint64_t absent_points = 0;
-  Vec3 scale{}, offset{};  ///< of the stored integers, in metres
+  Vec3 scale{}, offset{};  ///< scale and offset of the stored integers, metres
   /// Box around the stored points; none if there are no points
   std::optional<Box> box = std::nullopt;
   double largest_change = 0;  ///< greatest change of a coordinate by rounding to the scale, metres

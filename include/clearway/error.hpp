@@ -15,7 +15,7 @@ enum class Remedy {
   kLessDeviceMemory,  ///< a smaller budget of GPU memory, or the CPU
   kLessMemory,        ///< a smaller memory budget, or the CPU
   kFewerThreads,
-  kSweepEngine,  ///< the engine cannot do what was asked; engine sweep can
+  kSweepEngine,  ///< use engine sweep, which can do what was asked; the engine chosen cannot
   kGridEngine,
   kCudaDevice,
   kMoreCellPoints,
@@ -46,7 +46,7 @@ enum class Remedy {
   kSameEnvironment,  ///< give the store that was searched
   kAskForProfile,
   kModelSpacing,  ///< name a spacing for the mesh; amount: metres that fit, 0: the caller's choice
-  kResume,        ///< the same call goes on from what was finished
+  kResume,        ///< repeat the same call, which continues from what was finished
   kMerge,         ///< merge the parts first: the file is one part of a result
   /// Search or ask with points of the surface, where the surface itself is not possible
   kModelPoints,

@@ -12,10 +12,10 @@ namespace clearway {
 
 /// How far a stage of a long operation is.
 struct ProgressUpdate {
-  std::string_view stage;  ///< for people, valid during the call
+  std::string_view stage;  ///< name of the stage for the user, valid during the call
   std::uint64_t done = 0;
   std::uint64_t total = 0;  ///< 0 if not known
-  std::string_view unit;    ///< of done and total, valid during the call
+  std::string_view unit;    ///< unit of done and total, valid during the call
   bool finished = false;    ///< whether the stage has ended
 };
 

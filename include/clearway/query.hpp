@@ -47,7 +47,7 @@ struct Query : QueryParameters {
       : QueryParameters(parameters), model(std::move(moved)), poses(std::move(along)) {}
 
   Model model;
-  std::vector<Pose> poses;  ///< of the model, or the path of a query with bodies
+  std::vector<Pose> poses;  ///< poses of the model, or of the path if there are bodies
   /// Several models in the place of one, each with poses of its own; then `model` is empty. First
   /// poses, poses of clearances and poses of the profile are indices of the path.
   std::vector<Body> bodies = {};
@@ -66,7 +66,8 @@ inline std::uint64_t solid_count(const Query& query) {
   return count;
 }
 
-/// Model::spacing, or the greatest of all bodies, metres.
+/// Largest gap between the samples of a mesh, metres: Model::spacing, or the greatest of all
+/// bodies.
 inline double model_spacing(const Query& query) {
   double spacing = query.model.spacing;
   for (const Body& body : query.bodies) spacing = std::max(spacing, body.model.spacing);

@@ -50,7 +50,7 @@ struct ReportSummary {
   bool clear = true;  ///< whether the verdict is Verdict::kClear
   Verdict verdict = Verdict::kClear;
   std::uint64_t bytes = 0;  ///< size of the page
-  Conflicts conflicts;      ///< empty where the result has no first poses
+  Conflicts conflicts;      ///< empty if the result has no first poses
   /// One JSON object with what the page says, without its points.
   std::string facts;
 };

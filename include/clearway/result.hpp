@@ -60,8 +60,9 @@ class Result {
 
   std::vector<std::uint64_t> source() const;  ///< source indices, ascending
   std::vector<Vec3> xyz() const;
-  /// As QueryParameters::first_pose defines it; empty unless the query asked for it. Files of 0.1.0
-  /// with motion between poses may be one higher: their ways did not include their ends.
+  /// The first pose of each point, as QueryParameters::first_pose defines it; empty unless the
+  /// query asked for it. In files of release 0.1.0 with motion between poses it may be one higher,
+  /// because their ways did not include their ends.
   std::vector<std::uint32_t> first_pose() const;
   /// The greatest index of a pose that touches each point; between poses, the start of the last way
   /// that does. Empty if there are no first poses, and for files of older releases.

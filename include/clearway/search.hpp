@@ -39,7 +39,7 @@ struct SearchOptions {
   /// query and count give the same parts, whatever the other options are.
   std::optional<Shard> shard = {};
   bool overwrite = false;  ///< replaces an existing result and the journal of an earlier run
-  bool resume = false;     ///< goes on from the journal of an earlier run
+  bool resume = false;     ///< continues from the journal of an earlier run
   bool strict = false;     ///< any warning ends with InputError, and nothing is searched
   /// Warnings from reading model and trajectory, which the user has already seen. The report and a
   /// part hold them too, and `strict` counts them. They must be given again to resume a search.

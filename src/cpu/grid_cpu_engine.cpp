@@ -34,7 +34,7 @@ struct GridCpuEngine::Arrays {
   ArrayPlace<Line> page;
   GridPlanArrays plan;
   GridWorkArrays work;
-  ArrayPlace<std::uint64_t> sorted;  ///< key and slot in one word
+  ArrayPlace<std::uint64_t> sorted;  ///< key and slot of each point in one word
   PageResultArrays result;
 };
 

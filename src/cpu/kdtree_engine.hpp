@@ -19,8 +19,8 @@ struct KdTreeOptions {
 };
 
 struct KdTreeStatistics {
-  std::uint64_t searches = 0;         ///< pairs of pose and model point
-  std::uint64_t tested_searches = 0;  ///< those searches that no filter dismissed
+  std::uint64_t searches = 0;         ///< all pairs of a pose and a model point
+  std::uint64_t tested_searches = 0;  ///< pairs that no filter dismissed
   std::uint64_t allocated_bytes = 0;  ///< without per-thread caches and the cloud's own memory
   std::uint64_t cache_bytes = 0;      ///< memory of the per-thread caches
   std::uint64_t ignored_points = 0;   ///< number of ignored points in the cells to search

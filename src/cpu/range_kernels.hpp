@@ -32,12 +32,12 @@ void squared_distances(Columns points, std::size_t count, const Vec3& m, double*
 /// moved[i] = transform(pose, model point i).
 void transform_points(const Pose& pose, Columns model, std::size_t count, MutableColumns moved);
 
-/// hit[i] = 1 when environment point i collides with any of the moved model points, else 0.
+/// hit[i] = 1 if environment point i collides with any of the moved model points, otherwise 0.
 void collide_any(Columns environment, std::size_t count, Columns moved, std::size_t moved_count,
                  double radius, std::uint8_t* hit);
 
-/// hit[i] = 1 when environment point i collides with any model point on its way from `moved` to
-/// `next`, both ends included, else 0.
+/// hit[i] = 1 if environment point i collides with any model point on its way from `moved` to
+/// `next`, both ends included, otherwise 0.
 void collide_any_on_way(Columns environment, std::size_t count, Columns moved, Columns next,
                         std::size_t moved_count, double radius, std::uint8_t* hit);
 

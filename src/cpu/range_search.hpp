@@ -44,7 +44,7 @@ class RangeSearch {
     std::size_t count;
   };
 
-  /// One sphere of the model over a range of poses.
+  /// A task of the descent: one sphere of the model over a range of poses.
   struct SearchTask {
     const PoseNode& poses;
     const ModelSphere& sphere;

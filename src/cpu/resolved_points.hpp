@@ -64,7 +64,8 @@ class ResolvedPoints {
   template <typename Skip>
   void leave_out(const Skip& skip) {
     const std::span<const TreeNode> nodes = tree_.cloud().tree();
-    for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
+    // From the last to the first, because children come after their parents
+    for (std::size_t i = nodes.size(); i-- > 0;) {
       if (nodes[i].right == 0) {
         const std::uint32_t cell = nodes[i].first_cell;
         if (skip(cell)) resolve_node(tree_.cell(cell), 0);

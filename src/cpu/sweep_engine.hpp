@@ -47,8 +47,8 @@ class SweepEngineOf final : public PageEngine {
   std::optional<ProfileBestValues> bests_;       ///< only with a profile
   std::vector<std::vector<ProfileFact>> facts_;  ///< one list for each slot; only with a profile
   std::mutex mutex_;
-  std::vector<std::unique_ptr<CellSearchOf<Element>>>
-      idle_;  ///< as many as threads were ever in start() at once
+  /// Searches not in use; at most as many as threads were ever in start() at once
+  std::vector<std::unique_ptr<CellSearchOf<Element>>> idle_;
   SweepStatistics statistics_;
 };
 

@@ -7,7 +7,7 @@ namespace clearway {
 /// Data that the kernels of the grid engine need besides a page.
 struct GridOnDevice {
   GridSceneView scene;
-  GridStatistics* statistics;  ///< zero at first
+  GridStatistics* statistics;  ///< counts of all pages, initially zero
 };
 
 /// Copies a scene's data into DeviceArrays, or counts it with DeviceArrayCount.

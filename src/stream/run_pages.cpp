@@ -82,7 +82,7 @@ class Lane {
       if (!started_[slot]) continue;
       try {
         engine_.finish(slot);
-      } catch (...) {  // another exception ends the run already
+      } catch (...) {  // Another exception is ending the run already.
       }
     }
   }

@@ -143,7 +143,7 @@ void SearchJournal::append_marks(std::span<PoseMark> marks) {
   };
   std::sort(marks.begin(), marks.end(),
             [&](const PoseMark& a, const PoseMark& b) { return key(a) < key(b); });
-  std::size_t merged = 0;  // marks of the same word and pose are one
+  std::size_t merged = 0;  // number of marks after those of the same word and pose are merged
   for (std::size_t i = 0; i < marks.size(); ++i) {
     if (merged > 0 && key(marks[merged - 1]) == key(marks[i])) {
       marks[merged - 1].bits |= marks[i].bits;

@@ -1,4 +1,4 @@
-// What a journal's file holds, checked record by record and added to an answer.
+// Reads what a journal's file holds: checks it record by record and adds it to an answer.
 #include <algorithm>
 #include <cmath>
 

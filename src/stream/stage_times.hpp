@@ -6,7 +6,7 @@
 
 namespace clearway {
 
-/// When the stages of one page ran.
+/// The times at which the stages of one page ran.
 struct PageTimes {
   Interval read{}, upload{}, compute{}, collect{};
 };

@@ -103,7 +103,7 @@ class BitPacker {
   template <unsigned kJoined>
   std::span<const Value> pack_joined(std::span<const Value> values) {
     const unsigned bits = kJoined * minbits_;
-    std::uint64_t word = 0;  // the pending bits are its highest
+    std::uint64_t word = 0;  // holds the pending bits as its highest bits
     unsigned used = 0;
     std::byte* to = to_;
     std::size_t i = 0;

@@ -23,14 +23,15 @@ class PackedCloud {
   virtual std::uint32_t cell_points() const = 0;
   virtual const Quantisation& quantisation() const = 0;
   virtual std::span<const Cell> cells() const = 0;
-  /// Preorder, see cell_tree.hpp. Empty for an empty cloud.
+  /// The tree over cells, in preorder, see cell_tree.hpp. Empty for an empty cloud.
   virtual std::span<const TreeNode> tree() const = 0;
-  /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries a cell; entries of
-  /// blocks past a cell's count are unused.
+  /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries for each cell; entries
+  /// of blocks past a cell's count are unused.
   virtual std::span<const BlockBox> blocks() const = 0;
 
-  /// The packed x, y and z of a cell. Checked against the cell's hash at the first touch; thread
-  /// safe. Throws InputError naming file and cell when the bytes are not those that were written.
+  /// The packed x, y and z of a cell, which are checked against the cell's hash at the first touch.
+  /// Thread safe. Throws InputError naming file and cell if the bytes are not those that were
+  /// written.
   virtual std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const = 0;
 
   /// coordinates() for a look that is no part of a search: it does not count as a touch.
@@ -38,7 +39,7 @@ class PackedCloud {
     return coordinates(cell);
   }
 
-  /// Bytes of the packed x, y and z of a cell together.
+  /// Size of the packed x, y and z of a cell together, bytes.
   virtual std::uint64_t packed_bytes(std::uint32_t cell) const = 0;
 
   /// Reads the packed x, y and z of a cell, one after another, into `to`, which has
@@ -52,7 +53,7 @@ class PackedCloud {
   /// cell is damaged.
   virtual std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const = 0;
 
-  /// Whether points have classes; otherwise all have class 0.
+  /// Whether points have classes; otherwise all points have class 0.
   virtual bool has_classes() const { return false; }
   /// The packed classes of a cell, in the order of its points; only if has_classes(). Thread safe.
   /// Throws InputError if the cell is damaged.

@@ -38,18 +38,18 @@ CLEARWAY_HD inline double rounded_quotient(double a, double b) {
 #endif
 }
 
-/// (a_x b_x + a_y b_y) + a_z b_z
+/// Dot product in this order of operations: (a_x b_x + a_y b_y) + a_z b_z.
 CLEARWAY_HD inline double rounded_dot(const Vec3& a, const Vec3& b) {
   return rounded_sum(rounded_sum(rounded_product(a.x, b.x), rounded_product(a.y, b.y)),
                      rounded_product(a.z, b.z));
 }
 
-/// (x x + y y) + z z
+/// Squared length in this order of operations: (x x + y y) + z z.
 CLEARWAY_HD inline double squared_length(double x, double y, double z) {
   return rounded_dot({x, y, z}, {x, y, z});
 }
 
-/// a - b
+/// The vector a - b, each coordinate rounded once.
 CLEARWAY_HD inline Vec3 difference(const Vec3& a, const Vec3& b) {
   return {rounded_sum(a.x, -b.x), rounded_sum(a.y, -b.y), rounded_sum(a.z, -b.z)};
 }
@@ -65,13 +65,14 @@ CLEARWAY_HD inline Vec3 transform(const Pose& pose, const Vec3& m) {
   return out;
 }
 
-/// d2 between an environment point and a transformed model point.
+/// The predicate's d2, the squared distance between an environment point and a transformed model
+/// point.
 CLEARWAY_HD inline double squared_distance(const Vec3& e, const Vec3& m) {
   const Vec3 d = difference(e, m);
   return rounded_dot(d, d);
 }
 
-/// True when environment point e collides with the transformed model point m: d2 < r * r, strict.
+/// True if environment point e collides with the transformed model point m: d2 < r * r, strict.
 CLEARWAY_HD inline bool collides(const Vec3& e, const Vec3& m, double radius) {
   return squared_distance(e, m) < rounded_product(radius, radius);
 }

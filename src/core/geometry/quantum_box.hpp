@@ -37,8 +37,8 @@ CLEARWAY_HD inline Box position_box(const Quantisation& quantisation, const Quan
           position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
 }
 
-/// A block's box inside its cell's box, in steps of the cell's extent / 65535 per axis, rounded
-/// outwards. 12 bytes a block.
+/// A block's box inside its cell's box, in steps of the cell's extent / 65535 on each axis, rounded
+/// outwards. Takes 12 bytes.
 struct BlockBox {
   std::uint16_t lo[3];
   std::uint16_t hi[3];

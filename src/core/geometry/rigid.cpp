@@ -50,8 +50,8 @@ bool is_rigid(const Stretch& stretch) {
 }
 
 double transform_rounding(const Vec3& reach, const Pose& pose) {
-  // Three products and three sums: at most 4 roundings on any path, each relative to at most the
-  // sum of magnitudes; 6 u covers the second-order terms.
+  // Three products and three sums make at most 4 roundings on any path, each relative to at most
+  // the sum of magnitudes; 6 u covers the second-order terms.
   double worst = 0;
   for (int k = 0; k < 3; ++k) {
     const double* row = pose.rotation + 3 * k;

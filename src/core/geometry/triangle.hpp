@@ -28,7 +28,7 @@ CLEARWAY_HD inline Triangle transform(const Pose& pose, const Triangle& t) {
 
 namespace triangle_detail {
 
-/// a + g v
+/// The place a + g v, each operation rounded.
 CLEARWAY_HD inline Vec3 along(const Vec3& a, double g, const Vec3& v) {
   return {rounded_sum(a.x, rounded_product(g, v.x)), rounded_sum(a.y, rounded_product(g, v.y)),
           rounded_sum(a.z, rounded_product(g, v.z))};
@@ -74,9 +74,9 @@ CLEARWAY_HD inline void lower_by_face(double& least, const Vec3& a, const Vec3& 
 
 }  // namespace triangle_detail
 
-/// d2 between e and a transformed triangle: the least squared length, seen from e, of its corners,
-/// of the feet strictly within its edges, and of the foot strictly within its face. Never more than
-/// squared_distance(e, corner).
+/// The predicate's d2 between e and a transformed triangle: the least squared length, seen from e,
+/// of its corners, of the feet strictly within its edges, and of the foot strictly within its face.
+/// Never more than squared_distance(e, corner).
 CLEARWAY_HD inline double squared_distance(const Vec3& e, const Triangle& t) {
   using namespace triangle_detail;
   const Vec3 a = difference(t.a, e), b = difference(t.b, e), c = difference(t.c, e);
@@ -93,7 +93,7 @@ CLEARWAY_HD inline double squared_distance(const Vec3& e, const Triangle& t) {
   return least;
 }
 
-/// True when environment point e collides with the transformed triangle: d2 < r * r, strict.
+/// True if environment point e collides with the transformed triangle: d2 < r * r, strict.
 CLEARWAY_HD inline bool collides(const Vec3& e, const Triangle& t, double radius) {
   return squared_distance(e, t) < rounded_product(radius, radius);
 }

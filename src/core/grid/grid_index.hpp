@@ -7,9 +7,9 @@
 #include "core/util/device_bits.hpp"
 #include "core/util/macros.hpp"
 
-/// Places in a regular grid that takes the same memory however far a cell extends: grid cells come
+/// Places in a regular grid that takes the same memory however far a cell extends. Grid cells come
 /// in bricks of 4 x 4 x 4, and a brick's place is a hash of its coordinates. Bricks that share a
-/// place are searched together; that costs time, never an answer.
+/// place are searched together, which costs time but never changes an answer.
 namespace clearway {
 
 /// or_into(), skipped if the bits are set already.

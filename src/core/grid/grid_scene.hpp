@@ -12,7 +12,7 @@ namespace clearway {
 
 enum class GridPrecision {
   kExact,  ///< floats filter, the predicate decides
-  kFloat,  ///< floats decide, in the scene's own coordinates: for comparison
+  kFloat,  ///< floats decide, in the scene's own coordinates; only for comparison
 };
 
 struct GridOptions {
@@ -35,7 +35,7 @@ class GridScene {
   std::span<const GridNode> nodes() const { return nodes_; }
   std::span<const std::uint32_t> runs() const { return runs_; }
   bool first_pose() const { return first_pose_; }
-  double grid_cell() const { return grid_cell_; }  ///< metres
+  double grid_cell() const { return grid_cell_; }  ///< side of the grid cells, metres
   double group_radius() const { return group_radius_; }
 
   /// Calls visit(member of GridSceneView, values) for each array that the views refer to.

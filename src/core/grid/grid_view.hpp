@@ -25,8 +25,8 @@ struct PoseBound {
   double spread;
 };
 
-/// A node of the motion tree. Nodes of at most kRunPoses poses are searched whole, others as the
-/// runs first_run .. first_run + runs - 1.
+/// A node of the motion tree. A node of at most kRunPoses poses is searched as a whole, a larger
+/// one as the runs first_run .. first_run + runs - 1.
 struct GridNode {
   std::uint32_t first, count, mid;
   std::uint32_t first_run;
@@ -68,7 +68,8 @@ struct GridCell {
   std::uint32_t count;
   std::uint32_t first_entry;  ///< index of its first entry in the page's entry_runs
   std::uint32_t node_count;
-  bool exact_only;  ///< floats cannot hold these lengths: every pair goes to the predicate
+  /// True if floats cannot hold these lengths, so that every pair goes to the predicate
+  bool exact_only;
 };
 
 /// A point in grid order, metres from the cell's origin.
@@ -84,11 +85,11 @@ struct BucketRange {
 /// Counts of the steps that a search took.
 struct GridStatistics {
   std::uint64_t sphere_tests = 0;
-  std::uint64_t points_moved = 0;  ///< model points transformed
+  std::uint64_t points_moved = 0;  ///< model points that were transformed
   std::uint64_t searches = 0;      ///< moved model points that the occupancy left
-  std::uint64_t bucket_tests = 0;  ///< grid cells looked up
-  std::uint64_t point_tests = 0;   ///< pairs tested in float
-  std::uint64_t exact_tests = 0;   ///< pairs put to the predicate
+  std::uint64_t bucket_tests = 0;  ///< grid cells that were looked up
+  std::uint64_t point_tests = 0;   ///< pairs that were tested in float
+  std::uint64_t exact_tests = 0;   ///< pairs that were put to the predicate
 
   CLEARWAY_HD void add(const GridStatistics& other) {
     sphere_tests += other.sphere_tests;

@@ -8,18 +8,18 @@
 #include "core/util/macros.hpp"
 
 /// A page: one run of bytes that holds what an engine needs of some planned cells, the same on the
-/// host and on a device. Layout: PageCell[cells], motion nodes uint32[nodes], BlockBox[cells *
-/// blocks_per_cell], where points are ignored masks uint64[cells * blocks_per_cell], then the
-/// packed payloads, each section on kPageAlignment bytes, kPagePadding zero bytes at the end, so
-/// that a decoder may read whole words past a payload.
+/// host and on a device. Layout: PageCell[cells]; motion nodes uint32[nodes]; BlockBox[cells *
+/// blocks_per_cell]; if points are ignored, masks uint64[cells * blocks_per_cell]; then the packed
+/// payloads. Each section is aligned to kPageAlignment bytes, and kPagePadding zero bytes follow at
+/// the end, so that a decoder may read whole words past a payload.
 namespace clearway {
 
 inline constexpr std::size_t kPageAlignment = 16;
 inline constexpr std::size_t kPagePadding = 16;
 
 /// The payload of one packed chunk (core/cloud/packed_chunk.hpp): value i is `minimum` plus the
-/// `minbits` bits from bit i * minbits on, most significant first; minbits 32: little-endian
-/// values.
+/// `minbits` bits from bit i * minbits on, most significant first. With minbits 32 the payload is
+/// the little-endian values themselves.
 struct PageChunk {
   std::uint64_t payload;  ///< offset of the payload from the beginning of the page, bytes
   std::int32_t minimum;
@@ -121,7 +121,7 @@ CLEARWAY_HD inline std::int32_t PageRef::value(const PageChunk& chunk, std::uint
   const std::uint64_t window =
       shift == 0 ? low : low >> shift | std::uint64_t{words[2]} << (64 - shift);
   if (chunk.minbits == 32) return static_cast<std::int32_t>(static_cast<std::uint32_t>(window));
-  std::uint64_t reversed = 0;  // the compilers make this one byte swap
+  std::uint64_t reversed = 0;  // compilers make this a single byte swap
   for (int i = 0; i < 8; ++i) reversed |= (window >> (8 * i) & 0xff) << (56 - 8 * i);
   const std::uint64_t delta = reversed << (bit % 8) >> (64 - chunk.minbits);
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(chunk.minimum) +

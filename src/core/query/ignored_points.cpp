@@ -77,7 +77,7 @@ std::optional<QuantumBox> quanta_in(const Quantisation& quantisation, const Box&
 
 void sort_ignored(QueryParameters& query) {
   for (Box& box : query.ignore_boxes) {
-    for (int k = 0; k < 3; ++k) {  // no -0
+    for (int k = 0; k < 3; ++k) {  // turns -0 into 0
       box.lo[k] += 0.0;
       box.hi[k] += 0.0;
     }

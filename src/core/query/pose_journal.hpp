@@ -28,7 +28,7 @@ class PoseJournal {
   /// Whether all of the poses were finished.
   virtual bool poses_finished(std::uint32_t first, std::uint32_t count) const = 0;
 
-  // Thread safe:
+  // The functions that append are thread safe:
   virtual void append_marks(std::span<PoseMark> marks) = 0;  ///< may reorder the marks
   virtual void append_finished_poses(std::uint32_t first, std::uint32_t count) = 0;
 };

@@ -171,7 +171,7 @@ class SweepHits {
   PerLane<SweepStatistics>& statistics_;
   PerLane<SweepWay> ways_;
   PerLane<Vec3> points_;
-  PerLane<std::uint32_t> slot_;  ///< of the point, within the page
+  PerLane<std::uint32_t> slot_;  ///< slot of the lane's point, within the page
   PerLane<std::uint32_t> best_;  ///< first pose known; without first poses any pose, as a mark
   PerLane<bool> wanted_;         ///< whether there is something left to find
   bool defer_ = false;

@@ -50,8 +50,8 @@ struct PointBox {
 enum class SweepBoxClass {
   kDismissed,  ///< no pose of the node matters
   kAccepted,   ///< the model at the middle pose touches, or contains, every point of the box
-  kSplit,      ///< to be looked at in halves
-  kKept,       ///< fine enough for a box of this size
+  kSplit,      ///< the node has to be looked at in halves
+  kKept,       ///< the node is fine enough for a box of this size
 };
 
 /// What becomes of a motion node for a single point.
@@ -76,12 +76,12 @@ struct SweepRefOf {
   /// Wide tree of the model's elements; set only with a clearance
   WideTreeRefOf<StoredElement<Element>> wide;
   double radius;  ///< points strictly closer than this are hits; with a tolerance, search_radius()
-  double
-      resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
-  double clearance;   ///< metres; 0: not asked for
-  double profile;     ///< metres; 0: not asked for
-  double open_area;   ///< square metres: bound of a chord's error times the distance
-  double rounding;    ///< rounding of a test of one point at one pose, metres
+  /// A distance of at most the radius: a point this far at a single pose need not be a hit
+  double resolved_from;
+  double clearance;  ///< metres; 0: not asked for
+  double profile;    ///< metres; 0: not asked for
+  double open_area;  ///< square metres: bound of a chord's error times the distance
+  double rounding;   ///< rounding of a test of one point at one pose, metres
   bool first_pose;
   bool between_poses;
 

@@ -38,7 +38,7 @@ class SweptStep {
         });
   }
 
-  /// False only when no point within rho of `centre` collides on the way or at either of its ends.
+  /// False only if no point within rho of `centre` collides on the way or at either of its ends.
   CLEARWAY_HD bool may_touch(const Vec3& centre, double rho) const {
     return model_.any(
         [&](const Box& box) {
@@ -60,8 +60,8 @@ class SweptStep {
     return !farther(1, squared, radius_ + rho + half_width + rounding_);
   }
 
-  /// The squared distance of e to the segment from a to b; its root is too large by at most
-  /// 20 u (|e - a| + |b - a|), and 0 stands for what overflows.
+  /// The squared distance of e to the segment from a to b. Its root is too large by at most 20 u
+  /// (|e - a| + |b - a|); it is 0 if the computation overflows.
   CLEARWAY_HD static double squared_distance_to_segment(const Vec3& e, const Vec3& a,
                                                         const Vec3& b) {
     const Vec3 ab = difference(b, a);

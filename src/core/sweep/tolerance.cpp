@@ -15,8 +15,8 @@ namespace {
 /// the predicate need. Below 0 if the tolerance is smaller than these.
 double thinning_budget(const Query& query, const Box& model) {
   double errors = 16 * kUnitRoundoff * query.radius + 1e-150;
-  if (query.model
-          .is_surface()) {  // twice that of a triangle (docs/design/numerics.md, "Triangles")
+  // Twice the error of a triangle (docs/design/numerics.md, "Triangles").
+  if (query.model.is_surface()) {
     double stretch = 0;
     for (const Pose& pose : query.poses) stretch = std::max(stretch, greatest_stretch_bound(pose));
     errors += kUnitRoundoff * (16 * query.radius + 322 * stretch * 2 * half_diagonal(model));

@@ -25,7 +25,7 @@ class PositionCurve {
   std::array<Eigen::Vector3d, 3> moves_;  ///< metres
 };
 
-/// The way from one pose to the next: a cubic in position, a cumulative cubic in rotation
+/// The curve from one pose to the next: a cubic in position, a cumulative cubic in rotation
 /// (docs/design/trajectory.md).
 class PoseCurve {
  public:

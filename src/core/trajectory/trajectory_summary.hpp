@@ -11,7 +11,7 @@ namespace clearway {
 
 /// An axis of the model's frame, or its opposite.
 struct BodyAxis {
-  int axis = 0;  ///< 0 x, 1 y, 2 z
+  int axis = 0;  ///< 0 for x, 1 for y, 2 for z
   bool negative = false;
   double cosine = 0;  ///< mean cosine between the axis and what it is compared with; 0: none
 };
@@ -26,9 +26,9 @@ struct TrajectorySummary {
   std::size_t largest_step_pose = 0;  ///< pose from which the largest step starts
   std::size_t still_steps = 0;        ///< number of steps of length 0
   double total_turn = 0;              ///< sum of the turns between neighbours, radians
-  double largest_turn = 0;            ///< radians
+  double largest_turn = 0;            ///< greatest turn between neighbours, radians
   std::size_t largest_turn_pose = 0;  ///< pose from which the largest turn starts
-  double skew = 0;                    ///< the greatest entry of |R^T R - I|
+  double skew = 0;                    ///< greatest entry of |R^T R - I| over all poses
   BodyAxis up;                        ///< axis that points most along the world's z, over all poses
   BodyAxis forward;  ///< axis that points most along the motion, weighted by length
 };

@@ -6,7 +6,8 @@
 
 #include "core/util/macros.hpp"
 
-/// Doubles that threads of a device, or of the host, read and write at the same time, in no order.
+/// Functions for doubles that threads of a device, or of the host, read and write at the same time,
+/// in no particular order.
 namespace clearway {
 
 CLEARWAY_HD inline double load_shared(const double* value) {

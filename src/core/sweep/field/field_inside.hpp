@@ -11,7 +11,7 @@
 
 namespace clearway {
 
-/// Which nodes and coarse cells of a ModelField lie inside solids (docs/design/solids.md).
+/// Knows which nodes and coarse cells of a ModelField lie inside solids (docs/design/solids.md).
 class FieldInside {
  public:
   static constexpr std::uint32_t kBrickWords =

@@ -106,11 +106,11 @@ class ModelField {
   double coarse_ = 0;  // step of the coarse lattice: kBrick * voxel_
   double margin_ = 0;
   Vec3 origin_{};                      // first node of the coarse lattice
-  std::uint32_t size_[3]{};            // coarse nodes along each axis
+  std::uint32_t size_[3]{};            // number of coarse nodes along each axis
   std::vector<float> coarse_squared_;  // squared distances of coarse nodes [z][y][x]
   // Nearest elements of coarse nodes [z][y][x]; empty without a reach
   std::vector<std::uint32_t> coarse_nearest_;
-  mutable std::vector<std::uint32_t> brick_of_;  // per coarse cell, [z][y][x]
+  mutable std::vector<std::uint32_t> brick_of_;  // brick of each coarse cell, [z][y][x]
   std::uint32_t bricks_ = 0;
   std::unique_ptr<float[]> distances_;        // squared distances of bricks, each [z][y][x]
   std::unique_ptr<std::uint32_t[]> nearest_;  // nearest elements of bricks, each [z][y][x]

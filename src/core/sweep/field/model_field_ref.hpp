@@ -24,7 +24,7 @@ struct ModelFieldRef {
   static constexpr double kNearNode = 0.76;
 
   struct Bounds {
-    double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
+    double squared_lower;  ///< at most d_M^2; the lattice's rounding slack is taken off
     std::uint32_t near;    ///< a model element near x, or kNone; with a reach never kNone
   };
 
@@ -35,11 +35,11 @@ struct ModelFieldRef {
   double coarse_slack;    ///< share that concave_bound() takes off in the coarse lattice
   double fine_slack;      ///< share that concave_bound() takes off in the fine lattice
   Vec3 origin;            ///< first node of the coarse lattice
-  std::uint32_t size[3];  ///< coarse nodes along each axis
+  std::uint32_t size[3];  ///< number of coarse nodes along each axis
   std::uint32_t bricks;
   const float* coarse_squared;          ///< squared distances of coarse nodes [z][y][x]
   const std::uint32_t* coarse_nearest;  ///< nearest elements of coarse nodes [z][y][x], or null
-  const std::uint32_t* brick_of;        ///< per coarse cell, [z][y][x]
+  const std::uint32_t* brick_of;        ///< brick of each coarse cell, [z][y][x]
   const float* distances;               ///< squared distances of bricks, each [z][y][x]
   const std::uint32_t* nearest;         ///< nearest elements of bricks, each [z][y][x]
   /// Makes bricks that are asked for, on the host; null: no look-up makes any

@@ -18,7 +18,7 @@ class ProfileBlocks {
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  /// Blocks of a cell that are searched together; larger cells are searched in parts.
+  /// Number of blocks of a cell that are searched together; larger cells are searched in parts.
   static constexpr std::uint32_t kPartBlocks = kWarpLanes * kWarpLanes;
   static constexpr std::uint32_t kLevels = 14;
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -226,8 +226,8 @@ class ProfileBlocks {
 
   const PageCell* cell_ = nullptr;
   const BlockBox* first_ = nullptr;
-  std::uint32_t index_ = 0;        ///< of the cell in the page
-  std::uint32_t first_block_ = 0;  ///< of the part in the cell
+  std::uint32_t index_ = 0;        ///< index of the cell in the page
+  std::uint32_t first_block_ = 0;  ///< first block of the part, in the cell
   std::uint32_t count_ = 0;
   double delta_ = 0;
   std::uint32_t pose_ = 0;

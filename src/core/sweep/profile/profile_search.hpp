@@ -292,7 +292,7 @@ class ProfileSearch {
   std::uint32_t index_ = 0;        ///< index of the cell in the page
   std::uint32_t first_point_ = 0;  ///< first point of the part, in its cell
   std::uint32_t first_slot_ = 0;   ///< slot of the first point, in the page
-  double bound_ = 0;               ///< d2 above it do not matter at this pose
+  double bound_ = 0;               ///< values of d2 above it do not matter at this pose
   double found_ = kInfinity;       ///< the least d2 found at the last pose
   /// Last pose that was searched, if what it found is still known
   std::uint32_t last_pose_ = kSweepNever;

@@ -21,7 +21,7 @@ class PathStations {
   /// A place of the curve: parameter t of the way from pose `way` to the next one.
   struct Place {
     std::size_t way;
-    double t;  ///< 0 <= t <= 1, and 0 at the last pose
+    double t;  ///< from 0 to 1; 0 at the last pose
   };
 
   /// poses: must outlive this object. Throws InputError if positions are too far apart for a finite
