@@ -106,13 +106,13 @@ struct ModelOptions {
 inline double default_spacing(double radius) { return radius / 4; }
 
 /// Reads a model from points, in the formats of scans, or from a mesh (STL, OBJ, PLY with faces,
-/// OFF). options.as says what a mesh becomes. Samples for kPoints are drawn from the corners;
-/// corners that no face uses are left out. For kSolid, corners at the same place become one; a
-/// height in options.above would leave solids open and throws UsageError. Throws InputError for
-/// malformed files, for a model without points, for coordinates that are not finite, and for a mesh
-/// that is to become points without a spacing; UsageError for options that contradict each other.
-/// messages: where given, notes and warnings are appended ("mesh-bent-faces",
-/// "mesh-crossing-faces", "loose-vertices").
+/// OFF). options.as says what a mesh becomes. The corners of a surface are the vertices from which
+/// kPoints draws its samples, without those that no face uses. For kSolid, corners at the same
+/// place become one; a height in options.above would leave solids open and throws UsageError.
+/// Throws InputError for malformed files, for a model without points, for coordinates that are not
+/// finite, and for a mesh that is to become points without a spacing; UsageError for options that
+/// contradict each other. messages: where given, notes and warnings are appended
+/// ("mesh-bent-faces", "mesh-crossing-faces", "loose-vertices").
 Model read_model(const std::filesystem::path& path, const ModelOptions& options = {},
                  std::vector<Message>* messages = nullptr);
 

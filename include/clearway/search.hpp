@@ -69,16 +69,17 @@ struct ToleranceReport {
 /// which at least one worker of that stage was busy.
 struct SearchSeconds {
   double total = 0;
-  double context = 0;  ///< starting the GPUs, which runs beside all that comes before the engine
-  double context_wait = 0;  ///< time that the search waited for the GPUs to start
-  double ignored = 0;       ///< counting the ignored points that would collide
-  double thin = 0;          ///< choosing what a tolerance keeps
-  double field = 0;         ///< making what the engine looks up: the model field, the grid's groups
+  double context = 0;  ///< seconds for starting the GPUs, beside all that comes before the engine
+  double context_wait = 0;  ///< seconds that the search waited for the GPUs to start
+  double ignored = 0;       ///< seconds for counting the ignored points that would collide
+  double thin = 0;          ///< seconds for choosing what a tolerance keeps
+  /// Seconds for making what the engine looks up: the model field, the grid's groups
+  double field = 0;
   double plan = 0;
-  double engine = 0;  ///< making the engine with its slots
+  double engine = 0;  ///< seconds for making the engine with its slots
   double search = 0, read = 0, upload = 0, compute = 0, collect = 0;
-  double write = 0;  ///< writing the result, while the GPUs' memory is given back
-  /// waiting, after the result was written, for the GPUs' memory to be given back
+  double write = 0;  ///< seconds for writing the result, while the GPUs' memory is given back
+  /// Seconds of waiting for the GPUs' memory to be given back after the result was written
   double end_wait = 0;
 };
 

@@ -25,7 +25,7 @@ class Store {
 
   std::uint64_t point_count() const;
   std::uint64_t cell_count() const;
-  Box box() const;  ///< box around all points, metres; zeros if there are no points
+  Box box() const;  ///< box around all points; zeros if there are no points
   /// How many points each class has, 256 numbers; empty if the points have no classes.
   std::vector<std::uint64_t> class_points() const;
   /// Coordinate reference system as the scans gave it, or empty

@@ -41,7 +41,7 @@ std::uint64_t CellSearchOf<Element>::most_bytes(const PackedCloud& cloud, const 
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
   // A list for clearances may have grown to twice the size it needs.
   const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
-  // Twice, for the same reason
+  // Lists of runs may have grown to twice the size they need, too.
   const std::uint64_t of_runs = kIsTriangle<Element> ? 8 * most_poses : 0;
   return sizeof(CellSearchOf) +
          depths * (sizeof(std::vector<std::uint32_t>) + most_poses * sizeof(std::uint32_t)) +

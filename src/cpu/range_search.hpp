@@ -97,9 +97,9 @@ class RangeSearch {
   const PoseTree* pose_tree_ = nullptr;
 
   BlockCache cache_;
-  std::vector<Candidate> candidates_;  ///< a stack
+  std::vector<Candidate> candidates_;  ///< stack of candidates
   std::uint64_t candidate_points_ = 0;
-  std::vector<double> x_, y_, z_;  ///< a stack of points in columns
+  std::vector<double> x_, y_, z_;  ///< stack of points in columns
   std::vector<std::uint64_t> slots_;
   std::size_t gathered_ = 0;  ///< number of points at the bottom of the stack
   std::vector<double> squared_;

@@ -17,7 +17,7 @@ struct StageTimes {
   double upload = 0;
   double compute = 0;
   double collect = 0;
-  double total = 0;  ///< from the first page to the last one
+  double total = 0;  ///< seconds from the first page to the last one
 };
 
 /// Length of the union of the intervals, seconds. An interval that does not end after it begins has

@@ -223,12 +223,12 @@ struct WideTreeRefOf : WideBoxes {
   /// Places to measure from: for points their box is enough; triangles make use of the hull.
   using Places = std::conditional_t<kIsTriangle<Element>, PlaceHull, Box>;
 
-  const Node* nodes;   ///< one level after another, the root first
+  const Node* nodes;   ///< nodes, one level after another, the root first
   const Slabs* slabs;  ///< slabs of the nodes; only for triangles on the host
   const Packet* packets;
   Vec3 origin;
   std::uint32_t node_count;
-  std::uint32_t packet_count;        ///< a power of 2, or 0
+  std::uint32_t packet_count;        ///< number of packets, a power of 2 or 0
   std::uint32_t levels;              ///< levels of nodes; 0 if there is only one packet
   std::uint32_t first[kMostLevels];  ///< first node of each level
 

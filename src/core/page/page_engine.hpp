@@ -27,10 +27,11 @@ struct Interval {
 
 /// What an engine found in a page, cell after cell in the page's order.
 struct PageResult {
-  std::span<const std::uint64_t> hits;  ///< blocks_per_cell words for each cell; bit i is point i
-  /// blocks_per_cell * 64 for each cell; empty if not asked for
+  /// Colliding points: blocks_per_cell words for each cell; bit i is point i
+  std::span<const std::uint64_t> hits;
+  /// First poses, blocks_per_cell * 64 for each cell; empty if not asked for
   std::span<const std::uint32_t> first_poses;
-  /// blocks_per_cell * 64 for each cell; empty if not asked for
+  /// Clearances, blocks_per_cell * 64 for each cell; empty if not asked for
   std::span<const Clearance> clearances;
   /// Facts of the profile, if asked for: they include those of the true profile's points in this
   /// page, and none is tied.

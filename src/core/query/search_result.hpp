@@ -13,8 +13,8 @@ namespace clearway {
 /// The answer of an engine for every entry of a cloud.
 struct SearchResult {
   HitSet hits;
-  ClearanceSet clearances;  ///< without entries unless asked for
-  ProfileSet profile = {};  ///< without poses unless asked for
+  ClearanceSet clearances;  ///< no entries unless asked for
+  ProfileSet profile = {};  ///< no poses unless asked for
   /// Number of ignored points in the cells that were searched, without those of a journal.
   std::uint64_t ignored_points = 0;
   /// Set after a search for them, if first poses were asked for

@@ -153,7 +153,7 @@ bool SweepFilterOf<Element>::touches(const Vec3& e, std::span<const std::uint32_
     const std::span part =
         nodes.first(std::min<std::size_t>(nodes.size(), BitReversalOrder::kMost));
     nodes = nodes.subspan(part.size());
-    std::uint64_t open = 0;  // as bits
+    std::uint64_t open = 0;  // the nodes that stayed open, as bits
     bool hit = false;
     BitReversalOrder(static_cast<std::uint32_t>(part.size())).for_each([&](std::uint32_t i) {
       const Verdict verdict = test(e, motion_.nodes()[part[i]], statistics, squared_lower);

@@ -30,7 +30,7 @@ struct SweepWork {
     std::uint32_t taken;  ///< number of entries, whole ones included, that were taken
   };
   static constexpr std::uint32_t kNone = 0xffffffff;  ///< half or point of an unused place
-  /// node_count of an entry for all nodes of its cell
+  /// Value of node_count of an entry that stands for all nodes of its cell
   static constexpr std::uint32_t kWhole = 0xffffffff;
   static constexpr std::uint32_t kHalves = 2;  ///< halves of a block
 
@@ -76,7 +76,8 @@ struct SweepWork {
   }
 };
 
-inline constexpr std::uint32_t kSweepNever = 0xffffffff;  ///< a first pose that means none
+/// First pose of a point that is touched at no pose
+inline constexpr std::uint32_t kSweepNever = 0xffffffff;
 
 /// A page under search: the query, the points, and where answers and open work go, cell after cell
 /// of the page. A pointer is null if its values are not asked for.
@@ -85,7 +86,7 @@ struct SweepPageOf {
   SweepRefOf<Element> sweep;
   PageRef page;
   Quantisation quantisation;
-  std::uint64_t* hits;         ///< one word for each block
+  std::uint64_t* hits;         ///< one word for each block, a bit for each point
   std::uint32_t* first_poses;  ///< 64 for each block
   Clearance* clearances;       ///< 64 for each block
   SweepWork work;

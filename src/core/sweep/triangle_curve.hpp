@@ -111,7 +111,7 @@ class TriangleCurve {
       const double t = place(packet, i);
       const Vec3 x = at(t);
       const TrianglePacket::Nearest from = packet.nearest(i, x);
-#ifdef __CUDA_ARCH__  // where the closer bound costs more than it spares (measured)
+#ifdef __CUDA_ARCH__  // where the closer bound costs more than it saves (measured)
       squared[i] = packet.from_nearest_hull(i, from.squared, along_hull(from.way, t));
 #else
       // Vector from the triangle to the place of the chord that is nearest to where `from.way`

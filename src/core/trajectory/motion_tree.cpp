@@ -93,7 +93,8 @@ void MotionTree::add(std::uint32_t first, std::uint32_t count) {
   const double half = (*begin + *(begin + count - 1)) / 2;
   const auto at = std::lower_bound(begin, begin + count, half);
   auto mid = static_cast<std::uint32_t>(at - begin);
-  if (!(travelled_[first] < travelled_[first + count - 1])) mid = count / 2;  // a stop
+  // A stop, which has no motion to halve, is divided in the middle.
+  if (!(travelled_[first] < travelled_[first + count - 1])) mid = count / 2;
   mid = std::min(mid, count - 1);
   nodes_.push_back({first, count, first + mid, 0, 0});
   if (count == 1) return;

@@ -14,7 +14,7 @@ namespace clearway {
 struct MotionNode {
   std::uint32_t first;
   std::uint32_t count;
-  std::uint32_t mid;    ///< a pose of the range
+  std::uint32_t mid;    ///< the middle pose, which is one of the range
   std::uint32_t later;  ///< node of the later half, 0 if count is 1
   /// Metres: no model point is farther than this, at any pose of the range, from where it is at
   /// mid. Between poses that includes the pose after the range, and so the segments up to it.

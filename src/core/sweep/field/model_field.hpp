@@ -13,7 +13,8 @@
 namespace clearway {
 
 struct ModelFieldOptions {
-  /// metres; 0: chosen from the radius. Doubled until the field fits `most_bytes`
+  /// Step of the fine lattice, metres; 0: chosen from the radius. Doubled until the field fits
+  /// `most_bytes`
   double voxel = 0;
   double fineness = 1;         ///< divisor of the voxel that is chosen: 2 makes it half as large
   bool cheaply_finer = false;  ///< whether to take a smaller voxel if it costs next to nothing

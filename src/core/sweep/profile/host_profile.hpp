@@ -65,8 +65,8 @@ class HostProfileOf {
   /// that have the same d2.
   void resolve(const PageRef& page, double limit, ProfileFact& fact);
 
-  /// Completes the facts that a device listed for a page: keeps the best ones and resolves ties. A
-  /// fact that is far from the best may be left without a point.
+  /// Completes the facts that a device listed for a page: keeps the best ones of each pose and
+  /// resolves ties.
   void complete(const PageRef& page, std::vector<ProfileFact>& facts);
 
   SweepStatistics take_statistics();
