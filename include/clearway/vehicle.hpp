@@ -15,8 +15,9 @@ struct VehicleOptions {
   /// How the models of all bodies are read; a body's own model_unit overrides the unit. Lengths of
   /// the vehicle's file that have a unit are converted to environment_unit.
   ModelOptions model = {};
-  TrajectoryOptions trajectory = {};  ///< how trajectories are read that belong to single bodies
-  int threads = 0;                    ///< 0: all cores; the bodies do not depend on the number
+  TrajectoryOptions trajectory =
+      {};           ///< how the trajectories of bodies that have one of their own are read
+  int threads = 0;  ///< 0: all cores; the bodies do not depend on the number
 };
 
 /// Reads the JSON file of a vehicle (docs/guide/vehicles.md) and the files that it names. Returns

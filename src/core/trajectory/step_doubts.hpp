@@ -22,7 +22,7 @@ struct Jump {
   double usual = 0;  ///< median of the steps around it
 };
 
-/// The distances of consecutive positions, metres; one fewer than poses.
+/// The distances of consecutive positions; one fewer than poses.
 std::vector<double> step_lengths(std::span<const Pose> poses);
 
 /// The steps that are longer than `least` and more than five times as long as the median of the ten
