@@ -15,8 +15,8 @@ struct VehicleOptions {
   /// How the models of all bodies are read; a body's own model_unit overrides the unit. Lengths of
   /// the vehicle's file that have a unit are converted to environment_unit.
   ModelOptions model = {};
-  TrajectoryOptions trajectory =
-      {};           ///< how the trajectories of bodies that have one of their own are read
+  /// How the trajectories of bodies that have one of their own are read
+  TrajectoryOptions trajectory = {};
   int threads = 0;  ///< 0: all cores; the bodies do not depend on the number
 };
 
