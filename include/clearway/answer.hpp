@@ -15,8 +15,8 @@
 
 namespace clearway {
 
-/// Whether the model passes. kUnknown is the verdict of one part of a divided query alone, where
-/// this part has no colliding point: merge() tells the verdict of all parts.
+/// Whether the model passes. kUnknown is the verdict of a single part of a divided query that has
+/// no colliding point; merge() tells the verdict of all parts together.
 enum class Verdict { kClear, kConflict, kUndecided, kUnknown };
 
 /// Why a verdict is kUndecided.
@@ -27,54 +27,62 @@ enum class Reason {
 const char* name_of(Verdict verdict);  ///< "clear", "conflict", "undecided" or "unknown"
 const char* name_of(Reason reason);    ///< "question-in-doubt"
 
-/// Whether a warning of this code says that nothing could be found, whatever stands in the way, so
-/// that finding nothing is no answer: "out-of-reach", "no-points", "no-poses" and "all-ignored".
+/// Whether a warning with this code says that the search could not find anything, whatever stands
+/// in the way, so that an empty result is no answer: "out-of-reach", "no-points", "no-poses" and
+/// "all-ignored".
 bool is_doubt(std::string_view code);
 
-/// The codes among these warnings that are doubts, each once, in the order of the alphabet.
+/// The codes of the warnings that are doubts by is_doubt(), each once, in alphabetical order.
 std::vector<std::string> doubts_among(const std::vector<Message>& warnings);
 
-/// The answer to a query in short. All that words or counts an answer takes it from here: search()
-/// and merge() report it, and Result::answer() reads it from a file.
+/// The answer to a query in short. Everything that words or counts an answer takes it from here:
+/// search() and merge() report it, and Result::answer() reads it from a file.
 struct Answer {
-  QueryParameters parameters;  ///< lists of what is ignored ascending, each once
+  /// What the query asked for; its lists of ignored classes and boxes are ascending, without
+  /// duplicates
+  QueryParameters parameters;
   std::uint64_t environment_points = 0, model_points = 0, poses = 0;
-  std::uint64_t model_solids = 0;  ///< parts of the model that have an inside
-  /// Metres. No place of the surface of a mesh that was searched as points is farther than this
-  /// from one of them; the greatest of all bodies. 0: the model is no sampled mesh.
+  std::uint64_t model_solids = 0;  ///< number of solids of the model, that is parts with an inside
+  /// Spacing of a mesh that was searched as points, in metres: no place of its surface is farther
+  /// than this from a sample. With several bodies it is the greatest spacing; 0 if no model is a
+  /// sampled mesh.
   double model_spacing = 0;
   std::uint64_t colliding_points = 0;
-  std::uint64_t clearance_points = 0;  ///< points closer than the clearance asked for
-  std::uint64_t inside_points = 0;     ///< those of them inside a solid of the model
-  std::uint64_t profile_poses = 0;     ///< poses closer than the profile's distance asked for
-  /// How many points of the whole environment the search left out, in the order of the lists of
-  /// the parameters.
+  std::uint64_t clearance_points = 0;  ///< number of points closer than the clearance asked for
+  std::uint64_t inside_points = 0;     ///< number of clearance_points inside a solid of the model
+  /// Number of poses closer than the profile's distance asked for
+  std::uint64_t profile_poses = 0;
+  /// How many points of the whole environment the search left out; its lists are in the order of
+  /// those of the parameters.
   IgnoredPointCounts ignored;
   /// How many of the ignored points would collide if they were searched, and how many of these the
-  /// model first touches more than half a metre above its lowest point. 0 where none is ignored,
-  /// nullopt where it is not known, as in results of earlier releases.
+  /// model first touches more than half a metre above its lowest point. 0 if no point is ignored,
+  /// nullopt if the number is not known, as in results of earlier releases.
   std::optional<std::uint64_t> ignored_colliding = 0, ignored_colliding_high = 0;
-  /// Where the query asks for it: the point with the smallest first pose, the one with the least
-  /// clearance, and the least distance of the profile at its first pose. Of several points the one
-  /// with the smallest source. Coordinates are NaN where a file before version 3 lacks them.
+  /// The point with the smallest first pose, the one with the least clearance, and the least
+  /// distance of the profile at its first pose, each where the query asks for it. If several points
+  /// are equal, the one with the smallest source index counts. Coordinates are NaN for files before
+  /// version 3, which lack them.
   std::optional<FoundPlace> first_place, least_clearance, least_profile;
-  std::vector<std::string> bodies;  ///< names, where the query has several bodies
-  std::optional<Shard> shard;       ///< where it is the answer of one part alone
-  bool float_precision = false;     ///< single precision alone decided: not exact
-  std::vector<std::string> doubts;  ///< see doubts_among()
-  /// How much of the path the answer is about: bodies on pivots have no pose at its ends. nullopt
-  /// where it is not known, as for files of one model, whose path was searched to its whole length,
-  /// and for files of several bodies that an earlier release wrote.
+  std::vector<std::string> bodies;  ///< names of the bodies, if the query has several
+  std::optional<Shard> shard;  ///< the shard that this answer is about; nullopt for a whole query
+  /// True if single precision alone decided, so that the answer is not exact
+  bool float_precision = false;
+  /// Codes of warnings that put the answer in doubt: see doubts_among()
+  std::vector<std::string> doubts;
+  /// How much of the path the answer is about, because bodies on pivots have no pose at its ends.
+  /// nullopt where it is not known: in files of one model, whose path was searched to its whole
+  /// length, and in files of several bodies that an earlier release wrote.
   std::optional<SearchedLength> searched;
 
-  /// One colliding point is a conflict, however doubtful the question is.
+  /// The verdict. A single colliding point is a conflict, however doubtful the question is.
   Verdict verdict() const;
-  std::vector<Reason> reasons() const;  ///< why it is undecided, otherwise none
-  /// The least distance that is known.
+  std::vector<Reason> reasons() const;  ///< why the verdict is kUndecided; empty for other verdicts
+  /// The place of the least distance that is known; nullopt if no distance is.
   const std::optional<FoundPlace>& nearest() const;
   /// How many points are inside the model; nullopt without solids or clearances.
   std::optional<std::uint64_t> points_inside() const;
-  /// The greatest depth of a point inside the model in metres, 0 where none is inside; nullopt
+  /// The greatest depth of a point inside the model in metres, 0 if no point is inside; nullopt
   /// without solids, or without distances.
   std::optional<double> greatest_depth() const;
 };

@@ -6,7 +6,7 @@
 
 namespace clearway {
 
-/// Axis-aligned box, closed on both sides, metres.
+/// Axis-aligned box in metres, closed on both sides.
 struct Box {
   Vec3 lo, hi;
   friend bool operator==(const Box&, const Box&) = default;
@@ -15,10 +15,11 @@ struct Box {
     return {lo.x + 0.5 * (hi.x - lo.x), lo.y + 0.5 * (hi.y - lo.y), lo.z + 0.5 * (hi.z - lo.z)};
   }
 
-  /// The lengths of its sides along x, y and z.
+  /// The lengths of the sides along x, y and z.
   CLEARWAY_HD Vec3 size() const { return hi - lo; }
 
-  /// The axis of the longest side, the first of equals: 0 for x, 1 for y, 2 for z.
+  /// The axis of the longest side, and the first of them if several are equally long: 0 for x, 1
+  /// for y, 2 for z.
   CLEARWAY_HD int longest_axis() const {
     int longest = 0;
     for (int k = 1; k < 3; ++k) {
@@ -35,7 +36,7 @@ struct Box {
 
   CLEARWAY_HD bool contains(const Vec3& p) const { return meets({p, p}); }
 
-  /// Whether the boxes share a place, be it on their borders.
+  /// Whether the boxes have a place in common; touching borders count.
   CLEARWAY_HD bool meets(const Box& other) const {
     for (int k = 0; k < 3; ++k) {
       if (!(lo[k] <= other.hi[k] && other.lo[k] <= hi[k])) return false;
@@ -43,7 +44,7 @@ struct Box {
     return true;
   }
 
-  /// Grows the box until it holds p. Coordinates that are not a number change nothing.
+  /// Grows the box until it holds p. A coordinate of p that is NaN changes nothing.
   CLEARWAY_HD void extend(const Vec3& p) {
     for (int k = 0; k < 3; ++k) {
       if (p[k] < lo[k]) lo[k] = p[k];
@@ -51,7 +52,7 @@ struct Box {
     }
   }
 
-  /// The smallest box around both.
+  /// The smallest box that holds both boxes.
   CLEARWAY_HD Box united(const Box& other) const {
     Box out = *this;
     for (int k = 0; k < 3; ++k) {
@@ -61,12 +62,12 @@ struct Box {
     return out;
   }
 
-  /// The box with every side moved outwards.
+  /// The box with every side moved outwards by the same length.
   CLEARWAY_HD Box grown(double by) const {
     return {{lo.x - by, lo.y - by, lo.z - by}, {hi.x + by, hi.y + by, hi.z + by}};
   }
 
-  /// Between the nearest places of the two boxes; 0 where they meet.
+  /// The distance between the nearest places of the two boxes; 0 where they meet.
   CLEARWAY_HD double distance(const Box& other) const {
     double squared = 0;
     for (int k = 0; k < 3; ++k) {

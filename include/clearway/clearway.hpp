@@ -1,7 +1,7 @@
 #pragma once
 
-/// Clearway: which points of a scanned environment lie within the search radius of a moving model?
-/// docs/guide/library.md walks through it.
+/// The whole public interface of Clearway, which tells which points of a scanned environment lie
+/// within the search radius of a moving model. docs/guide/library.md walks through it.
 
 #include "clearway/answer.hpp"      // IWYU pragma: export
 #include "clearway/body.hpp"        // IWYU pragma: export

@@ -19,7 +19,7 @@ namespace clearway {
 /// Where a conflict lies, seen from the model.
 enum class Side { kUnknown, kLeft, kRight, kAbove, kBelow, kFront, kBehind };
 
-/// "left", ...; "unknown"
+/// The name of a side in lower case, such as "left"; "unknown" for kUnknown.
 inline const char* name_of(Side side) {
   switch (side) {
     case Side::kUnknown:
@@ -44,101 +44,110 @@ inline const char* name_of(Side side) {
 enum class Axis { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };
 
 struct ConflictOptions {
-  /// Metres: points at most this far apart belong to the same conflict.
+  /// Greatest distance of two neighbouring points of a conflict, in metres.
   double gap = 0.3;
-  std::uint64_t min_points = 10;  ///< groups of fewer are counted, not listed
-  /// Metres along the path: longer groups are cut at multiples of it; 0: never.
+  std::uint64_t min_points = 10;  ///< smaller groups are counted and not listed
+  /// Longest stretch of a conflict along the path, in metres: longer groups are cut at multiples of
+  /// it. 0: groups are never cut.
   double split = 25;
-  double chainage_start = 0;  ///< metres: the chainage of the first pose; cuts stay where they are
-  Axis forward = Axis::kPlusX, up = Axis::kPlusZ;  ///< of the model; not along one line
-  /// Of the model's points, for results that do not hold it. Without any, sides are unknown.
+  double chainage_start = 0;  ///< chainage of the first pose, metres; it does not move the cuts
+  /// Axes of the model's frame; must not be parallel
+  Axis forward = Axis::kPlusX, up = Axis::kPlusZ;
+  /// Box of the model's points, for results that do not hold it. Without any box, sides are
+  /// unknown.
   std::optional<Box> model_box = {};
-  /// The one model of the search, which outlives the call: for least shifts. Of a vehicle, `bodies`
-  /// are. Without either, shifts are not known.
+  /// The one model of the search, from which least shifts are computed; it must outlive the call. A
+  /// vehicle has `bodies` instead. Without either, shifts are not known.
   const Model* model = nullptr;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;  ///< 0: all cores
   ProgressCallback progress = nullptr;
   StopFlag stop = nullptr;
-  /// Of a vehicle's result: its bodies, those of the search, which outlive the call. Each conflict
-  /// is seen from its body then. Without them sides are unknown, and places are seen from the path.
+  /// Bodies of the search whose result is a vehicle's; they must outlive the call. With them each
+  /// conflict is seen from its body; without them sides are unknown, and places are seen from the
+  /// path.
   std::span<const Body> bodies = {};
 };
 
-/// Colliding points that hang together.
+/// Colliding points that hang together: each has a neighbour within the gap.
 struct Conflict {
-  std::uint32_t id = 0;      ///< 1, 2, ... by chainage_from, then source
-  std::uint64_t points = 0;  ///< colliding ones
-  std::uint64_t source = 0;  ///< the smallest of its points
-  Box box{};                 ///< of its points, metres
-  Vec3 centroid{};           ///< from exact sums of the stored integers
-  /// The least index of a pose that touches one of its points, and the greatest. Between poses, of
-  /// a pose that stands for the way to the next. See Conflicts::has_last_poses.
+  std::uint32_t id = 0;      ///< 1, 2, ... in the order of chainage_from, then source
+  std::uint64_t points = 0;  ///< number of its colliding points
+  std::uint64_t source = 0;  ///< smallest source index of its points
+  Box box{};                 ///< box around its points, metres
+  Vec3 centroid{};           ///< mean of its points, metres, from exact sums of the stored integers
+  /// The least and the greatest index of a pose that touches one of its points. Between poses, each
+  /// index stands for the way from that pose to the next. See Conflicts::has_last_poses.
   std::uint32_t first_pose = 0, last_pose = 0;
-  /// How far along the path first_pose and last_pose are, metres. With motion between poses,
+  /// Chainage of first_pose and of last_pose, in metres along the path. With motion between poses,
   /// chainage_to is that of the pose after last_pose.
   double chainage_from = 0, chainage_to = 0;
   /// Station of the obstacle itself, metres: the chainage of the pose that it is seen from, plus
-  /// how far ahead of that pose the nearest point lies. It is seen from where it is nearest, or,
-  /// without clearances, from its first pose and by the first point that is touched there. None
-  /// where the pose's rotation cannot be inverted.
+  /// how far ahead of that pose the nearest point lies. It is seen from the pose where it is
+  /// nearest; without clearances, from its first pose, by the first point that is touched there.
+  /// None if the pose's rotation cannot be inverted.
   std::optional<double> obstacle_chainage = {};
-  /// How far the vehicle has to be shifted to the left, or to the right, along the Y axis of the
-  /// path's poses, so that the points of this conflict are free at all its poses; metres. Other
-  /// points may need more. None where 2 m do not free them, or the model was not given.
+  /// Least shift of the vehicle to the left, or to the right, along the Y axis of the path's poses,
+  /// that frees the points of this conflict at all its poses; metres. Other points may need more.
+  /// None if 2 m do not free them, or if the model was not given.
   std::optional<double> shift_left = {}, shift_right = {};
-  std::optional<double> least_distance = {};         ///< metres; where the result has clearances
-  std::optional<std::uint32_t> nearest_pose = {};    ///< that has it
-  std::optional<std::uint64_t> nearest_source = {};  ///< and the point
-  std::optional<double> encroachment = {};           ///< radius - least_distance
-  /// Of a model with solids, where the result has clearances: how deep the point that lies deepest
-  /// is inside it, metres, 0 for none; and how many of the points are inside at any pose.
+  std::optional<double> least_distance = {};  ///< least clearance, metres; none without clearances
+  std::optional<std::uint32_t> nearest_pose = {};  ///< pose that has least_distance
+  /// Source index of the point that has least_distance
+  std::optional<std::uint64_t> nearest_source = {};
+  std::optional<double> encroachment = {};  ///< radius - least_distance, metres
+  /// Greatest depth of one of the points inside the model, in metres, 0 if none is inside; and how
+  /// many of the points are inside at any pose. None unless the model has solids and the result has
+  /// clearances.
   std::optional<double> depth = {};
   std::optional<std::uint64_t> points_inside = {};
-  std::optional<Vec3> nearest_point = {};  ///< where it is; not for results before version 3
-  /// On which side of the model or body the points lie that it touches at the first pose
+  /// Position of nearest_source; none for results before version 3
+  std::optional<Vec3> nearest_point = {};
+  /// The side of the model or body on which the points lie that it touches at the first pose
   /// (docs/design/findings.md, "Sides").
   Side side = Side::kUnknown;
-  /// Where the point that obstacle_chainage belongs to lies, metres from the pose's position: to
-  /// the left along the model's own axis, and up. The model's box is not needed. None where the
-  /// pose's rotation cannot be inverted. With ConflictOptions::bodies, of the pose that the
-  /// conflict's body has there.
+  /// Place of the point that obstacle_chainage belongs to, in metres from the pose's position: to
+  /// the left along the model's own axis, and up. The model's box is not needed. None if the pose's
+  /// rotation cannot be inverted. With ConflictOptions::bodies the pose is that of the conflict's
+  /// body.
   std::optional<double> lateral = {}, height = {};
-  std::uint64_t group = 0;  ///< smallest source of the whole group, before it was cut
-  /// Of a vehicle's result, as an index of Result::bodies(): the one that has the least distance,
-  /// or else the one that touches its smallest source of the first pose.
+  std::uint64_t group = 0;  ///< smallest source index of the whole group before it was cut
+  /// Index in Result::bodies() of the body that has the least distance, or else of the body that
+  /// touches the point with the smallest source index of the first pose. None if the result is not
+  /// a vehicle's.
   std::optional<std::uint32_t> body = {};
 };
 
-/// A group of too few points to be listed.
+/// A group of too few points to be listed as a conflict.
 struct SmallGroup {
   std::uint64_t points = 0;
-  std::uint64_t source = 0;  ///< the smallest of its points
-  Box box{};                 ///< of its points, metres
+  std::uint64_t source = 0;  ///< smallest source index of its points
+  Box box{};                 ///< box around its points, metres
   std::uint32_t first_pose = 0, last_pose = 0;
-  double chainage_from = 0, chainage_to = 0;  ///< as Conflict has them
+  double chainage_from = 0, chainage_to = 0;  ///< chainages of the two poses, as in Conflict
 };
 
 struct Conflicts {
-  std::vector<Conflict> listed;  ///< by id
+  std::vector<Conflict> listed;  ///< in the order of their ids
   std::uint64_t colliding_points = 0;
-  std::uint64_t groups = 0;                          ///< before cutting, small ones too
-  std::uint64_t small_groups = 0, small_points = 0;  ///< not listed
-  std::vector<SmallGroup> small;                     ///< those, by chainage_from, then source
-  /// Whether the result keeps the last poses of its points. Those of older releases do not: then a
-  /// conflict's last pose is the greatest first pose of its points, or the nearest pose if that is
-  /// greater, and it may touch them later still.
+  std::uint64_t groups = 0;  ///< number of groups before cutting, small ones included
+  /// Numbers of the groups that are not listed, and of their points
+  std::uint64_t small_groups = 0, small_points = 0;
+  std::vector<SmallGroup> small;  ///< the groups that are not listed, by chainage_from, then source
+  /// Whether the result keeps the last poses of its points. Results of older releases do not. Then
+  /// a conflict's last pose is the greatest first pose of its points, or the nearest pose if that
+  /// is greater, and the model may touch the points later still.
   bool has_last_poses = false;
-  double path_length = 0;  ///< metres
-  /// The longest stretch of the path that one group has, before it was cut, metres.
+  double path_length = 0;  ///< length of the path, metres
+  /// Longest stretch of the path that a single group has before it is cut, in metres.
   double longest_group = 0;
   std::uint64_t longest_group_points = 0;
 };
 
-/// Groups the colliding points of a result. poses: those of the search. conflict_of: where given,
-/// becomes the id of each row of the result, 0 for points of small groups. Throws InputError for
-/// poses or bodies of another search, UsageError for a result without first poses; Interrupted when
-/// asked to stop.
+/// Groups the colliding points of a result into conflicts. poses: the poses of the search.
+/// conflict_of: where given, becomes the conflict's id for each row of the result, 0 for points of
+/// small groups. Throws InputError for poses or bodies of another search, UsageError for a result
+/// without first poses; Interrupted when asked to stop.
 Conflicts find_conflicts(const Result& result, const std::vector<Pose>& poses,
                          const ConflictOptions& options = {},
                          std::vector<std::uint32_t>* conflict_of = nullptr);

@@ -12,28 +12,30 @@
 
 namespace clearway {
 
-/// Every member has a value, so that {.memory_bytes = ...} compiles without a warning.
+/// How scans are converted. Every member has a value, so that {.memory_bytes = ...} compiles
+/// without a warning.
 struct ConvertOptions {
-  /// Metres, of the stored integers; none: as the input has it, else the finest power of ten from
-  /// 1e-6 to 1e-3 that fits.
+  /// Step of the stored integers, in metres. None: the step of the input, or else the finest power
+  /// of ten from 1e-6 to 1e-3 that fits.
   std::optional<double> scale = std::nullopt;
-  std::uint32_t cell_points = 65536;  ///< 64 to 2^20
-  std::optional<double> regular_size =
-      std::nullopt;  ///< metres: cells are cubes of it; none: adaptive
+  std::uint32_t cell_points = 65536;  ///< points of a cell, 64 to 2^20
+  /// Side of the cubes that cells are, in metres; none: cells are adaptive.
+  std::optional<double> regular_size = std::nullopt;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   int threads = 0;  ///< 0: all cores
   /// The unit of the coordinates of inputs that name none: the metre, or a foot. Inputs that name a
-  /// unit must name this one. None: the unit stays unknown and is taken for the metre.
+  /// unit must name this one. None: the unit stays unknown and is treated as the metre.
   FileUnit unit = {};
-  bool ignore_crs = false;  ///< coordinates in degrees, or in different units, as they are
-  /// Of x, y and z in texts: numbers counted from 1, or names of the header. Empty: as they say.
+  bool ignore_crs = false;  ///< takes coordinates in degrees, or in different units, as they are
+  /// Columns of x, y and z in texts: numbers counted from 1, or names of the header. Empty: as the
+  /// files declare them.
   std::vector<std::string> columns = {};
   bool skip_unreadable = false;  ///< leaves out files that cannot be read, with a warning
-  bool strict = false;           ///< refuses every warning, once all are told, and writes no store
-  bool overwrite = false;        ///< an existing store
-  bool resume = false;           ///< leaves a store of the same inputs as it is
+  bool strict = false;           ///< refuses any warning: all are told, then no store is written
+  bool overwrite = false;        ///< replaces an existing store
+  bool resume = false;           ///< leaves an existing store of the same inputs as it is
   ProgressCallback progress = nullptr;
-  MessageCallback message = nullptr;  ///< notes, and the warnings that the report holds
+  MessageCallback message = nullptr;  ///< receives notes, and the warnings that the report holds
   StopFlag stop = nullptr;
 };
 
@@ -44,26 +46,29 @@ struct StageSeconds {
 };
 
 struct ConvertReport {
-  bool was_finished = false;  ///< the store was there already: nothing was converted
-  std::uint64_t points = 0;   ///< stored
+  bool was_finished = false;  ///< true if the store existed already, so that nothing was converted
+  std::uint64_t points = 0;   ///< number of points stored
   std::uint64_t cells = 0;
-  std::uint64_t non_finite_points = 0;    ///< left out
-  std::uint64_t absent_points = 0;        ///< records without a point: beams without a return
-  Vec3 scale{}, offset{};                 ///< of the stored integers, metres
-  std::optional<Box> box = std::nullopt;  ///< of the stored points; none where there is none
-  double largest_change = 0;              ///< of any coordinate by rounding to the scale, metres
+  /// Number of points left out because a coordinate is not finite
+  std::uint64_t non_finite_points = 0;
+  /// Number of records without a point, such as beams without a return
+  std::uint64_t absent_points = 0;
+  Vec3 scale{}, offset{};  ///< scale and offset of the stored integers, metres
+  /// Box around the stored points; none if there are no points
+  std::optional<Box> box = std::nullopt;
+  double largest_change = 0;  ///< greatest change of a coordinate by rounding to the scale, metres
   std::uint64_t temporary_bytes = 0;
   std::uint64_t output_bytes = 0;
-  /// Wall clock; count_seconds holds all before too.
+  /// Wall-clock seconds of the stages; count_seconds includes everything before that stage.
   double count_seconds = 0, distribute_seconds = 0, partition_seconds = 0, confirm_seconds = 0;
   std::vector<StageSeconds> busy_seconds = {};
   std::vector<Message> warnings = {};
 };
 
-/// Turns scans into a store: LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK and text; files and folders,
-/// or "-" alone for LAS or LAZ on standard input. Throws UsageError, InputError, ResourceError;
-/// Interrupted when asked to stop. Whatever happens, nothing stands under the output's name that is
-/// not complete.
+/// Converts scans into a store. The inputs are LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK and text;
+/// files and folders, or "-" alone for LAS or LAZ on standard input. Throws UsageError, InputError,
+/// ResourceError; Interrupted when asked to stop. Whatever happens, only a complete store ever has
+/// the output's name.
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options = {});
 

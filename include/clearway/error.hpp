@@ -8,57 +8,59 @@ namespace clearway {
 /// What the caller can do about an error. A program words it in terms of its own options.
 enum class Remedy {
   kNone,
-  kMoreMemory,        ///< amount: bytes that are enough, 0: not known
-  kMoreDeviceMemory,  ///< amount: bytes of each GPU that are enough
-  kOtherGpu,          ///< or the CPU
-  kCpuDevice,         ///< a GPU failed, or there is none
-  kLessDeviceMemory,  ///< or the CPU
-  kLessMemory,        ///< or the CPU
+  kMoreMemory,        ///< amount: bytes that are enough, 0 if not known
+  kMoreDeviceMemory,  ///< amount: bytes that are enough on each GPU
+  kOtherGpu,          ///< another GPU, or the CPU
+  kCpuDevice,         ///< the CPU, because a GPU failed or there is none
+  kLessDeviceMemory,  ///< a smaller budget of GPU memory, or the CPU
+  kLessMemory,        ///< a smaller memory budget, or the CPU
   kFewerThreads,
-  kSweepEngine,  ///< the engine cannot do what was asked; engine sweep can
+  kSweepEngine,  ///< use engine sweep, which can do what was asked; the engine chosen cannot
   kGridEngine,
   kCudaDevice,
   kMoreCellPoints,
   kFewerCellPoints,
-  kScale,           ///< amount: a step in metres that fits, 0: a coarser one
-  kOneScale,        ///< for all inputs; amount: a step in metres, 0: the caller's choice
-  kAcceptScale,     ///< amount: the step in metres that the range needs, if that is accepted
-  kColumns,         ///< of a text, which the caller can name
-  kStandardInput,   ///< where the file can be read from, to its end
-  kSampleMesh,      ///< the file is a mesh where points are expected; its surface gives some
-  kSkipUnreadable,  ///< one of several inputs; the others can be converted without it
+  kScale,        ///< amount: a step in metres that fits, 0: any coarser one
+  kOneScale,     ///< one scale for all inputs; amount: a step in metres, 0: the caller's choice
+  kAcceptScale,  ///< amount: the step in metres that the range needs, if that is accepted
+  kColumns,      ///< the caller can name the columns of a text file
+  /// Give a path from which the file can be read to its end, instead of standard input
+  kStandardInput,
+  kSampleMesh,      ///< the file is a mesh where points are expected; its surface can be sampled
+  kSkipUnreadable,  ///< one of several inputs is bad; the others can be converted without it
   kIgnoreCrs,
   kOverwrite,           ///< the output exists
-  kReadOrOverwrite,     ///< the output exists, and is the answer that was asked for
+  kReadOrOverwrite,     ///< the output exists, and is already the answer that was asked for
   kResumeOrOverwrite,   ///< an unfinished run of this output exists
-  kOverwriteNotResume,  ///< what was to be resumed is damaged
-  kRestoreOptions,      ///< what was to be resumed belongs to other options or files
-  kNameFormat,          ///< of the trajectory
-  kNameCrs,             ///< that the trajectory is to be in
-  kDeclareAngles,       ///< unit and frame of the trajectory's angles
-  kDeclareLength,       ///< unit of the trajectory's positions
+  kOverwriteNotResume,  ///< the run that was to be resumed is damaged
+  kRestoreOptions,      ///< the run that was to be resumed belongs to other options or files
+  kNameFormat,          ///< name the trajectory's format
+  kNameCrs,        ///< name the coordinate reference system that the trajectory is converted to
+  kDeclareAngles,  ///< declare unit and frame of the trajectory's angles
+  kDeclareLength,  ///< declare the unit of the trajectory's positions
   kAllowNonRigid,
   kAskForClearance,
   kAskForFirstPose,
-  kSameTrajectory,   ///< the file and options that the search had
-  kSameModel,        ///< likewise
-  kSameEnvironment,  ///< the store that was searched
+  kSameTrajectory,   ///< give the trajectory's file and options that the search had
+  kSameModel,        ///< give the model's file and options that the search had
+  kSameEnvironment,  ///< give the store that was searched
   kAskForProfile,
-  kModelSpacing,  ///< of a mesh; amount: metres that fit, 0: the caller's choice
-  kResume,        ///< the same call goes on from what was finished
-  kMerge,         ///< the file is one part of a result
-  kModelPoints,   ///< points of the surface can be asked about, where the surface cannot
-  kOtherPart,     ///< the output is not of the part, or the whole, that is asked for
+  kModelSpacing,  ///< name a spacing for the mesh; amount: metres that fit, 0: the caller's choice
+  kResume,        ///< repeat the same call, which continues from what was finished
+  kMerge,         ///< merge the parts first: the file is one part of a result
+  /// Search or ask with points of the surface, where the surface itself is not possible
+  kModelPoints,
+  kOtherPart,  ///< the output belongs to another part, or to the whole, than the one asked for
 };
 
-/// What the world does wrong. A program chooses its exit code by the type.
+/// Base of all errors that the outside world causes. A program chooses its exit code by the type.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& what, Remedy remedy = Remedy::kNone, double amount = 0)
       : std::runtime_error(what), remedy_(remedy), amount_(amount) {}
 
   Remedy remedy() const { return remedy_; }
-  double amount() const { return amount_; }  ///< as the remedy says
+  double amount() const { return amount_; }  ///< number that belongs to the remedy: see Remedy
 
  private:
   Remedy remedy_;
@@ -78,13 +80,14 @@ class InputError : public Error {
   using Error::Error;
 };
 
-/// I/O failure or a resource that is not there (disk full, budget too small). Exit code 4.
+/// An I/O failure, or a lack of some resource, such as a full disk or too small a memory budget.
+/// Exit code 4.
 class ResourceError : public Error {
  public:
   using Error::Error;
 };
 
-/// Stopped on request, with nothing lost that a journal holds. Exit code 5.
+/// Stopped on request; whatever a journal holds is kept. Exit code 5.
 class Interrupted : public Error {
  public:
   using Error::Error;

@@ -6,13 +6,13 @@
 
 namespace clearway {
 
-/// An environment point of the answer, and the pose at which it counts.
+/// An environment point of the answer, and the pose that it belongs to.
 struct FoundPlace {
   std::uint64_t source = 0;
   std::uint32_t pose = 0;
   Vec3 xyz{};
-  double distance = 0;     ///< metres, where one was asked for
-  std::uint32_t body = 0;  ///< of a query with bodies; not of a profile
+  double distance = 0;     ///< metres, if a distance was asked for
+  std::uint32_t body = 0;  ///< index of the body, in queries with bodies; not set for a profile
   friend bool operator==(const FoundPlace&, const FoundPlace&) = default;
 };
 

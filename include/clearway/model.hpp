@@ -14,11 +14,11 @@
 
 namespace clearway {
 
-/// The solid of a triangle that belongs to none.
+/// Entry of Model::solid_of for a triangle that belongs to no solid.
 inline constexpr std::uint32_t kNoSolid = 0xffffffff;
 
-/// What moves through the environment: points, or the surface of triangles, of which some may be
-/// closed solids. In a frame of its own, metres.
+/// What moves through the environment: points, or the surface of triangles, some of which may form
+/// closed solids. Coordinates are in metres, in the model's own frame.
 struct Model {
   Model() = default;
   Model(std::vector<Vec3> points)  // NOLINT(google-explicit-constructor): points are a model too
@@ -29,25 +29,27 @@ struct Model {
       : vertices(std::move(corners)), triangles(std::move(surface)), solid_of(std::move(solids)) {}
 
   std::vector<Vec3> vertices;  ///< the points, or the corners of the triangles
-  /// Three indices of vertices each: the model is their surface. None: it is its points.
+  /// Triangles as three indices of vertices each; the model is their surface. If empty, the model
+  /// is its points.
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// The number of each triangle's solid, from 0, or kNoSolid: what is inside collides too. The
+  /// Number of each triangle's solid, from 0, or kNoSolid; points inside a solid collide too. The
   /// triangles of a solid are closed: each edge is used as often in one direction as in the other,
-  /// by vertices of the same values. None: nothing has an inside.
+  /// by vertices of the same values. If empty, nothing has an inside.
   std::vector<std::uint32_t> solid_of;
-  /// Metres. The points are samples of a mesh, and no place of its surface is farther than this
-  /// from one of them; so the surface may come closer than the radius, by as much, to a point that
-  /// does not collide. The answer says so. 0: the model is no sampled mesh.
+  /// Largest gap between the samples of a mesh, in metres: no place of its surface is farther than
+  /// this from a point of the model. The surface may therefore come closer than the radius, by as
+  /// much, to a point that does not collide, and the answer says so. 0: the model is no sampled
+  /// mesh.
   double spacing = 0;
 
   bool empty() const { return vertices.empty(); }
   bool is_surface() const { return !triangles.empty(); }
-  bool is_solid() const { return !solid_of.empty(); }  ///< then it is a surface too
+  bool is_solid() const { return !solid_of.empty(); }  ///< true only for a surface
 
-  /// How many triangles a surface has, or how many points.
+  /// Number of triangles of a surface, or of points.
   std::uint64_t element_count() const { return is_surface() ? triangles.size() : vertices.size(); }
 
-  /// One more than the greatest number of a solid.
+  /// Number of solids: one more than the greatest number in solid_of.
   std::uint64_t solid_count() const {
     std::uint64_t count = 0;
     for (const std::uint32_t solid : solid_of) {
@@ -59,15 +61,16 @@ struct Model {
   friend bool operator==(const Model&, const Model&) = default;
 };
 
-/// What the file of a model is searched as. The surface of a mesh becomes points only where the
-/// caller asks for points, because a search of points can miss what comes closer to the surface.
+/// What the file of a model is searched as. A mesh's surface becomes points only if the caller asks
+/// for points, because a search of points can miss what comes closer to the surface.
 enum class ModelAs {
   /// A mesh as its surface, and any other file as its points. With ModelOptions::spacing or
-  /// ModelOptions::vertices_only the same as kPoints.
+  /// ModelOptions::vertices_only it means kPoints.
   kAuto,
   kPoints,   ///< samples of a mesh's surface, or the points of the file
   kSurface,  ///< the triangles of a mesh; a file without any is refused
-  kSolid,    ///< as kSurface, and what its closed parts enclose; without any it is refused
+  /// The triangles and what their closed parts enclose; a file without closed parts is refused
+  kSolid,
 };
 
 struct ModelOptions {
@@ -76,45 +79,45 @@ struct ModelOptions {
   /// this from a model point. A point that the search finds touches the surface; one that it
   /// misses may be as close to the surface as radius - spacing. 0: a quarter of `radius`.
   double spacing = 0;
-  /// The unit of the file, for example kMetresPerMillimetre or FileUnit::named("us-ft"); none: as
-  /// the file declares, and where it does not, coordinates are taken as they are.
+  /// The unit of the file, for example kMetresPerMillimetre or FileUnit::named("us-ft"). None: the
+  /// unit that the file declares; if it declares none, coordinates are taken as they are.
   FileUnit unit = {};
-  /// Metres of the environment's unit, as Store::metres_per_unit() has them, into which a known
-  /// unit is converted.
+  /// Length of the environment's unit in metres, as Store::metres_per_unit() returns it. Models in
+  /// a known unit are converted to it.
   double environment_unit = 1;
-  /// Takes the vertices of a mesh alone, and not its surface.
+  /// Takes only the vertices of a mesh, without its surface.
   bool vertices_only = false;
-  /// Leaves out the points whose z in the model's frame is below it, metres: wheels, for example,
-  /// which stand on the ground. Triangles are cut there.
+  /// Height in the model's frame, metres: points whose z is below it are left out, for example
+  /// wheels, which stand on the ground. Triangles are cut at this height.
   std::optional<double> above = {};
-  /// Radius of the search, metres, where it is known. The default of `spacing` follows from it, and
-  /// whether the bent faces of a mesh are worth a warning. 0: not known, and a mesh that is to
-  /// become points needs a spacing.
+  /// Radius of the search in metres, if it is known. It sets the default of `spacing`, and whether
+  /// the bent faces of a mesh are worth a warning. 0: not known; then a mesh that is to become
+  /// points needs a spacing.
   double radius = 0;
-  /// The environment names no unit, and environment_unit is assumed: a file in another unit is then
-  /// warned of ("unit-assumed").
+  /// Whether environment_unit is only assumed because the environment names no unit. A file in
+  /// another unit then gives the warning "unit-assumed".
   bool environment_unit_is_assumed = false;
 
-  /// Whether points are asked for in another way than by `as`.
+  /// Whether an option other than `as` asks for points.
   bool asks_for_points() const { return spacing > 0 || vertices_only; }
 };
 
-/// The spacing of a mesh's samples where a search of this radius names none.
+/// Default spacing of a mesh's samples for a search radius, both in metres.
 inline double default_spacing(double radius) { return radius / 4; }
 
-/// Reads a model: points, of a scan's formats, or a mesh (STL, OBJ, PLY with faces, OFF). What a
-/// mesh becomes is what options.as says. Corners are where the samples of kPoints are drawn from;
-/// those that nothing uses are left out. Of kSolid those at one place are one; a height as
-/// options.above would leave solids open, and throws UsageError. Throws InputError for malformed
-/// files, for a model without points, for coordinates that are not finite, and for a mesh that is
-/// to become points without a spacing; UsageError for options that contradict each other.
-/// messages: where given, notes and warnings are appended ("mesh-bent-faces",
-/// "mesh-crossing-faces", "loose-vertices").
+/// Reads a model from points, in the formats of scans, or from a mesh (STL, OBJ, PLY with faces,
+/// OFF). options.as says what a mesh becomes. The corners of a surface are the vertices from which
+/// kPoints draws its samples, without those that no face uses. For kSolid, corners at the same
+/// place become one; a height in options.above would leave solids open and throws UsageError.
+/// Throws InputError for malformed files, for a model without points, for coordinates that are not
+/// finite, and for a mesh that is to become points without a spacing; UsageError for options that
+/// contradict each other. messages: where given, notes and warnings are appended
+/// ("mesh-bent-faces", "mesh-crossing-faces", "loose-vertices").
 Model read_model(const std::filesystem::path& path, const ModelOptions& options = {},
                  std::vector<Message>* messages = nullptr);
 
-/// Reads a model as ModelAs::kPoints does, and returns the points alone. A search of them cannot
-/// say how far the surface of a mesh may be from the points; Model::spacing of read_model() can.
+/// Reads a model as ModelAs::kPoints does, and returns only its points. A search of them cannot say
+/// how far the surface of a mesh may be from the points; Model::spacing of read_model() can.
 std::vector<Vec3> read_model_points(const std::filesystem::path& path, const ModelOptions& options,
                                     std::vector<Message>* messages = nullptr);
 

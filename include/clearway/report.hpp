@@ -19,46 +19,46 @@
 namespace clearway {
 
 struct ReportOptions {
-  std::string title = {};  ///< empty: made of the names below
-  /// For the head of the page, as they are; empty ones are left out.
+  std::string title = {};  ///< if empty, made of the names below
+  /// Texts for the head of the page, shown as they are; empty ones are left out.
   std::string project = {}, client = {}, author = {};
-  std::string date = {};  ///< as it is to stand on the page; nothing else in it depends on the time
-  /// Names of the files for people; empty ones are left out.
+  std::string date = {};  ///< shown as it is; nothing else on the page depends on the time
+  /// Names of the files for the reader; empty ones are left out.
   std::string result_name = {}, environment_name = {}, model_name = {}, trajectory_name = {};
-  /// What was left out of the model's file: points whose z is below it, and how many. For the page
-  /// to say; `model` is without them.
+  /// Height of ModelOptions::above, and how many points below it were left out of the model's file,
+  /// for the page to say. `model` is already without them.
   std::optional<double> model_above = {};
   std::uint64_t model_left_out = 0;
-  /// Metres, ascending, one to three: distances below which a point counts as hit, near or watch.
-  /// The last is at least the radius, and none above it is beyond the clearance asked for. Empty:
-  /// the radius, and the clearance where that is larger.
+  /// Distances in metres, ascending, one to three, below which a point counts as hit, near or
+  /// watch. The last is at least the radius, and none above it exceeds the clearance asked for.
+  /// Empty: the radius, and the clearance if that is larger.
   std::vector<double> classes = {};
-  std::uint64_t max_points = 1'000'000;  ///< environment points on the page at most
-  /// How conflicts are found; memory, threads, progress and stop flag hold for all of the report.
-  /// Its bodies do not count, those below do.
+  std::uint64_t max_points = 1'000'000;  ///< greatest number of environment points on the page
+  /// How conflicts are found; its memory, threads, progress and stop flag apply to the whole
+  /// report. Its bodies are not used: `bodies` below are.
   ConflictOptions conflicts = {};
-  PoseLabels labels = {};  ///< of the poses, where the trajectory has them
-  /// Warnings for the page to show, such as those of reading model and trajectory. What the search
-  /// warned of need not be among them: it is found again from store, model and poses.
+  PoseLabels labels = {};  ///< times and names of the poses, if the trajectory has them
+  /// Warnings for the page to show, such as those of reading model and trajectory. Warnings of the
+  /// search need not be among them, because they are found again from store, model and poses.
   std::vector<Message> warnings = {};
   bool overwrite = false;
-  /// Of a vehicle's result: its bodies; then the model is empty.
+  /// Bodies of the search, for the result of a vehicle; then the model is empty.
   std::vector<Body> bodies = {};
 };
 
 struct ReportSummary {
-  bool clear = true;  ///< the verdict is Verdict::kClear
+  bool clear = true;  ///< whether the verdict is Verdict::kClear
   Verdict verdict = Verdict::kClear;
-  std::uint64_t bytes = 0;  ///< of the page
-  Conflicts conflicts;      ///< empty where the result has no first poses
-  /// One JSON object: what the page says, without its points.
+  std::uint64_t bytes = 0;  ///< size of the page
+  Conflicts conflicts;      ///< empty if the result has no first poses
+  /// One JSON object with what the page says, without its points.
   std::string facts;
 };
 
-/// Writes one HTML file that needs nothing else: verdict, profile, plan, conflicts, 3-D view. model
-/// and poses: those of the search. Throws InputError where model, poses or store are not those of
-/// the result, or one is damaged; UsageError for classes that the result cannot tell apart and for
-/// an existing output; ResourceError; Interrupted when asked to stop.
+/// Writes the report as one self-contained HTML file: verdict, profile, plan, conflicts, 3-D view.
+/// model and poses are those of the search. Throws InputError where model, poses or store are not
+/// those of the result, or one is damaged; UsageError for classes that the result cannot tell apart
+/// and for an existing output; ResourceError; Interrupted when asked to stop.
 ReportSummary write_report(const Result& result, const Store& store, const Model& model,
                            const std::vector<Pose>& poses, const std::filesystem::path& output,
                            const ReportOptions& options = {});

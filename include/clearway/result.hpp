@@ -17,28 +17,30 @@ namespace clearway {
 
 class ResultReader;
 
-/// Distances of environment points to the model, ascending by source.
+/// Distances of environment points to the model, one row per point, ascending by source index.
 struct Clearances {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;                 ///< empty in files before version 3
   std::vector<double> distance;          ///< metres, the least over all poses
-  std::vector<std::uint32_t> pose;       ///< the first one that has it
-  std::vector<std::uint32_t> body = {};  ///< that has it there; empty without bodies
+  std::vector<std::uint32_t> pose;       ///< the first pose that has this distance
+  std::vector<std::uint32_t> body = {};  ///< the body that has this distance; empty without bodies
 };
 
-/// Of every pose of the trajectory the least distance between the model and the environment.
+/// For every pose of the trajectory, the least distance between the model and the environment.
 struct Profile {
   static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
-  /// Metres; infinity where it is not below the one asked for; NaN where no body of a vehicle has a
-  /// pose, because nothing is known there. Results of earlier releases have infinity there too.
+  /// Metres; infinity if the distance is not below the one asked for, and NaN where no body of a
+  /// vehicle has a pose, because nothing is known there. Results of earlier releases have infinity
+  /// there too.
   std::vector<double> distance;
-  std::vector<std::uint64_t> source;  ///< of the point, of several the smallest; or kNoPoint
-  std::vector<Vec3> xyz;              ///< of the point; NaN where there is none
-  std::vector<double> chainage;       ///< metres along the positions of the path
+  /// Source index of the nearest point, the smallest if several are; or kNoPoint
+  std::vector<std::uint64_t> source;
+  std::vector<Vec3> xyz;         ///< position of the nearest point; NaN where there is none
+  std::vector<double> chainage;  ///< metres along the positions of the path
 };
 
-/// A result that search() wrote. Columns are read when they are asked for; row i of each is the
-/// same colliding point. Throws InputError where the file is damaged, ResourceError where it cannot
+/// A result that search() wrote. Columns are read when they are asked for; row i of each belongs to
+/// the same colliding point. Throws InputError if the file is damaged, ResourceError if it cannot
 /// be read.
 class Result {
  public:
@@ -47,35 +49,38 @@ class Result {
   Result(Result&&) noexcept;
   Result& operator=(Result&&) noexcept;
 
-  std::uint64_t size() const;  ///< colliding points
+  std::uint64_t size() const;  ///< number of colliding points
   const QueryParameters& parameters() const;
   std::uint64_t environment_points() const;
-  const IgnoredPointCounts& ignored() const;  ///< of the parameters' lists
+  /// Counts of the ignored classes and boxes of the parameters
+  const IgnoredPointCounts& ignored() const;
   std::uint64_t poses() const;
-  /// The verdict and the places that matter most. Reads all tables.
+  /// The verdict and the places that matter most. Reads all tables of the file.
   Answer answer() const;
 
-  std::vector<std::uint64_t> source() const;  ///< indices in the order of the scans, ascending
+  std::vector<std::uint64_t> source() const;  ///< source indices, ascending
   std::vector<Vec3> xyz() const;
-  /// As QueryParameters::first_pose defines it; empty unless the query asked for it. Files of 0.1.0
-  /// with motion between poses may be one higher: their ways did not include their ends.
+  /// The first pose of each point, as QueryParameters::first_pose defines it; empty unless the
+  /// query asked for it. In files of release 0.1.0 with motion between poses it may be one higher,
+  /// because their ways did not include their ends.
   std::vector<std::uint32_t> first_pose() const;
   /// The greatest index of a pose that touches each point; between poses, the start of the last way
-  /// that does. Empty where there are no first poses, and in files of older releases.
+  /// that does. Empty if there are no first poses, and for files of older releases.
   std::vector<std::uint32_t> last_pose() const;
-  /// Names of the bodies, where the query has several; otherwise none.
+  /// Names of the bodies of a query that has several; otherwise empty.
   const std::vector<std::string>& bodies() const;
-  /// Of the first pose, as an index of bodies(); empty unless the query has bodies and asked for
-  /// first poses.
+  /// Index in bodies() of the body that touches each point at its first pose. Empty unless the
+  /// query has bodies and asked for first poses.
   std::vector<std::uint32_t> first_body() const;
-  Clearances clearance() const;  ///< empty unless the query asked for it
-  Profile profile() const;       ///< likewise
-  /// As Query::model_spacing, the greatest of all bodies; 0 in files of earlier releases, too.
+  Clearances clearance() const;  ///< empty unless the query asked for clearances
+  Profile profile() const;       ///< empty unless the query asked for a profile
+  /// Largest gap between the samples of the mesh, metres, the greatest of all bodies; 0 if no model
+  /// is a sampled mesh, and in files of earlier releases.
   double model_spacing() const;
-  /// Of the model's points; none in files before version 3.
+  /// Box around the model's points; none in files before version 3.
   std::optional<Box> model_box() const;
 
-  /// For the library itself.
+  /// The reader behind this result, for the library itself.
   const ResultReader& reader() const { return *reader_; }
 
  private:

@@ -6,9 +6,9 @@
 namespace clearway {
 
 /// One of the parts that a query's work is divided into, each for a run of its own; merge() makes
-/// one result of all of them.
+/// one result of all parts.
 struct Shard {
-  static constexpr std::uint32_t kMost = 1000;  ///< parts of a query
+  static constexpr std::uint32_t kMost = 1000;  ///< greatest number of parts of a query
 
   std::uint32_t number = 1;  ///< from 1 to count
   std::uint32_t count = 1;
@@ -17,12 +17,12 @@ struct Shard {
   friend bool operator==(const Shard&, const Shard&) = default;
 };
 
-/// "2/7"
+/// The shard in short, such as "2/7".
 inline std::string to_string(const Shard& shard) {
   return std::to_string(shard.number) + "/" + std::to_string(shard.count);
 }
 
-/// "part 2 of 7"
+/// The shard in words, such as "part 2 of 7".
 inline std::string in_words(const Shard& shard) {
   return "part " + std::to_string(shard.number) + " of " + std::to_string(shard.count);
 }

@@ -13,11 +13,11 @@ namespace clearway {
 
 class StoreReader;
 
-/// An environment that convert() made. Its index is in memory, its points stay in the file.
+/// An environment that convert() made. Its index is in memory, while its points stay in the file.
 class Store {
  public:
-  /// Throws InputError when the file is not an intact, complete store of this version;
-  /// ResourceError when it cannot be read.
+  /// Opens a store. Throws InputError if the file is not an intact, complete store of this version;
+  /// ResourceError if it cannot be read.
   explicit Store(const std::filesystem::path& path);
   ~Store();
   Store(Store&&) noexcept;
@@ -25,19 +25,20 @@ class Store {
 
   std::uint64_t point_count() const;
   std::uint64_t cell_count() const;
-  Box box() const;  ///< of all points; of no points: zeros
-  /// How many points each class has, 256 numbers; empty where the points have no classes.
+  Box box() const;  ///< box around all points; zeros if there are no points
+  /// How many points each class has, 256 numbers; empty if the points have no classes.
   std::vector<std::uint64_t> class_points() const;
-  const std::string& crs_wkt() const;  ///< as the scans had it, or empty
-  /// "metre", "foot", "us-survey-foot", "degree" or "unknown".
+  /// Coordinate reference system as the scans gave it, or empty
+  const std::string& crs_wkt() const;
+  /// The unit of the coordinates: "metre", "foot", "us-survey-foot", "degree" or "unknown".
   std::string length_unit() const;
-  /// Metres of that unit, as ModelOptions::environment_unit takes them; 1 where it is unknown.
+  /// Metres of length_unit(), as ModelOptions::environment_unit takes them; 1 if it is unknown.
   double metres_per_unit() const;
-  /// What the conversion warned of, with codes as "store-same-place"; at most 64.
+  /// The warnings of the conversion, with codes such as "store-same-place"; at most 64.
   std::vector<Message> warnings() const;
   const std::filesystem::path& path() const { return path_; }
 
-  /// For the library itself.
+  /// The reader behind this store, for the library itself.
   const StoreReader& reader() const { return *reader_; }
 
  private:

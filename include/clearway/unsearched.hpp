@@ -17,27 +17,28 @@ namespace clearway {
 struct UnsearchedStretch {
   std::uint32_t first_pose = 0, last_pose = 0;  ///< poses of the path at its two ends
   double chainage_from = 0, chainage_to = 0;    ///< metres along the positions of the path
-  std::vector<std::uint32_t> bodies;            ///< those without a pose, ascending
+  std::vector<std::uint32_t> bodies;            ///< the bodies without a pose, ascending
   bool has_answer = false;                      ///< whether other bodies were searched there
 };
 
 /// The stretches on which not all of `bodies` are searched, in the order of the path. A body is
-/// searched from one pose of the path to the next where it has both poses. Empty for no bodies,
+/// searched from one path pose to the next if it has both poses. Empty if there are no bodies,
 /// because a model has every pose of the path.
 std::vector<UnsearchedStretch> unsearched_stretches(std::span<const Pose> path,
                                                     std::span<const Body> bodies);
 
 /// How much of a path was searched, in metres along its positions.
 struct SearchedLength {
-  double path = 0;   ///< the whole path
-  double whole = 0;  ///< where all bodies are searched
-  double part = 0;   ///< where some bodies are searched and others are not
+  double path = 0;   ///< length of the whole path
+  double whole = 0;  ///< length of the stretches on which all bodies are searched
+  /// Length of the stretches on which some bodies are searched and others are not
+  double part = 0;
 
   friend bool operator==(const SearchedLength&, const SearchedLength&) = default;
 };
 
-/// First and last pose of each run of poses of the path, ascending, at which no body has a pose.
-/// Empty for no bodies.
+/// First and last pose of each run of path poses at which no body has a pose, ascending. Empty if
+/// there are no bodies.
 std::vector<std::array<std::uint32_t, 2>> poses_without_bodies(std::size_t path_poses,
                                                                std::span<const Body> bodies);
 

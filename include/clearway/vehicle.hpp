@@ -12,19 +12,20 @@
 namespace clearway {
 
 struct VehicleOptions {
-  /// Of the models of all bodies; where a body has a model_unit, that one counts. Lengths of the
-  /// file that have a unit become those of environment_unit.
+  /// How the models of all bodies are read; a body's own model_unit overrides the unit. Lengths of
+  /// the vehicle's file that have a unit are converted to environment_unit.
   ModelOptions model = {};
-  TrajectoryOptions trajectory = {};  ///< of bodies that have one of their own
-  int threads = 0;                    ///< 0: all cores; the bodies do not depend on it
+  /// How the trajectories of bodies that have one of their own are read
+  TrajectoryOptions trajectory = {};
+  int threads = 0;  ///< 0: all cores; the bodies do not depend on the number
 };
 
-/// Reads the JSON file of a vehicle (docs/guide/vehicles.md), and the files that it names: its
-/// bodies, in the file's order, at the poses that they have while the vehicle follows `path`. They
-/// are what Query::bodies takes, `path` is Query::poses. warnings: where given, notes and warnings
-/// of the files, and of what is missing or odd at poses, are appended. Throws InputError naming the
-/// key, as "bodies[1].pivots"; ResourceError where a file cannot be read; UsageError for options
-/// that contradict a file.
+/// Reads the JSON file of a vehicle (docs/guide/vehicles.md) and the files that it names. Returns
+/// its bodies in the file's order, with the poses that they have while the vehicle follows `path`;
+/// they are what Query::bodies takes, and `path` is Query::poses. warnings: where given, notes and
+/// warnings about the files, and about what is missing or odd at poses, are appended. Throws
+/// InputError that names the key, such as "bodies[1].pivots"; ResourceError where a file cannot be
+/// read; UsageError for options that contradict a file.
 std::vector<Body> read_vehicle(const std::filesystem::path& file, const std::vector<Pose>& path,
                                const VehicleOptions& options = {},
                                std::vector<Message>* warnings = nullptr);

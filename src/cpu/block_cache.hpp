@@ -9,14 +9,15 @@
 
 namespace clearway {
 
-/// Decoded positions of recently used blocks: a direct-mapped cache of fixed size, one a thread.
+/// Decoded positions of recently used blocks: a direct-mapped cache of fixed size, one for each
+/// thread.
 class BlockCache {
  public:
   static constexpr std::uint32_t kEntries = 1024;  // 1.5 MiB
 
   explicit BlockCache(const PackedCloud& cloud);
 
-  /// Positions of the block's `count` points; valid until the next call. Throws InputError when the
+  /// Positions of the block's `count` points; valid until the next call. Throws InputError if the
   /// cell's bytes are damaged.
   Columns block(std::uint32_t cell, std::uint32_t block, std::uint32_t count);
 
@@ -36,7 +37,7 @@ class BlockCache {
   const PackedCloud& cloud_;
   std::vector<std::uint64_t> tags_;
   std::vector<Positions> entries_;
-  std::uint32_t open_cell_ = 0xffffffff;  ///< the cell that chunks_ are of
+  std::uint32_t open_cell_ = 0xffffffff;  ///< the cell that chunks_ belong to
   std::array<PackedChunk<std::int32_t>, 3> chunks_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kPairsWorthThreads = 1'000'000;
 
-/// What the model consists of: points or triangles.
+/// The elements that the model consists of: points or triangles.
 template <typename Element>
 std::vector<Element> elements_of(const Query& query);
 
@@ -49,7 +49,7 @@ bool touched(const Vec3& e, const std::vector<Element>& moved, double radius) {
   return false;
 }
 
-/// The same on the way from a pose to the next, both included.
+/// Whether e collides on the way from a pose to the next, both included.
 bool touched_on_way(const Vec3& e, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
                     double radius) {
   for (std::size_t m = 0; m < to.size(); ++m) {
@@ -139,7 +139,7 @@ struct SolidTriangles {
     return sum != 0;
   }
 
-  /// The signed square v of docs/design/solids.md where e lies inside; otherwise 0.
+  /// The signed square v of docs/design/solids.md if e lies inside a solid; otherwise 0.
   double inside_square(const Vec3& e, const Pose& pose) const {
     double deepest = 0;
     for (const std::vector<Triangle>& solid : solids) {
@@ -159,7 +159,7 @@ struct SolidTriangles {
   }
 };
 
-/// As of a surface, and the poses at which a solid contains the point.
+/// The first poses of a solid's surface, or earlier poses at which a solid contains the point.
 std::vector<std::uint32_t> first_poses_of_solids(std::span<const Vec3> environment,
                                                  const Query& query) {
   std::vector<std::uint32_t> first = first_poses<Triangle>(environment, query);

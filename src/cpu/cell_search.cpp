@@ -39,9 +39,10 @@ template <typename Element>
 std::uint64_t CellSearchOf<Element>::most_bytes(const PackedCloud& cloud, const Query& query,
                                                 std::uint64_t most_poses) {
   const auto depths = static_cast<std::uint64_t>(std::bit_width(cloud.blocks_per_cell())) + 1;
-  // A list for clearances may have grown to twice its need.
+  // A list for clearances may have grown to twice the size it needs.
   const std::uint64_t of_clearance = query.clearance > 0 ? 8 * most_poses : 0;
-  const std::uint64_t of_runs = kIsTriangle<Element> ? 8 * most_poses : 0;  // likewise
+  // Lists of runs may have grown to twice the size they need, too.
+  const std::uint64_t of_runs = kIsTriangle<Element> ? 8 * most_poses : 0;
   return sizeof(CellSearchOf) +
          depths * (sizeof(std::vector<std::uint32_t>) + most_poses * sizeof(std::uint32_t)) +
          of_clearance + of_runs;
@@ -56,7 +57,7 @@ QuantumBox CellSearchOf<Element>::box_of(std::uint32_t first, std::uint32_t coun
   return box;
 }
 
-/// Whether any point of the blocks is to be searched.
+/// Whether any point of `count` blocks from `first` on is to be searched.
 template <typename Element>
 bool CellSearchOf<Element>::has_points(std::uint32_t first, std::uint32_t count) const {
   if (!page_.shape.masked) return true;
@@ -73,7 +74,7 @@ void CellSearchOf<Element>::search_blocks(std::uint32_t first, std::uint32_t cou
   if (depth == lists_.size()) lists_.emplace_back();
   std::vector<std::uint32_t> open = std::move(lists_[depth]);
   open.clear();
-  open.reserve(poses_);  // disjoint nodes are no more than their poses
+  open.reserve(poses_);  // disjoint nodes are at most as many as their poses
   if (filter_.narrow(position_box(cloud_.quantisation(), box_of(first, count)), nodes, open,
                      statistics_)) {
     for (std::uint32_t block = first; block < first + count; ++block) mark_all(block);
@@ -118,7 +119,8 @@ void CellSearchOf<Element>::search_points(std::uint32_t block,
   }
 }
 
-/// Whether the point collides.
+/// Searches whether the point collides, and its first pose and clearance if asked for. Returns
+/// whether it collides.
 template <typename Element>
 bool CellSearchOf<Element>::search_hit(const Vec3& e, std::uint32_t index,
                                        std::span<const std::uint32_t> nodes) {
@@ -137,14 +139,14 @@ bool CellSearchOf<Element>::search_hit(const Vec3& e, std::uint32_t index,
   if constexpr (kIsTriangle<Element>) {
     is_grazed_ = is_grazed_ || filter_.join_runs(statistics_.since(before), nodes, runs_);
   }
-  // No point is within a clearance of at most the radius that does not collide.
+  // Every point within a clearance of at most the radius collides.
   if (clearance_search_ && (hit || query.clearance > query.radius)) {
     search_clearance(e, index);
   }
   return hit;
 }
 
-/// Whether its least d2 makes the point collide.
+/// Searches the clearance of the point. Returns whether its least d2 makes it collide.
 template <typename Element>
 bool CellSearchOf<Element>::search_clearance(const Vec3& e, std::uint32_t index) {
   const Clearance clearance = clearance_search_->nearest(e, joined_, statistics_);

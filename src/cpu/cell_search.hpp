@@ -13,27 +13,29 @@
 
 namespace clearway {
 
-/// The sweep engine's descent within one cell of a page after the other.
+/// The sweep engine's descent within the cells of a page, one cell after another.
 template <typename Element>
 class CellSearchOf {
  public:
-  /// Where the answer of a cell goes: see PageResult. Poses and clearances only where asked for.
+  /// The arrays that the answer of a cell goes to, as in PageResult. First poses and clearances are
+  /// empty if not asked for.
   struct Output {
     std::span<std::uint64_t> hits;
     std::span<std::uint32_t> first_poses;
     std::span<Clearance> clearances;
   };
 
-  /// Both outlive it.
+  /// Cloud and filter must outlive this object.
   CellSearchOf(const PackedCloud& cloud, const SweepFilterOf<Element>& filter)
       : cloud_(cloud), filter_(filter) {}
 
   void run(const PageRef& page, std::uint32_t index, const Output& output);
 
-  /// Of the searches since the last call.
+  /// Counts of the searches since the last call.
   SweepStatistics take_statistics();
 
-  /// The most that it allocates, bytes; most_poses: of the nodes of any cell.
+  /// Greatest memory that it allocates, bytes. most_poses: greatest number of poses that the nodes
+  /// of a cell have together.
   static std::uint64_t most_bytes(const PackedCloud& cloud, const Query& query,
                                   std::uint64_t most_poses);
 
@@ -51,15 +53,16 @@ class CellSearchOf {
   const SweepFilterOf<Element>& filter_;
   const PageCell* cell_ = nullptr;
   PageRef page_{};
-  std::uint32_t index_ = 0;  ///< of the cell, in the page
+  std::uint32_t index_ = 0;  ///< index of the cell in the page
   const BlockBox* blocks_ = nullptr;
   std::array<PackedChunk<std::int32_t>, 3> chunks_;
   Output output_;
-  std::size_t poses_ = 0;                          ///< that the cell's nodes have together
-  std::vector<std::vector<std::uint32_t>> lists_;  ///< of open motion nodes, one a depth
+  std::size_t poses_ = 0;  ///< number of poses that the cell's nodes have together
+  std::vector<std::vector<std::uint32_t>> lists_;  ///< open motion nodes, one list for each depth
   std::vector<std::uint32_t> joined_;              ///< motion nodes for clearances
-  std::vector<std::uint32_t> runs_;  ///< of the block, where one of its points grazes the model
-  bool is_grazed_ = false;           ///< whether that is so
+  /// Runs of poses of the block, if one of its points grazes the model
+  std::vector<std::uint32_t> runs_;
+  bool is_grazed_ = false;  ///< whether a point of the block grazes the model
   std::optional<ClearanceSearchOf<Element>> clearance_search_;
   SweepStatistics statistics_;
 };
@@ -70,7 +73,7 @@ extern template class CellSearchOf<Vec3>;
 extern template class CellSearchOf<Triangle>;
 extern template class CellSearchOf<SolidTriangle>;
 
-/// How many poses motion nodes have together.
+/// Number of poses that motion nodes have together.
 std::uint64_t pose_count(const MotionTree& motion, std::span<const std::uint32_t> nodes);
 
 }  // namespace clearway

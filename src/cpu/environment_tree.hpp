@@ -23,8 +23,8 @@ struct EnvironmentNode {
   bool is_block() const { return top == kInCell && block_count == 1; }
 };
 
-/// The whole k-d tree of a cloud, from all cells down to blocks. Of the points it keeps the boxes
-/// of the inner nodes of cells only: 12 bytes a block. The cloud must outlive it.
+/// The whole k-d tree of a cloud, from all cells down to blocks. It keeps no points, but only the
+/// boxes of the inner nodes of cells: 12 bytes for each block. The cloud must outlive it.
 class EnvironmentTree {
  public:
   EnvironmentTree(const PackedCloud& cloud, int threads);
@@ -36,21 +36,21 @@ class EnvironmentTree {
   /// The two halves of a node that is not a block.
   std::array<EnvironmentNode, 2> children(const EnvironmentNode& node) const;
 
-  /// Holds every point of the node.
+  /// A box that holds every point of the node.
   Box box(const EnvironmentNode& node) const;
 
-  /// Points of the node, or a little more for a node of several cells.
+  /// Upper bound of the number of points of the node.
   std::uint64_t most_points(const EnvironmentNode& node) const {
     if (node.top == EnvironmentNode::kInCell) return std::uint64_t{node.block_count} * kBlockPoints;
     return std::uint64_t{cloud_.tree()[node.top].cell_count} * cloud_.cell_entries();
   }
 
-  /// A number below node_slots() that no other inner node of the cells has.
+  /// A number below node_slots() that no other inner node of any cell has.
   std::uint64_t inner_index(const EnvironmentNode& node) const {
     return std::uint64_t{node.cell} * blocks_per_cell_ + node.first_block +
            left_count(node.block_count, 1);
   }
-  /// The block's word of a HitSet.
+  /// Index of the block's word in a HitSet.
   std::uint64_t block_index(std::uint32_t cell, std::uint32_t block) const {
     return std::uint64_t{cell} * blocks_per_cell_ + block;
   }

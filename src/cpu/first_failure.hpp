@@ -6,7 +6,7 @@
 
 namespace clearway {
 
-/// The first exception of a parallel region, kept until it is over.
+/// Keeps the first exception of a parallel region until the region is over.
 class FirstFailure {
  public:
   bool happened() const { return happened_.load(std::memory_order_relaxed); }

@@ -18,7 +18,7 @@ struct alignas(kPageAlignment) Line {
 
 }  // namespace
 
-/// The arrays of a slot, for its largest page.
+/// The layout of a slot's memory, for its largest page.
 struct GridCpuEngine::Arrays {
   Arrays(const GridScene& scene, const SlotLayout& layout)
       : page(run.add<Line>(divide_up(layout.page_bytes, sizeof(Line)))),
@@ -34,7 +34,7 @@ struct GridCpuEngine::Arrays {
   ArrayPlace<Line> page;
   GridPlanArrays plan;
   GridWorkArrays work;
-  ArrayPlace<std::uint64_t> sorted;  ///< key and slot in one word
+  ArrayPlace<std::uint64_t> sorted;  ///< key and slot of each point in one word
   PageResultArrays result;
 };
 
@@ -49,7 +49,7 @@ struct GridCpuEngine::Slot {
   void search(const GridScene& scene, std::uint64_t task, std::uint32_t work_list);
 
   std::unique_ptr<Line[]> memory;
-  std::vector<std::uint32_t> open;  ///< pairs
+  std::vector<std::uint32_t> open;  ///< open pairs of group and pose
   GridPageView view{};
   PageResult result;
   GridStatistics statistics;
@@ -81,7 +81,8 @@ void GridCpuEngine::Slot::build(const GridScene& scene, const Arrays& arrays) {
   }
 }
 
-/// Tests as many pairs as the work list holds, then searches the open ones, and so on.
+/// Searches a task. Tests as many pairs as the work list holds, then searches the open ones, and so
+/// on.
 void GridCpuEngine::Slot::search(const GridScene& scene, std::uint64_t index,
                                  std::uint32_t work_list) {
   const GridSceneView& all = scene.view();

@@ -10,14 +10,14 @@
 
 namespace clearway {
 
-/// The engine `grid` on the CPU: the bodies of the GPU engine, called by plain loops. Source:
+/// The engine `grid` on the CPU: plain loops that call the functions of the GPU engine. Source:
 /// Schauer et al. (the paper), section 3.2.
 class GridCpuEngine final : public PageEngine {
  public:
-  /// Pairs of group and pose tested before the open ones are searched.
+  /// Number of pairs of group and pose that are tested before the open ones are searched.
   static constexpr std::uint32_t kWorkList = 1024;
 
-  /// `scene` outlives it. All memory is made here.
+  /// scene: must outlive the engine. All memory is allocated here.
   GridCpuEngine(const GridScene& scene, const SlotLayout& layout,
                 std::uint32_t work_list = kWorkList);
   ~GridCpuEngine() override;
@@ -27,10 +27,10 @@ class GridCpuEngine final : public PageEngine {
   void start(std::uint32_t slot, const PageShape& shape) override;
   PageResult finish(std::uint32_t slot) override;
 
-  /// Of all pages finished.
+  /// Counts of all finished pages.
   GridStatistics statistics() const;
 
-  /// What one slot takes, bytes, at the most.
+  /// Greatest memory of one slot, bytes.
   static std::uint64_t slot_bytes(const GridScene& scene, const SlotLayout& layout);
 
  private:

@@ -17,15 +17,16 @@
 namespace clearway {
 namespace {
 
-/// A leaf of the model's spheres is no wider than this many search radii.
+/// Greatest width of a leaf of the model's spheres, in search radii.
 constexpr double kLeafRadii = 2;
 
-/// The query cut into tasks: a run of poses and a part of the model, in the order of the poses.
+/// The query divided into tasks, in the order of the poses; each is a run of poses and a part of
+/// the model.
 class Tasks {
  public:
   Tasks(const Query& query, const ModelSpheres& model, int threads)
       : pose_count_(static_cast<std::uint32_t>(query.poses.size())) {
-    // Few poses are spread over the threads by cutting the model.
+    // Few poses are spread over the threads by dividing the model.
     const auto wanted = static_cast<std::uint64_t>(threads) * kTasksPerThread;
     run_poses_ = static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(pose_count_ / wanted, 1, PoseTree::kMostPoses));
@@ -55,7 +56,7 @@ class Tasks {
   }
   std::uint32_t sphere(std::uint64_t task) const { return spheres_[task % spheres_.size()]; }
 
-  /// Whether all of the task's poses are complete now that the task is.
+  /// Marks a task as finished. Returns whether all of its poses are complete now.
   bool finish(std::uint64_t task) { return --parts_left_[task / spheres_.size()] == 0; }
 
  private:
@@ -74,7 +75,7 @@ void check(const Query& query) {
   }
 }
 
-/// What the threads of one run share.
+/// The state that the threads of one run share.
 struct Shared {
   const Query& query;
   const ModelSpheres& model;
@@ -89,7 +90,7 @@ struct Shared {
   FirstFailure failure{};
 };
 
-/// Takes tasks until none is left, a thread has failed or the run shall stop.
+/// Takes tasks until none is left, a thread has failed, or the run has to stop.
 void search_tasks(Shared& shared) {
   PoseMarkLog marks(shared.journal);
   RangeSearch search(shared.environment, shared.resolved, shared.model, shared.query, marks);
@@ -114,7 +115,7 @@ void search_tasks(Shared& shared) {
   shared.statistics.cache_bytes += search.allocated_bytes();
 }
 
-/// What was found in cells that were not asked for, as in those of a single block.
+/// Removes what was found in cells that were not asked for, as happens in cells of a single block.
 void clear_others(const PackedCloud& cloud, const std::function<bool(std::uint32_t)>& only,
                   HitSet& hits) {
   const std::uint64_t words = cloud.blocks_per_cell();

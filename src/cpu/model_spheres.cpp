@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 28;
 
-/// Bits of `value` moved three apart.
+/// The bits of `value`, three places apart.
 std::uint64_t spread_bits(std::uint64_t value) {
   std::uint64_t out = 0;
   for (int bit = 0; bit < ModelSpheres::kLevels; ++bit) out |= (value >> bit & 1) << 3 * bit;
@@ -31,7 +31,7 @@ std::uint64_t grid_key(const Box& box, double edge, const Vec3& point) {
   std::uint64_t key = 0;
   for (int k = 0; k < 3; ++k) {
     const double step = (point[k] - box.lo[k]) / edge * kSteps;
-    const double clamped = step > 0 ? std::min(step, kSteps - 1) : 0.0;  // not a number: 0
+    const double clamped = step > 0 ? std::min(step, kSteps - 1) : 0.0;  // 0 for NaN
     key |= spread_bits(static_cast<std::uint64_t>(clamped)) << k;
   }
   return key;

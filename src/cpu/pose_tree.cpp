@@ -23,7 +23,7 @@ std::uint32_t PoseTree::add(std::span<const Pose> poses, std::uint32_t first, st
       motion = std::max(motion, displacement_bound(model, poses[reference], poses[i]));
     }
   }
-  // Of either of two points moved by the reference pose, each coordinate errs by `rounding`.
+  // Each coordinate of either of two points moved by the reference pose errs by at most `rounding`.
   const double rounding =
       2 * std::sqrt(3.0) * 1.01 * transform_rounding(reach_of(model), poses[reference]);
   const auto self = static_cast<std::uint32_t>(nodes_.size());

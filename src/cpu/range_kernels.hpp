@@ -6,18 +6,18 @@
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 
-/// The inner loops of range searches, compiled for several vector widths. All of them round as the
-/// predicate does: they are the predicate, over columns.
+/// The inner loops of range searches, compiled for several vector widths. They round as the
+/// predicate does, because they are the predicate, over columns.
 namespace clearway {
 
-/// Coordinates of points by axis, metres. Does not own them.
+/// Coordinates of points by axis, metres. A view that does not own them.
 struct Columns {
   const double* x;
   const double* y;
   const double* z;
 };
 
-/// The same, to write to.
+/// Coordinates of points by axis to write to, metres. A view that does not own them.
 struct MutableColumns {
   double* x;
   double* y;
@@ -32,12 +32,12 @@ void squared_distances(Columns points, std::size_t count, const Vec3& m, double*
 /// moved[i] = transform(pose, model point i).
 void transform_points(const Pose& pose, Columns model, std::size_t count, MutableColumns moved);
 
-/// hit[i] = 1 when environment point i collides with any of the moved model points, else 0.
+/// hit[i] = 1 if environment point i collides with any of the moved model points, otherwise 0.
 void collide_any(Columns environment, std::size_t count, Columns moved, std::size_t moved_count,
                  double radius, std::uint8_t* hit);
 
-/// hit[i] = 1 when environment point i collides with any model point on its way from `moved` to
-/// `next`, both ends included, else 0.
+/// hit[i] = 1 if environment point i collides with any model point on its way from `moved` to
+/// `next`, both ends included, otherwise 0.
 void collide_any_on_way(Columns environment, std::size_t count, Columns moved, Columns next,
                         std::size_t moved_count, double radius, std::uint8_t* hit);
 

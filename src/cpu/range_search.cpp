@@ -11,13 +11,13 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Points of the environment that are narrowed down together.
+/// Number of environment points that are narrowed down together.
 constexpr std::size_t kBatchPoints = 2048;
-/// Candidates with fewer points than this together are taken apart into points.
+/// Candidates that together have at most this many points are taken apart into points.
 constexpr std::uint64_t kGatherPoints = 2048;
-/// A node is split while it is longer than this part of the reach.
+/// A node is split while it is longer than this share of the reach.
 constexpr double kNodeExtent = 0.5;
-/// Levels of spheres and of halved runs of poses: the deepest stack of point batches.
+/// Depth of the deepest stack of point batches: levels of spheres and of halved runs of poses.
 constexpr std::size_t kDeepest = ModelSpheres::kLevels + std::bit_width(PoseTree::kMostPoses) + 2;
 
 double greatest_extent(const Box& box) { return box.size()[box.longest_axis()]; }
@@ -64,8 +64,8 @@ RangeSearch::SearchTask RangeSearch::make_task(const PoseNode& poses,
           !resolved_.first_pose() || poses.reference == poses.first};
 }
 
-/// Calls visit(task) for the parts of the task: the halves of its poses where they move more than
-/// the sphere is wide, else its smaller spheres.
+/// Calls visit(task) for the parts of a task: the halves of its poses if they move more than the
+/// sphere is wide, otherwise its smaller spheres.
 template <typename Visit>
 void RangeSearch::for_each_half(const SearchTask& task, Visit visit) {
   const PoseNode& poses = task.poses;
@@ -91,7 +91,8 @@ void RangeSearch::search(const PoseTree& poses, const ModelSphere& sphere) {
   search_nodes(make_task(poses.node(0), sphere), 0, 1);
 }
 
-/// Candidates begin .. end are those of the parent task.
+/// Searches a task's share of the candidates `begin` to `end` - 1, which are those of the parent
+/// task.
 void RangeSearch::search_nodes(const SearchTask& task, std::size_t begin, std::size_t end) {
   const std::size_t first = candidates_.size();
   const std::uint64_t points_before = candidate_points_;
@@ -109,7 +110,8 @@ void RangeSearch::search_nodes(const SearchTask& task, std::size_t begin, std::s
   candidate_points_ = points_before;
 }
 
-/// True when the node holds nothing that this task is still to decide.
+/// Dismisses a node, or marks all of its points. Returns true if it holds nothing that this task
+/// still has to decide.
 bool RangeSearch::dismiss_or_take(const SearchTask& task, const Candidate& candidate) {
   if (resolved_.node_resolved(candidate.node, task.poses.first)) return true;
   if (least_squared_distance(candidate.box, task.centre) > task.reach_squared) return true;
@@ -138,7 +140,7 @@ void RangeSearch::add_candidate(const SearchTask& task, const Candidate& candida
   if (resolved) resolved_.resolve_node(candidate.node, task.poses.first);
 }
 
-/// Takes candidates begin .. end apart into points, batch by batch.
+/// Takes the candidates `begin` to `end` - 1 apart into points, batch by batch.
 void RangeSearch::gather(const SearchTask& task, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) gather_node(task, Candidate(candidates_[i]));
   flush(task);
@@ -181,7 +183,7 @@ void RangeSearch::flush(const SearchTask& task) {
   gathered_ = 0;
 }
 
-/// `points` are those of the parent task.
+/// Searches a task's share of `points`, which are those of the parent task.
 void RangeSearch::search_points(const SearchTask& task, Points points) {
   const Columns from = columns(points);
   squared_distances(from, points.count, task.centre, squared_.data());
@@ -200,7 +202,7 @@ void RangeSearch::search_points(const SearchTask& task, Points points) {
   if (to > begin) refine_points(task, {begin, to - begin});
 }
 
-/// `points` are within the task's reach.
+/// Searches `points`, which are within the task's reach.
 void RangeSearch::refine_points(const SearchTask& task, Points points) {
   if (task.at_leaves()) return test_points(task, points);
   for_each_half(task, [&](const SearchTask& part) { search_points(part, points); });

@@ -15,12 +15,12 @@ namespace clearway {
 
 /// The coherent fixed-range searches of one thread: a descent through poses, model and environment
 /// at once. A range of poses and a sphere of the model inherit from their parents the part of the
-/// environment within reach, so that what is far is dismissed for many searches together. What is
-/// left is decided by the predicate. Filters: docs/design/numerics.md, "Spheres of the model".
+/// environment within reach, so that whatever is far is dismissed for many searches together. The
+/// predicate decides what is left. Filters: docs/design/numerics.md, "Spheres of the model".
 class RangeSearch {
  public:
-  /// All arguments must outlive it. Allocates its caches: about 3 MiB, and a little for the largest
-  /// leaf of the model. marks: gets what is marked.
+  /// All arguments must outlive this object. It allocates its caches: about 3 MiB, and a little for
+  /// the largest leaf of the model. marks: receives every point that is marked.
   RangeSearch(const EnvironmentTree& environment, ResolvedPoints& resolved,
               const ModelSpheres& model, const Query& query, PoseMarkLog& marks);
 
@@ -28,7 +28,7 @@ class RangeSearch {
   /// a damaged cell.
   void search(const PoseTree& poses, const ModelSphere& sphere);
 
-  /// Pairs of pose and model point that no filter dismissed.
+  /// Number of pairs of pose and model point that no filter dismissed.
   std::uint64_t tested_searches() const { return tested_searches_; }
   std::uint64_t allocated_bytes() const;
 
@@ -38,19 +38,19 @@ class RangeSearch {
     Box box;
   };
 
-  /// A stretch of the stack of points.
+  /// A range of the stack of points.
   struct Points {
     std::size_t begin;
     std::size_t count;
   };
 
-  /// One sphere of the model over a range of poses.
+  /// A task of the descent: one sphere of the model over a range of poses.
   struct SearchTask {
     const PoseNode& poses;
     const ModelSphere& sphere;
     Vec3 centre;           ///< the sphere's centre at the reference pose
-    double reach_squared;  ///< nothing whose d2 to the centre is above it is touched
-    bool hit_is_final;     ///< no pose of the range precedes the reference pose
+    double reach_squared;  ///< points whose d2 to the centre is above this are not touched
+    bool hit_is_final;     ///< true if no pose of the range precedes the reference pose
     bool at_leaves() const { return poses.count == 1 && sphere.children == 0; }
   };
 
@@ -97,15 +97,16 @@ class RangeSearch {
   const PoseTree* pose_tree_ = nullptr;
 
   BlockCache cache_;
-  std::vector<Candidate> candidates_;  ///< a stack
+  std::vector<Candidate> candidates_;  ///< stack of candidates
   std::uint64_t candidate_points_ = 0;
-  std::vector<double> x_, y_, z_;  ///< a stack of points in columns
+  std::vector<double> x_, y_, z_;  ///< stack of points in columns
   std::vector<std::uint64_t> slots_;
-  std::size_t gathered_ = 0;  ///< points at the bottom of the stack
+  std::size_t gathered_ = 0;  ///< number of points at the bottom of the stack
   std::vector<double> squared_;
   std::vector<std::uint8_t> hit_;
   std::vector<double> moved_x_, moved_y_, moved_z_;
-  std::vector<double> next_x_, next_y_, next_z_;  ///< the same at the next pose; between poses only
+  /// Moved points at the next pose; only between poses
+  std::vector<double> next_x_, next_y_, next_z_;
   std::uint64_t tested_searches_ = 0;
 };
 

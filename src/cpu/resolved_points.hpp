@@ -10,9 +10,9 @@
 
 namespace clearway {
 
-/// What need not be searched again. A point is *resolved at* pose i when no pose from i on can
-/// change its answer: it is marked (sets), or marked with a pose <= i (first poses). Knows it of
-/// inner nodes too, where resolve_node was told. Thread safe.
+/// Records which points and nodes need not be searched again. A point is *resolved at* pose i if no
+/// pose from i on can change its answer: it is marked (sets), or marked with a pose <= i (first
+/// poses). A node is known to be resolved only if resolve_node() was called for it. Thread safe.
 class ResolvedPoints {
  public:
   ResolvedPoints(const EnvironmentTree& tree, HitSet& hits)
@@ -28,7 +28,8 @@ class ResolvedPoints {
 
   bool first_pose() const { return first_pose_; }
 
-  /// True only when every point of the node is resolved at `pose`; may be false when they are.
+  /// True only if every point of the node is resolved at `pose`; may be false although they all
+  /// are.
   bool node_resolved(const EnvironmentNode& node, std::uint32_t pose) {
     if (node.top != EnvironmentNode::kInCell) return load(top_pose_[node.top]) <= pose;
     if (node.block_count > 1) {
@@ -41,7 +42,7 @@ class ResolvedPoints {
     return (hits_.word_now(index) & all) == all;
   }
 
-  /// Notes that every point of the node is resolved at `pose`.
+  /// Records that every point of the node is resolved at `pose`.
   void resolve_node(const EnvironmentNode& node, std::uint32_t pose) {
     if (node.top != EnvironmentNode::kInCell) {
       store(top_pose_[node.top], first_pose_ ? pose : 0);
@@ -57,12 +58,14 @@ class ResolvedPoints {
     }
   }
 
-  /// Notes that the cells for which skip(cell) is true need no search, and the nodes that have no
-  /// other. A cell of a single block is searched nevertheless, where no first poses are asked for.
+  /// Records that the cells for which skip(cell) is true need no search, and neither do the nodes
+  /// that have only such cells. A cell of a single block is searched nevertheless if no first poses
+  /// are asked for.
   template <typename Skip>
   void leave_out(const Skip& skip) {
     const std::span<const TreeNode> nodes = tree_.cloud().tree();
-    for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
+    // From the last to the first, because children come after their parents
+    for (std::size_t i = nodes.size(); i-- > 0;) {
       if (nodes[i].right == 0) {
         const std::uint32_t cell = nodes[i].first_cell;
         if (skip(cell)) resolve_node(tree_.cell(cell), 0);
@@ -79,7 +82,7 @@ class ResolvedPoints {
     return (hits_.word_now(slot / 64) >> (slot % 64) & 1) != 0;
   }
 
-  /// Bit i is set when point i of the block is not resolved at `pose`.
+  /// The points of a block that are not resolved at `pose`: bit i is set for point i.
   std::uint64_t open_points(std::uint32_t cell, std::uint32_t block, std::uint32_t pose) {
     const std::uint64_t index = tree_.block_index(cell, block);
     const std::uint64_t all = all_points(cell, block);
@@ -99,7 +102,8 @@ class ResolvedPoints {
     }
   }
 
-  /// Marks every point of the node with `pose`; visit(word, bits) is called of each block's.
+  /// Marks every point of the node with `pose`, and calls visit(word, bits) for each block that is
+  /// marked.
   template <typename Visit>
   void mark_node(const EnvironmentNode& node, std::uint32_t pose, const Visit& visit) {
     if (node_resolved(node, pose)) return;

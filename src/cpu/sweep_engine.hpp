@@ -12,12 +12,12 @@
 
 namespace clearway {
 
-/// The sweep engine on the CPU: descends a cell's implicit tree and the motion tree together, down
-/// to points, each decoded once. `start` searches, in the thread that calls it.
+/// The sweep engine on the CPU. It descends a cell's implicit tree and the motion tree together,
+/// down to points, each of which is decoded once. `start` searches in the thread that calls it.
 template <typename Element>
 class SweepEngineOf final : public PageEngine {
  public:
-  /// The cloud and the filter outlive it. Allocates its slots; beside them, at the most
+  /// Cloud and filter must outlive the engine. It allocates its slots; in addition it takes at most
   /// CellSearchOf::most_bytes for each thread that is in `start` at a time, and profile_bytes().
   SweepEngineOf(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
                 const SlotLayout& layout);
@@ -27,11 +27,12 @@ class SweepEngineOf final : public PageEngine {
   void start(std::uint32_t slot, const PageShape& shape) override;
   PageResult finish(std::uint32_t slot) override { return results_[slot]; }
 
-  /// What a profile takes at the most; most_poses: of the nodes of any cell.
+  /// Greatest memory that a profile takes, bytes. most_poses: greatest number of poses that the
+  /// nodes of a cell have together.
   static std::uint64_t profile_bytes(const PackedCloud& cloud, const Query& query,
                                      const SlotLayout& layout, std::uint64_t most_poses);
 
-  /// Of all searches so far. Not during one.
+  /// Counts of all searches so far. Must not be called during a search.
   const SweepStatistics& statistics() const { return statistics_; }
 
  private:
@@ -42,12 +43,12 @@ class SweepEngineOf final : public PageEngine {
   const PackedCloud& cloud_;
   const SweepFilterOf<Element>& filter_;
   PagePool pool_;
-  std::vector<PageResult> results_;              ///< by slot
-  std::optional<ProfileBestValues> bests_;       ///< with a profile
-  std::vector<std::vector<ProfileFact>> facts_;  ///< likewise, by slot
+  std::vector<PageResult> results_;              ///< one for each slot
+  std::optional<ProfileBestValues> bests_;       ///< only with a profile
+  std::vector<std::vector<ProfileFact>> facts_;  ///< one list for each slot; only with a profile
   std::mutex mutex_;
-  std::vector<std::unique_ptr<CellSearchOf<Element>>>
-      idle_;  ///< no more than threads were ever in start
+  /// Searches not in use; at most as many as threads were ever in start() at once
+  std::vector<std::unique_ptr<CellSearchOf<Element>>> idle_;
   SweepStatistics statistics_;
 };
 

@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// Throws ResourceError naming the call's place and CUDA's reason. After a kernel
-/// launch: check_cuda(cudaGetLastError()).
+/// Throws ResourceError naming the call's place and CUDA's reason if a call failed. To be used
+/// after a kernel launch as check_cuda(cudaGetLastError()).
 inline void check_cuda(cudaError_t status,
                        std::source_location where = std::source_location::current()) {
   if (status == cudaSuccess) return;

@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// Owner of an event with a time stamp, of the device that is current when it is made. Waiting for
-/// it puts the thread to sleep.
+/// Owner of an event with a time stamp, on the device that is current when it is made. A thread
+/// that waits for the event sleeps.
 class CudaEvent {
  public:
   CudaEvent() { check_cuda(cudaEventCreateWithFlags(&event_, cudaEventBlockingSync)); }
@@ -20,13 +20,13 @@ class CudaEvent {
 
   cudaEvent_t get() const { return event_; }
 
-  /// Enqueued on `stream`, not synchronised.
+  /// Records the event: enqueued on `stream`, not synchronised.
   void record(cudaStream_t stream) const { check_cuda(cudaEventRecord(event_, stream)); }
 
-  /// Waits until the event has happened. Throws what became of the work before it.
+  /// Waits until the event has happened. Throws the error of the work before it.
   void synchronise() const { check_cuda(cudaEventSynchronize(event_)); }
 
-  /// Seconds from `earlier` to this event; both have happened.
+  /// Seconds from `earlier` to this event; both must have happened.
   double seconds_since(const CudaEvent& earlier) const {
     float milliseconds = 0;
     check_cuda(cudaEventElapsedTime(&milliseconds, earlier.event_, event_));

@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-/// The result of a page in one run of bytes.
+/// The layout of a page's result in one run of bytes.
 struct ResultRun {
   ResultRun(const PageShape& shape, const ResultParts& parts)
       : blocks(std::uint64_t{shape.cells} * shape.blocks_per_cell), arrays(run, blocks, parts) {}
@@ -22,11 +22,12 @@ struct ResultRun {
 
 }  // namespace
 
-/// The memory of all slots: two allocations, for each takes its time. Results lie first.
+/// The memory of all slots. It is allocated in two pieces only, because each allocation takes time.
+/// Results lie first.
 struct CudaPageEngine::SlotMemory {
   SlotMemory(std::uint64_t slots, const CudaSlotSize& size)
       : host(slots * size.pinned()), device(slots * size.device()) {
-    // A Clearance has padding, which is copied too.
+    // A Clearance has padding, which is copied, too, so it must be initialised.
     if (slots * size.found() > 0) check_cuda(cudaMemset(device.data(), 0, slots * size.found()));
   }
 
@@ -34,7 +35,8 @@ struct CudaPageEngine::SlotMemory {
   DeviceBuffer device;
 };
 
-/// The page and what the host adds to it are one run of bytes, on the host and on the device.
+/// A slot. The page and what the host adds to it are one run of bytes, on the host and on the
+/// device.
 struct CudaPageEngine::Slot {
   Slot(const SlotMemory& memory, const CudaSlotSize& size, std::uint64_t slots, std::uint64_t slot)
       : host_result(memory.host.data() + slot * size.found()),

@@ -13,7 +13,7 @@ struct CudaPagePlan;
 class DeviceClock;
 
 /// An engine on one CUDA device: its slots, and the way of a page through them. A page is uploaded,
-/// searched, and its result copied back, all on the slot's stream. All memory is taken when the
+/// searched, and its result copied back, all on the slot's stream. All memory is allocated when the
 /// engine is made.
 class CudaPageEngine : public PageEngine {
  public:
@@ -26,12 +26,14 @@ class CudaPageEngine : public PageEngine {
   void wait(std::uint32_t slot) final;
   PageResult finish(std::uint32_t slot) final;
 
-  /// Taken on the device, without CUDA's context, and of page-locked memory on the host.
+  /// Memory allocated on the device, without CUDA's context, in bytes; pinned_bytes() is the
+  /// page-locked memory on the host.
   std::uint64_t device_bytes() const;
   std::uint64_t pinned_bytes() const;
 
  protected:
-  /// On the current device, which is that of `search`. Throws ResourceError with CUDA's reason.
+  /// Makes the engine on the current device, which must be that of `search`. Throws ResourceError
+  /// with CUDA's reason.
   CudaPageEngine(std::uint32_t slots, std::unique_ptr<CudaPageSearch> search);
 
   const CudaPageSearch& search() const { return *search_; }

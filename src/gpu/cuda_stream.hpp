@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// Owner of a stream of the device that is current when it is made. It does not wait for the legacy
-/// default stream.
+/// Owner of a stream on the device that is current when it is made. The stream does not wait for
+/// the legacy default stream.
 class CudaStream {
  public:
   CudaStream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }

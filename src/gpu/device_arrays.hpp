@@ -7,9 +7,9 @@
 
 namespace clearway {
 
-/// Arrays on the current device, filled and owned together. A copy may still be under way, though
-/// the values have been read: streams that do not wait for the legacy default stream begin after a
-/// cudaDeviceSynchronize. Throws ResourceError.
+/// Arrays on the current device, filled and owned together. A copy may still be under way when a
+/// call returns, although its values have been read: streams that do not wait for the legacy
+/// default stream must begin after a cudaDeviceSynchronize. Throws ResourceError.
 class DeviceArrays {
  public:
   template <typename Value>
@@ -42,7 +42,7 @@ class DeviceArrays {
   std::vector<DeviceBuffer> buffers_;
 };
 
-/// Takes nothing, and says what DeviceArrays would take for the same calls.
+/// Counts the memory that DeviceArrays would allocate for the same calls, and allocates none.
 class DeviceArrayCount {
  public:
   template <typename Value>

@@ -9,7 +9,8 @@
 
 namespace clearway {
 
-/// Owner of uninitialised memory of the current device. Throws ResourceError where there is none.
+/// Owner of uninitialised memory of the current device. Throws ResourceError if there is not
+/// enough.
 class DeviceBuffer {
  public:
   explicit DeviceBuffer(std::size_t bytes) : bytes_(bytes) {

@@ -5,7 +5,7 @@
 
 namespace clearway {
 
-/// Tells when events of a device happened, on the host's clock. Made on the device that is current;
+/// Tells when events of a device happened, on the host's clock. To be made on the current device;
 /// synchronous.
 class DeviceClock {
  public:
@@ -15,7 +15,7 @@ class DeviceClock {
     base_time_ = Clock::now();
   }
 
-  /// Of an event that has happened.
+  /// Time of an event that has happened.
   Clock::time_point time_of(const CudaEvent& event) const {
     return base_time_ + std::chrono::duration_cast<Clock::duration>(
                             std::chrono::duration<double>(event.seconds_since(base_)));

@@ -31,7 +31,8 @@ CudaDevice open_cuda_device(int index) {
     check_cuda(cudaMemGetInfo(&free_bytes, &total_bytes));
     return {index, cuda_device_name(index), total_bytes, free_bytes};
   } catch (const ResourceError&) {
-    cudaGetLastError();  // or a check after a launch on another device finds it
+    // Clears the error, which a check after a launch on another device would find
+    cudaGetLastError();
     throw;
   }
 }

@@ -12,23 +12,25 @@ struct CudaDevice {
   std::uint64_t free_bytes;
 };
 
-/// How many CUDA devices this machine offers; 0 where there is none, or no driver for them.
+/// Number of CUDA devices of this machine; 0 if there is none, or no driver for them.
 int cuda_device_count();
 
-/// Why there are none, in CUDA's words; empty where there is one.
+/// Why there is no CUDA device, in CUDA's words; empty if there is one.
 std::string why_no_cuda_device();
 
-/// Its name, without making its context. Throws ResourceError.
+/// The name of a device, without creating its context. Throws ResourceError.
 std::string cuda_device_name(int index);
 
-/// Makes the device's context, which takes a while, and asks what is free. Throws ResourceError.
+/// Creates the device's context, which takes a while, and asks how much memory is free. Throws
+/// ResourceError.
 CudaDevice open_cuda_device(int index);
 
-/// Makes its context and loads the kernels of an engine, so that nothing waits for that later. It
-/// may run beside anything; what fails, fails again where the device is opened.
+/// Creates the device's context and loads the kernels of an engine, so that nothing waits for that
+/// later. May run at the same time as anything else. A failure is ignored here, and occurs again
+/// when the device is opened. grid: loads the kernels of engine grid, otherwise of engine sweep.
 void start_cuda_device(int index, bool grid) noexcept;
 
-/// Ends its context, and with it all that the process has there.
+/// Ends the device's context, and with it everything that the process has there.
 void end_cuda_device(int index) noexcept;
 
 }  // namespace clearway

@@ -13,7 +13,8 @@ ResultParts parts_of(const GridScene& scene) {
   return {.first_pose = scene.first_pose(), .clearance = false};
 }
 
-/// The work of a page, and what the device sorts it with. Asks the current device.
+/// The layout of a page's work memory, including what the device sorts with. Asks the current
+/// device.
 struct Work {
   Work(const GridScene& scene, const SlotLayout& layout)
       : Work(scene, layout.cells, layout.cells * scene.view().slots) {}
@@ -39,7 +40,7 @@ struct Work {
         scratch(run.add<std::byte>(grid_sort_bytes(points))) {}
 };
 
-/// Without the work, so that no device is asked.
+/// The sizes of a slot without its work memory, for which a device would have to be asked.
 CudaSlotSize pinned_size(const GridScene& scene, const SlotLayout& layout) {
   const std::uint64_t blocks = std::uint64_t{layout.cells} * scene.view().slots / kBlockPoints;
   ArrayRun plan, result;

@@ -8,26 +8,26 @@
 
 namespace clearway {
 
-/// The engine `grid` on one CUDA device: per page the points sorted into regular grids, then the
-/// model searched in them group by group, a warp a pair of group and pose. All memory is taken when
-/// it is made. Source: Schauer et al. (the paper), section 3.2.
+/// The engine `grid` on one CUDA device. For each page it sorts the points into regular grids and
+/// then searches the model in them group by group, with a warp for each pair of group and pose. All
+/// memory is allocated when the engine is made. Source: Schauer et al. (the paper), section 3.2.
 class CudaGridEngine final : public CudaPageEngine {
  public:
-  /// Uploads the scene, which outlives the engine. Throws ResourceError with CUDA's reason.
+  /// Uploads the scene, which must outlive the engine. Throws ResourceError with CUDA's reason.
   CudaGridEngine(int device, const GridScene& scene, const SlotLayout& layout);
 
   bool pages_alike() const override { return false; }
 
-  /// Of all pages finished. Not during a search.
+  /// Counts of all finished pages. Must not be called during a search.
   GridStatistics statistics() const;
 };
 
-/// Device memory that a CudaGridEngine takes beside its slots, and for each of them. The latter
-/// asks the current device how much sorting needs.
+/// Device memory of a CudaGridEngine besides its slots, bytes; cuda_grid_slot_bytes() is that of
+/// each slot, for which it asks the current device how much sorting needs.
 std::uint64_t cuda_grid_bytes(const GridScene& scene);
 std::uint64_t cuda_grid_slot_bytes(const GridScene& scene, const SlotLayout& layout);
 
-/// Page-locked host memory of a slot.
+/// Page-locked host memory of each slot, bytes.
 std::uint64_t cuda_grid_pinned_bytes(const GridScene& scene, const SlotLayout& layout);
 
 }  // namespace clearway

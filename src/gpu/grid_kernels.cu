@@ -11,10 +11,10 @@ namespace {
 constexpr unsigned kThreads = 256;
 constexpr unsigned kLanes = 32;
 
-/// A block of the search: one thread a part of its task.
+/// Threads of a thread block of the search: one for each part of its task.
 constexpr unsigned kSearchThreads = kTaskParts;
 
-/// Pairs of group and pose tested before the open ones are searched.
+/// Number of pairs of group and pose that are tested before the open ones are searched.
 constexpr std::uint32_t kWorkList = 2048;
 
 static_assert(kGroupPoints == kLanes);
@@ -36,7 +36,7 @@ __global__ void place_points_kernel(const __grid_constant__ GridSceneView scene,
   if (at < count) place_point(scene, page, keys, order, at, count);
 }
 
-/// Adds what the lanes of a warp counted.
+/// Adds the counts of a warp's lanes to a total.
 __device__ void add_up(std::uint64_t& total, std::uint64_t of_lane) {
   unsigned long long sum = of_lane;
   for (unsigned step = kLanes / 2; step > 0; step /= 2) {
@@ -59,11 +59,11 @@ __device__ void add_up(GridStatistics& total, const GridStatistics& of_lane) {
 struct SharedLists {
   unsigned long long task;
   std::uint32_t open_count, work_count;
-  std::uint32_t open[kTaskParts];  ///< parts
-  std::uint32_t work[kWorkList];   ///< pairs of group and pose
+  std::uint32_t open[kTaskParts];  ///< open parts
+  std::uint32_t work[kWorkList];   ///< open pairs of group and pose
 };
 
-/// The parts of the task that may touch its cell. All threads of the block.
+/// Lists the parts of the task that may touch its cell. To be called by all threads of the block.
 __device__ void open_parts(const GridSceneView& scene, const GridPageView& page,
                            const GridTask& task, SharedLists& lists, GridStatistics& statistics) {
   const std::uint32_t part = task.first_part + threadIdx.x;
@@ -75,7 +75,7 @@ __device__ void open_parts(const GridSceneView& scene, const GridPageView& page,
 }
 
 /// Tests the pairs of the open parts, as many at a time as the work list holds, and searches those
-/// that stay open, a warp each. All threads of the block.
+/// that stay open, each by one warp. To be called by all threads of the block.
 __device__ void search_parts(const GridSceneView& scene, const GridPageView& page,
                              const GridTask& task, SharedLists& lists, GridStatistics& statistics) {
   const std::uint32_t per_part = kPartGroups * scene.nodes[task.node].count;
@@ -99,7 +99,7 @@ __device__ void search_parts(const GridSceneView& scene, const GridPageView& pag
   }
 }
 
-/// Blocks take tasks until there are none.
+/// Searches all tasks: each thread block takes one after another until none is left.
 __global__ void __launch_bounds__(kSearchThreads)
     search_kernel(const __grid_constant__ GridSceneView scene,
                   const __grid_constant__ GridPageView page, std::uint64_t tasks,
@@ -122,7 +122,7 @@ __global__ void __launch_bounds__(kSearchThreads)
   add_up(*total, statistics);
 }
 
-/// Blocks of the search that are on the device at once.
+/// Number of thread blocks of the search that a device runs at once.
 unsigned resident_blocks() {
   int device = 0, processors = 0, blocks = 0;
   check_cuda(cudaGetDevice(&device));
@@ -160,7 +160,7 @@ void build_grids(const GridSceneView& scene, const GridPageView& page, const Gri
   const auto blocks = static_cast<unsigned>(divide_up(count, kThreads));
   make_keys_kernel<<<blocks, kThreads, 0, stream>>>(scene, page, sort.keys, sort.order, count);
   check_cuda(cudaGetLastError());
-  // Keys go up to cells * bucket_count, that of slots without a point.
+  // Keys go up to cells * bucket_count, which is the key of slots without a point.
   const int bits = std::bit_width(page.page.shape.cells * scene.bucket_count);
   std::size_t scratch_bytes = sort.scratch_bytes;
   check_cuda(cub::DeviceRadixSort::SortPairs(sort.scratch, scratch_bytes, sort.keys,

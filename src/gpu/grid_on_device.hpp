@@ -4,13 +4,13 @@
 
 namespace clearway {
 
-/// What the kernels of the grid engine need besides a page.
+/// Data that the kernels of the grid engine need besides a page.
 struct GridOnDevice {
   GridSceneView scene;
-  GridStatistics* statistics;  ///< zero at first
+  GridStatistics* statistics;  ///< counts of all pages, initially zero
 };
 
-/// Puts it into DeviceArrays, or counts it with DeviceArrayCount.
+/// Copies a scene's data into DeviceArrays, or counts it with DeviceArrayCount.
 template <typename Arrays>
 GridOnDevice put_on_device(const GridScene& scene, Arrays& arrays) {
   GridSceneView view = scene.view();

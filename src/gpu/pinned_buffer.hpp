@@ -10,8 +10,8 @@
 
 namespace clearway {
 
-/// Owner of uninitialised page-locked host memory, which devices copy from and to by themselves.
-/// Throws ResourceError where there is none.
+/// Owner of uninitialised page-locked host memory, from and to which devices copy by themselves.
+/// Throws ResourceError if there is not enough.
 class PinnedBuffer {
  public:
   explicit PinnedBuffer(std::size_t bytes) : bytes_(bytes) {

@@ -10,8 +10,8 @@
 namespace clearway {
 namespace {
 
-/// Most poses of a page have a fact or none, and some a few. A search on the host takes far longer
-/// than copying lists that are not full.
+/// Room for a profile's facts. Most poses of a page have one fact or none, and some have a few. A
+/// search on the host takes far longer than copying lists that are not full.
 constexpr std::uint64_t kFactsAhead = 1024, kMostFactsOfPoses = std::uint64_t{1} << 20;
 
 template <typename Element>
@@ -23,7 +23,7 @@ ResultParts parts_of(const SweepRefOf<Element>& sweep) {
               kFactsAhead + std::min<std::uint64_t>(sweep.motion.pose_count, kMostFactsOfPoses)};
 }
 
-/// Blocks of a page at the most.
+/// Greatest number of blocks of a page.
 std::uint64_t most_blocks(const PackedCloud& cloud, const SlotLayout& layout) {
   return std::uint64_t{layout.cells} * cloud.blocks_per_cell();
 }
@@ -106,7 +106,7 @@ class SweepSearch final : public CudaPageSearch {
   }
 
  private:
-  /// What the device knows of the poses by now: the host need not find it again.
+  /// What the device knows of the poses by now, so that the host need not find it again.
   ProfileBestValues known_bests() const {
     ProfileBestValues values(sweep_);
     const ProfileBests to = values.ref();
@@ -125,10 +125,10 @@ class SweepSearch final : public CudaPageSearch {
   SweepOnDevice<Element> on_device_;
   ArrayRun work_run_;
   SweepWorkArrays work_;
-  ProfileBests bests_{};             ///< on the device, with a profile
+  ProfileBests bests_{};             ///< on the device; only with a profile
   const SweepRefOf<Element> sweep_;  ///< on the host
   const PackedCloud& cloud_;
-  std::vector<std::vector<ProfileFact>> facts_;  ///< by slot
+  std::vector<std::vector<ProfileFact>> facts_;  ///< for each slot
 };
 
 }  // namespace

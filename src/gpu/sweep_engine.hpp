@@ -9,17 +9,19 @@
 
 namespace clearway {
 
-/// The sweep engine on one CUDA device: model field, model and motion tree stay there; a warp
-/// searches a block of points (core/sweep/sweep_block.hpp). All memory is taken when it is made.
+/// The sweep engine on one CUDA device. Model field, model and motion tree stay on the device; a
+/// warp searches a block of points (core/sweep/sweep_block.hpp). All memory is allocated when the
+/// engine is made.
 template <typename Element>
 class CudaSweepEngineOf final : public CudaPageEngine {
  public:
-  /// Uploads what `sweep` refers to. With a profile that and the cloud outlive it, else nothing of
-  /// the arguments is needed afterwards. Throws ResourceError with CUDA's reason.
+  /// Uploads what `sweep` refers to. With a profile, the data of `sweep` and the cloud must outlive
+  /// the engine; otherwise no argument is needed afterwards. Throws ResourceError with CUDA's
+  /// reason.
   CudaSweepEngineOf(int device, const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                     const SlotLayout& layout);
 
-  /// Of all pages finished. Not during a search.
+  /// Counts of all finished pages. Must not be called during a search.
   SweepStatistics statistics() const;
 };
 
@@ -29,14 +31,15 @@ extern template class CudaSweepEngineOf<Vec3>;
 extern template class CudaSweepEngineOf<Triangle>;
 extern template class CudaSweepEngineOf<SolidTriangle>;
 
-/// Device memory that a CudaSweepEngine takes beside its slots, and for each of them.
+/// Device memory of a CudaSweepEngineOf besides its slots, bytes; cuda_sweep_slot_bytes() is that
+/// of each slot.
 template <typename Element>
 std::uint64_t cuda_sweep_bytes(const SweepRefOf<Element>& sweep);
 template <typename Element>
 std::uint64_t cuda_sweep_slot_bytes(const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                                     const SlotLayout& layout);
 
-/// Page-locked host memory of a slot.
+/// Page-locked host memory of each slot, bytes.
 template <typename Element>
 std::uint64_t cuda_sweep_pinned_bytes(const SweepRefOf<Element>& sweep, const PackedCloud& cloud,
                                       const SlotLayout& layout);

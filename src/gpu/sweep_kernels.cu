@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::uint32_t kWarpsPerBlock = 4;
 constexpr unsigned kThreads = kWarpsPerBlock * kWarpLanes;
-/// Registers are limited so that this many blocks of threads run on a processor at a time: latency
-/// is what there is to hide.
+/// Number of thread blocks that run on a processor at a time; registers are limited so that they
+/// do, because latency is what there is to hide.
 constexpr unsigned kBlocksPerProcessor = 8;
 
 __device__ void tally(unsigned long long* total, std::uint64_t of_lane) {
@@ -28,7 +28,7 @@ __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lan
   tally(total + 4, of_lane.resolved_tests);
 }
 
-/// A warp a block of the page's cells.
+/// Searches the blocks of the page's cells, one by each warp.
 template <bool kClearance, typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_blocks_kernel(const __grid_constant__ SweepPageOf<Element> job,
@@ -43,7 +43,8 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   tally(tallies, statistics[0]);
 }
 
-/// Warps take one entry after the other, since some take far longer than others.
+/// Searches the page's entries. Warps take one after another, because some take far longer than
+/// others.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_entries_kernel(const __grid_constant__ SweepPageOf<Element> job,
@@ -58,7 +59,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   tally(tallies, statistics[0]);
 }
 
-/// A lane a walk.
+/// Searches the page's walks, one by each lane.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_walks_kernel(const __grid_constant__ SweepPageOf<Element> job,
@@ -72,7 +73,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   tally(tallies, statistics[0]);
 }
 
-/// A thread an item.
+/// Searches the page's items, one by each thread.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_items_kernel(const __grid_constant__ SweepPageOf<Element> job,
@@ -87,7 +88,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   tally(tallies, statistics);
 }
 
-/// Warps take one task after the other.
+/// Searches the page's profile. Warps take one task after another.
 template <typename Element>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     search_profile_kernel(const __grid_constant__ SweepPageOf<Element> job,

@@ -9,21 +9,22 @@
 
 namespace clearway {
 
-/// Numbers of a SweepStatistics, in its order, and places in which they are added up: several, so
-/// that warps seldom wait for each other.
+/// Number of counts in a SweepStatistics, which keep its order, and number of places in which they
+/// are added up: several, so that warps seldom wait for each other.
 constexpr std::uint32_t kSweepCounts = 5;
 constexpr std::uint32_t kSweepTallies = 64;
 
-/// Blocks of threads of search_sweep that a device can hold at a time. Throws ResourceError.
+/// Number of thread blocks of search_sweep() that a device can hold at a time. Throws
+/// ResourceError.
 unsigned resident_sweep_blocks(int device);
 
-/// Clears and fills the page's answer. tallies: kSweepCounts times kSweepTallies, added to.
-/// Enqueued on `stream`, not synchronised. Throws ResourceError.
+/// Searches a page: clears and fills its answer. tallies: kSweepCounts times kSweepTallies numbers,
+/// added to. Enqueued on `stream`, not synchronised. Throws ResourceError.
 template <typename Element>
 void search_sweep(const SweepPageOf<Element>& page, unsigned long long* tallies,
                   unsigned resident_blocks, cudaStream_t stream);
 
-/// Lists the nearest points of a page at its poses. tallies: as of search_sweep. Enqueued on
+/// Lists the nearest points of a page at its poses. tallies: as for search_sweep(). Enqueued on
 /// `stream`, not synchronised. Throws ResourceError.
 template <typename Element>
 void search_profile(const SweepPageOf<Element>& page, const ProfileBests& bests,
@@ -46,8 +47,8 @@ extern template void search_profile(const SweepPageOf<SolidTriangle>&, const Pro
                                     const ProfileList&, unsigned long long*, unsigned,
                                     cudaStream_t);
 
-/// CUDA loads a kernel where it is first asked for: asks for those of this file that search points.
-/// On the current device.
+/// Loads the kernels that search points on the current device, because CUDA otherwise loads a
+/// kernel when it is first used.
 void load_sweep_kernels() noexcept;
 
 }  // namespace clearway

@@ -6,16 +6,16 @@
 
 namespace clearway {
 
-/// What the kernels of a sweep need besides a page.
+/// Data that the kernels of a sweep need besides a page.
 template <typename Element>
 struct SweepOnDevice {
   SweepRefOf<Element> sweep;
-  unsigned long long* tallies;  ///< zero at first
+  unsigned long long* tallies;  ///< sums of the counts, initially zero
 
   static constexpr std::size_t kTallies = std::size_t{kSweepCounts} * kSweepTallies;
 };
 
-/// Puts it into DeviceArrays, or counts it with DeviceArrayCount.
+/// Copies a sweep's data into DeviceArrays, or counts it with DeviceArrayCount.
 template <typename Element, typename Arrays>
 SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& arrays) {
   const auto move = [&](auto*& values, std::size_t count) { values = arrays.copy(values, count); };
@@ -49,7 +49,8 @@ SweepOnDevice<Element> put_on_device(const SweepRefOf<Element>& sweep, Arrays& a
   return {ref, arrays.template zeros<unsigned long long>(SweepOnDevice<Element>::kTallies)};
 }
 
-/// Likewise what is known of the poses; none without a profile.
+/// Copies what is known of the poses into DeviceArrays, or counts it with DeviceArrayCount. Empty
+/// without a profile.
 template <typename Element, typename Arrays>
 ProfileBests put_on_device(const SweepRefOf<Element>& sweep, const ProfileBests& bests,
                            Arrays& arrays) {

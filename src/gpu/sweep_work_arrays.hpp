@@ -5,15 +5,15 @@
 
 namespace clearway {
 
-/// The lists of open work of a page, with room for so many places a block of the page; clearances
-/// are searched without.
+/// The lists of open work of a page, with room for a number of places for each block of the page.
+/// Empty with clearances, which are searched without lists.
 class SweepWorkArrays {
  public:
   template <typename Element>
   SweepWorkArrays(ArrayRun& run, const SweepRefOf<Element>& sweep, std::uint64_t most_blocks)
       : SweepWorkArrays(run, sweep.clearance > 0 ? 0 : most_blocks) {}
 
-  /// In a run that begins at `begin`.
+  /// The lists in a run that begins at `begin`.
   SweepWork in(std::byte* begin) const {
     return {.nodes = nodes_.in(begin).data(),
             .entries = entries_.in(begin).data(),
@@ -27,13 +27,13 @@ class SweepWorkArrays {
   }
 
  private:
-  /// Places a block.
+  /// Places of each list for each block.
   static constexpr std::uint64_t kNodes = 8;
   static constexpr std::uint64_t kEntries = 3;
   static constexpr std::uint64_t kWalks = 64;
   static constexpr std::uint64_t kItems = 16;
 
-  /// Long lists first: in this order none needs padding.
+  /// The longest lists come first: in this order none needs padding.
   SweepWorkArrays(ArrayRun& run, std::uint64_t blocks)
       : entry_capacity_(kEntries * blocks),
         walks_(run.add<SweepWork::Item>(kWalks * blocks)),

@@ -26,7 +26,8 @@ JournalledWork journalled_work(const JournalReader& journal) {
         payload.refuse("of an unknown kind");
     }
   });
-  // With other numbers of threads the poses were divided otherwise: some were finished twice.
+  // With another number of threads the poses are divided differently, so some may have been
+  // finished twice.
   std::sort(poses.begin(), poses.end());
   std::uint64_t end = 0;
   for (const auto& [first, count] : poses) {

@@ -6,7 +6,7 @@
 
 namespace clearway {
 
-/// What a record of a search's journal holds; its first byte.
+/// The kind of a record in a search's journal; its first byte.
 enum class JournalRecordKind : std::uint8_t {
   kCell = 1,
   kMarks = 2,
@@ -14,9 +14,9 @@ enum class JournalRecordKind : std::uint8_t {
   kProfile = 4
 };
 
-/// How far the run of a journal came. Throws InputError for a record that is none of a run.
+/// How much of a run a journal holds. Throws InputError for a record that is not of a run.
 struct JournalledWork {
-  std::uint64_t cells = 0;  ///< finished, or
+  std::uint64_t cells = 0;  ///< finished cells, for engines that work on pages
   std::uint64_t poses = 0;
 };
 JournalledWork journalled_work(const JournalReader& journal);

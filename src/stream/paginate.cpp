@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kMostNodes = std::numeric_limits<std::uint32_t>::max();
 
-/// The shape with one cell more, where that is a page at all.
+/// The shape with one cell more; none if that would be too large for any page.
 std::optional<PageShape> with_cell(PageShape shape, const PackedCloud& cloud,
                                    const PlannedCell& cell) {
   if (shape.nodes + cell.nodes.size() > kMostNodes) return std::nullopt;

@@ -23,13 +23,13 @@ std::uint64_t points_of(const PackedCloud& cloud, std::span<const PlannedCell> c
   return points;
 }
 
-/// The slots that hold no page.
+/// The slots of an engine that hold no page.
 class FreeSlots {
  public:
   explicit FreeSlots(std::uint32_t slots) {
     for (std::uint32_t slot = 0; slot < slots; ++slot) free_.push_back(slot);
   }
-  /// There is one: no more pages are under way than there are slots.
+  /// Takes a slot. There always is one, because no more pages are under way than there are slots.
   std::uint32_t take() {
     const std::lock_guard lock(mutex_);
     const std::uint32_t slot = free_.back();
@@ -46,7 +46,8 @@ class FreeSlots {
   std::vector<std::uint32_t> free_;
 };
 
-/// What the lanes share: pages are taken in their order by whichever lane has a slot for one.
+/// The state that all lanes share. Pages are taken in their order, each by whichever lane has a
+/// slot for it.
 struct Pages {
   const PackedCloud& cloud;
   const IgnoredPoints& ignored;
@@ -75,13 +76,13 @@ class Lane {
         free_slots_(engine.slots()),
         started_(engine.slots(), false) {}
 
-  /// What a failed run has left in flight is waited for.
+  /// Waits for what a failed run has left in flight.
   ~Lane() {
     for (std::uint32_t slot = 0; slot < started_.size(); ++slot) {
       if (!started_[slot]) continue;
       try {
         engine_.finish(slot);
-      } catch (...) {  // another exception ends the run already
+      } catch (...) {  // Another exception is ending the run already.
       }
     }
   }
@@ -153,7 +154,7 @@ class Lane {
   Pages& pages_;
   PageEngine& engine_;
   FreeSlots free_slots_;
-  std::vector<char> started_;  ///< by slot: whether the engine has a page to finish
+  std::vector<char> started_;  ///< for each slot, whether the engine has a page to finish
 };
 
 void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {

@@ -15,37 +15,38 @@
 
 namespace clearway {
 
-/// What becomes of what was found in a page of these cells. Called by several threads at once, each
-/// with another page.
+/// Takes what was found in a page of these cells. Several threads call it at once, each with
+/// another page.
 using CollectPage = std::function<void(std::span<const PlannedCell>, const PageResult&)>;
 
-/// What run_pages() is to do beside the pages and engines.
+/// What run_pages() has to know besides the pages and engines.
 struct PageRun {
-  const char* stage = "search";  ///< its name for those who watch the progress
-  const IgnoredPoints& ignored;  ///< says which points of the pages are searched
-  int threads = 0;               ///< 0: all
+  const char* stage = "search";  ///< name of the stage for those who watch the progress
+  const IgnoredPoints& ignored;  ///< decides which points of the pages are searched
+  int threads = 0;               ///< 0: all cores
 };
 
-/// As below, for callers that keep what is found themselves. Returns how many points of the pages
-/// were not searched.
+/// Runs the pages for callers that keep the results themselves: `collect` takes the result of each
+/// page. Returns how many points of the pages were not searched.
 std::uint64_t run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                         std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
                         const PageRun& run, const CollectPage& collect, Progress& progress,
                         StageTimes& times);
 
-/// Stages the pages in their order into whichever slot of an engine is free, has them searched and
-/// collects the answers, with `threads` (0: all); for each engine, one of them at the most waits
-/// for a device, or one a slot where its pages are not alike. Progress counts points. What a stage
-/// throws ends the run: no page is started any more, those under way are finished, then it is
-/// thrown on; likewise, with Interrupted, when the progress asks to stop. The pages fit the slots
-/// of every engine. The journal, where there is one, keeps the answer of every page; what it held
-/// before is part of the answer.
+/// Runs pages through engines and returns the answer. Pages are staged in their order into
+/// whichever slot of an engine is free, searched, and their answers collected. threads: 0 for all
+/// cores. For each engine at most one thread waits for a device, or one for each slot if its pages
+/// are not alike. Progress counts points. An exception of any stage ends the run: no further page
+/// is started, those under way are finished, then it is rethrown; the same happens, with
+/// Interrupted, when the progress asks to stop. The pages must fit the slots of every engine. The
+/// journal, if there is one, keeps the answer of every page, and what it held before becomes part
+/// of the answer.
 SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                        std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
                        const Query& query, int threads, Progress& progress, StageTimes& times,
                        SearchJournal* journal = nullptr);
 
-/// Memory that run_pages takes beside the engine and the answer, bytes.
+/// Memory that run_pages() takes in addition to the engine and the answer, bytes.
 std::uint64_t run_pages_bytes(std::size_t pages);
 
 }  // namespace clearway

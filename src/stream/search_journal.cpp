@@ -15,13 +15,13 @@ using enum JournalRecordKind;
 
 constexpr std::uint64_t kMostCountBytes = 10;
 
-/// Of a profile, in one record.
+/// Greatest number of a profile's facts in one record.
 constexpr std::size_t kMostFacts = 4096;
 
 std::uint64_t bit_of(std::size_t index) { return std::uint64_t{1} << index; }
 
-/// The words that are not 0, each with its distance from the one before; put_point(i) follows for
-/// each of its points.
+/// Puts the words that are not 0, each with its distance from the one before. For each of its
+/// points put_point(i) follows.
 template <typename WordAt, typename PutPoint>
 void put_words(JournalRecord& record, std::size_t words, WordAt word_at, PutPoint put_point) {
   std::uint64_t count = 0;
@@ -90,8 +90,9 @@ bool SearchJournal::is_in_place() const {
   return read_ != nullptr && read_->file().is_at(path_);
 }
 
-/// In records of a bounded size, before the cells count as finished. What another page has bettered
-/// is left out: if that page is not finished, it is searched again, and the best is always kept.
+/// Appends the facts of a page in records of a bounded size, before its cells count as finished.
+/// Facts that another page has bettered are left out: if that page is not finished, it is searched
+/// again, and the best fact is always kept.
 void SearchJournal::append_profile(std::span<const PlannedCell> cells,
                                    std::span<const ProfileFact> facts, const ProfileSet& profile) {
   std::vector<const ProfileFact*> held;
@@ -142,7 +143,7 @@ void SearchJournal::append_marks(std::span<PoseMark> marks) {
   };
   std::sort(marks.begin(), marks.end(),
             [&](const PoseMark& a, const PoseMark& b) { return key(a) < key(b); });
-  std::size_t merged = 0;  // marks of the same word and pose are one
+  std::size_t merged = 0;  // number of marks after those of the same word and pose are merged
   for (std::size_t i = 0; i < marks.size(); ++i) {
     if (merged > 0 && key(marks[merged - 1]) == key(marks[i])) {
       marks[merged - 1].bits |= marks[i].bits;
@@ -179,7 +180,7 @@ std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& q
       kWordBytes + (query.first_pose ? kBlockPoints * kPoseBytes : 0) +
       (clearance ? kWordBytes + kBlockPoints * (sizeof(double) + kPoseBytes) : 0);
   constexpr std::uint64_t kRecordBytes = 64;
-  // A vector that grows is there twice for a moment, the new one twice as large.
+  // A vector that grows exists twice for a moment, and the new one is twice as large.
   const std::uint64_t of_profile =
       query.profile > 0
           ? kMostFacts * (sizeof(void*) + 3 * (sizeof(double) + kPoseBytes + kMostCountBytes))

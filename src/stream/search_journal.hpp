@@ -17,22 +17,22 @@
 namespace clearway {
 
 /// The answer of a run as far as it is known, in a journal file: cell by cell from engines that
-/// work on pages, marks and finished poses from the others (docs/design/journal.md).
+/// work on pages, marks and finished poses from other engines (docs/design/journal.md).
 class SearchJournal final : public PoseJournal {
  public:
-  /// A new file, made by the first append, or, where `read` is given, the one that it read, to go
-  /// on with. Throws InputError naming the first record that cannot be of this cloud and query.
-  /// All outlive it but path and identity.
+  /// Begins a new file, which the first append creates, or continues the one that `read` has read.
+  /// Throws InputError naming the first record that cannot belong to this cloud and query. All
+  /// arguments but path and identity must outlive this object.
   SearchJournal(std::filesystem::path path, JournalIdentity identity, const JournalReader* read,
                 const PackedCloud& cloud, const Query& query, double interval_seconds);
 
-  /// Adds what the file held to `answer`, of the same cloud and query.
+  /// Adds what the file held to `answer`, which must be of the same cloud and query.
   void restore(SearchResult& answer) const {
     replay_all({&answer.hits, &answer.clearances, &answer.profile});
   }
   bool cell_finished(std::uint32_t cell) const { return finished_cells_[cell]; }
 
-  /// Keeps the answer of a page of these cells, which `profile` has taken in. Thread safe.
+  /// Appends the answer of a page of these cells, after `profile` has taken it in. Thread safe.
   void append_page(std::span<const PlannedCell> cells, const PageResult& answer,
                    const ProfileSet& profile);
 
@@ -42,14 +42,15 @@ class SearchJournal final : public PoseJournal {
   void append_marks(std::span<PoseMark> marks) override;
   void append_finished_poses(std::uint32_t first, std::uint32_t count) override;
 
-  /// Whether the file's name is still this journal's. Not while others append.
+  /// Whether the file at this journal's path still is this journal. Must not be called while others
+  /// append.
   bool is_in_place() const;
 
-  /// Memory at the most, while as many threads append, bytes.
+  /// Greatest memory, in bytes, while `threads` threads append at once.
   static std::uint64_t most_bytes(const PackedCloud& cloud, const Query& query, int threads);
 
  private:
-  /// Where what is read goes; null for what is only checked.
+  /// The sets that records are added to; null for those whose records are only checked.
   struct Target {
     HitSet* hits = nullptr;
     ClearanceSet* clearances = nullptr;
@@ -67,7 +68,7 @@ class SearchJournal final : public PoseJournal {
   void replay_marks(JournalPayload& payload, HitSet* hits) const;
   std::uint32_t take_cell(JournalPayload& payload) const;
   std::uint32_t take_pose(JournalPayload& payload) const;
-  /// As BodyNumbers.
+  /// Reads a pose and a body, encoded as BodyNumbers does.
   std::uint32_t take_number(JournalPayload& payload) const;
   std::uint64_t take_points(JournalPayload& payload, std::uint64_t word) const;
 

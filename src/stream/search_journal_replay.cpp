@@ -1,4 +1,4 @@
-// What a journal's file holds, checked record by record and added to an answer.
+// Reads what a journal's file holds: checks it record by record and adds it to an answer.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 using enum JournalRecordKind;
 
-/// As many poses as the payload says, from the first; at most `most`.
+/// A range of poses as a payload gives it, which must lie within the first `most` poses.
 struct PoseRange {
   PoseRange(JournalPayload& payload, std::uint64_t most)
       : first(payload.take_count()), count(payload.take_count()) {
@@ -34,7 +34,7 @@ std::uint32_t take_below(JournalPayload& payload, std::uint64_t end) {
 
 void SearchJournal::note_finished() {
   if (read_ == nullptr) return;
-  replay_all({});  // checks them all
+  replay_all({});  // checks all records
   read_->for_each([this](JournalPayload payload) {
     const auto kind = payload.take<JournalRecordKind>();
     if (kind == kCell) finished_cells_[take_cell(payload)] = true;
@@ -83,7 +83,7 @@ std::uint32_t SearchJournal::take_number(JournalPayload& payload) const {
   return take_below(payload, BodyNumbers(query_).end(query_.poses.size()));
 }
 
-/// The bits of a word, all of them points of the cloud.
+/// Takes the bits of a word, which must all be points of the cloud.
 std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t word) const {
   const auto bits = payload.take<std::uint64_t>();
   const std::uint64_t words_per_cell = cloud_.blocks_per_cell();
@@ -96,7 +96,7 @@ std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t 
   return bits;
 }
 
-/// Inside solids it is below 0.
+/// Whether this can be the square of a distance, which stands below 0 for a point inside solids.
 bool SearchJournal::is_square(double squared) const {
   return squared >= 0 || (has_solids(query_) && squared < 0 && std::isfinite(squared));
 }

@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-/// Appends to a section of a page; what is left of it is zero in the end.
+/// Appends to a section of a page; the destructor fills what is left of the section with zeros.
 class Section {
  public:
   Section(std::span<std::byte> page, std::uint64_t begin, std::uint64_t end)

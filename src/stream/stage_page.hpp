@@ -10,15 +10,15 @@
 
 namespace clearway {
 
-/// Fills `page`, on kPageAlignment and at least the size of the page of these cells, from the
-/// cloud: headers, motion nodes, block boxes, where points are ignored masks, and packed
-/// coordinates, which are read straight into it. Adds to ignored_points those of these cells.
-/// Thread safe. Throws what reading the cells throws.
+/// Fills `page` with the cells from the cloud: headers, motion nodes, block boxes, masks if points
+/// are ignored, and packed coordinates, which are read straight into it. page: aligned to
+/// kPageAlignment, and at least as large as the page of these cells. ignored_points: increased by
+/// the number of ignored points in these cells. Thread safe. Throws what reading the cells throws.
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                      std::span<std::byte> page, const IgnoredPoints& ignored,
                      std::uint64_t& ignored_points);
 
-/// The same where no point is ignored.
+/// Fills `page` with the cells if no point is ignored.
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                      std::span<std::byte> page);
 

@@ -6,21 +6,22 @@
 
 namespace clearway {
 
-/// When the stages of one page ran.
+/// The times at which the stages of one page ran.
 struct PageTimes {
   Interval read{}, upload{}, compute{}, collect{};
 };
 
-/// Wall clock in which at least one worker of a stage was busy, seconds.
+/// Wall-clock seconds in which at least one worker of a stage was busy.
 struct StageTimes {
-  double read = 0;  ///< staging and checking included
+  double read = 0;  ///< including staging and checking
   double upload = 0;
   double compute = 0;
   double collect = 0;
-  double total = 0;  ///< from the first page to the last
+  double total = 0;  ///< seconds from the first page to the last one
 };
 
-/// Length of the union of the intervals, seconds. One that does not end after it begins has none.
+/// Length of the union of the intervals, seconds. An interval that does not end after it begins has
+/// no length.
 double busy_seconds(std::vector<Interval> intervals);
 
 StageTimes stage_times(const std::vector<PageTimes>& pages);

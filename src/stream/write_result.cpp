@@ -18,28 +18,29 @@
 namespace clearway {
 namespace {
 
-/// Chunks that the file's writer holds back, and what the profile is written from.
+/// Memory for chunks that the file's writer holds back, and for what the profile is written from.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{12} << 20;
 
-/// Of kEncodedRows rows.
+/// Memory of kEncodedRows encoded rows.
 constexpr std::uint64_t kPieceBytes = std::uint64_t{3} << 20;
 
-/// With fewer rows a part might not fit beside what is left of the part before.
+/// Least number of rows of a pass. With fewer, a part might not fit beside what is left of the part
+/// before.
 constexpr std::size_t kLeastRows = kEncodedRows + SourceParts::kMostRows;
 
-/// What one thread gathers with.
+/// Least memory with which one thread gathers.
 constexpr std::uint64_t kLeastThreadBytes = std::uint64_t{1} << 20;
 
 std::uint64_t thread_bytes(const StoreReader& store) {
   return CellRows::most_bytes(store) + 8 * SourceParts(store).count();
 }
 
-/// How a table is written in the memory that there is.
+/// How a table is written in the given memory.
 struct WritePlan {
-  std::size_t rows;    ///< of a pass
-  std::size_t pieces;  ///< encoded ones under way
-  int threads;         ///< that gather
-  bool without_copy;   ///< while ordering
+  std::size_t rows;    ///< greatest number of rows of a pass
+  std::size_t pieces;  ///< number of encoded pieces under way
+  int threads;         ///< number of threads that gather
+  bool without_copy;   ///< whether to order without a copy of a part
 };
 
 template <typename Row>
@@ -58,7 +59,7 @@ WritePlan plan_of(const StoreReader& store, std::uint64_t memory_bytes) {
   return plan;
 }
 
-/// The end of the parts from `first` on of which no more than `most` rows come.
+/// The end of the parts, from `first` on, that together have no more than `most` rows.
 std::size_t end_of_pass(const StoreReader& store, const std::vector<std::uint64_t>& counts,
                         std::size_t first, std::size_t most) {
   std::size_t end = first;
@@ -70,7 +71,8 @@ std::size_t end_of_pass(const StoreReader& store, const std::vector<std::uint64_
   return end;
 }
 
-/// Writes a set in passes, by write(rows): a multiple of kEncodedRows, but the last.
+/// Writes a set in passes by write(rows), each with a multiple of kEncodedRows rows except the
+/// last.
 template <typename Row, typename Set, typename RowsOf, typename Write>
 void write_set(const StoreReader& store, const Set& set, const SetCells& in, const WritePlan& plan,
                Progress& progress, RowsOf rows_of, Write write) {
@@ -82,7 +84,7 @@ void write_set(const StoreReader& store, const Set& set, const SetCells& in, con
   const std::size_t most = std::min<std::uint64_t>(plan.rows, in.entries);
   const auto memory = std::make_unique_for_overwrite<Row[]>(most);
   const std::span<Row> rows(memory.get(), most);
-  std::size_t kept = 0;  // rows of the pass before, at the front
+  std::size_t kept = 0;  // number of rows of the last pass that are kept, at the front
   for (std::size_t first = 0; first < counts.size();) {
     const std::size_t end = end_of_pass(store, counts, first, most - kept);
     std::size_t count = kept;
@@ -212,7 +214,7 @@ WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
 }
 
 std::uint64_t least_write_bytes(const StoreReader& store) {
-  // The rows of all parts are counted once, and once more while they are put in place.
+  // The rows of all parts are counted once, and once again while they are put in place.
   return kWriterBytes + kPieceBytes + std::max(kLeastThreadBytes, thread_bytes(store)) +
          16 * SourceParts(store).count() +
          kLeastRows * std::max(sizeof(CollisionRow), sizeof(ClearanceRow));

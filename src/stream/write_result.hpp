@@ -13,20 +13,21 @@
 
 namespace clearway {
 
-/// What went into a result: its rows, and of each table the place that matters most (of several the
-/// smallest source, in the profile the first pose), where it has one.
+/// What was written to a result: its numbers of rows, and for each table that has any the place
+/// that matters most. Of several such places it is the one with the smallest source index, in the
+/// profile that of the first pose.
 struct WrittenResult {
   std::uint64_t collisions = 0, clearances = 0;
-  std::uint64_t inside_points = 0;        ///< of the clearances those below 0
-  std::optional<FoundPlace> first_place;  ///< with first poses only
+  std::uint64_t inside_points = 0;        ///< number of clearances below 0
+  std::optional<FoundPlace> first_place;  ///< only with first poses
   std::optional<FoundPlace> least_clearance, least_profile;
 };
 
-/// Writes the colliding points, and the clearances where the header asks for them, to a result file
-/// at `path`, ascending by source index; then the profile where the header asks for it. chainage:
-/// of every pose then, metres. Takes at most `memory_bytes`, but no less than
-/// least_write_bytes(): where the rows exceed them, in several passes over the cells that have
-/// some, each for the next range of source indices. threads: 0 for all cores. Throws InputError for
+/// Writes a result file at `path`: the colliding points, and the clearances if the header asks for
+/// them, ascending by source index; then the profile if the header asks for it. chainage: that of
+/// every pose, metres, for a profile. Takes at most `memory_bytes`, but no less than
+/// least_write_bytes(): if the rows exceed them, it makes several passes over the cells that have
+/// any, each for the next range of source indices. threads: 0 for all cores. Throws InputError for
 /// a damaged cell, ResourceError for a full disk, Interrupted when the progress asks to stop.
 WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
                            const ResultHeader& header, const std::filesystem::path& path,
@@ -34,7 +35,7 @@ WrittenResult write_result(const StoreReader& store, const SearchResult& answer,
                            std::span<const double> chainage = {}, int threads = 0,
                            const ResultFindings& findings = {});
 
-/// The least memory in which write_result works, bytes.
+/// The least memory in which write_result() works, bytes.
 std::uint64_t least_write_bytes(const StoreReader& store);
 
 }  // namespace clearway

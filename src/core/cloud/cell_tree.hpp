@@ -29,11 +29,11 @@ struct TreeNode {
   std::uint32_t first_cell;
   std::uint32_t cell_count;
   std::uint32_t right;
-  QuantumBox box;  ///< of the node's points
+  QuantumBox box;  ///< box around the node's points
 };
 
 /// Expands the top tree down to single cells and gives every node the box of its cells. Empty for
-/// no cells. Throws InputError when `top` is not a tree over exactly these cells.
+/// no cells. Throws InputError if `top` is not a tree over exactly these cells.
 std::vector<TreeNode> build_cell_tree(std::span<const TopNode> top, std::span<const Cell> cells);
 
 }  // namespace clearway

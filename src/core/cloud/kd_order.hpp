@@ -6,7 +6,7 @@
 
 namespace clearway {
 
-/// Points of one block, a leaf of the tree inside a cell.
+/// Number of points of one block, a leaf of the tree inside a cell.
 inline constexpr std::uint32_t kBlockPoints = 64;
 
 CLEARWAY_HD constexpr std::uint64_t divide_up(std::uint64_t n, std::uint64_t unit) {

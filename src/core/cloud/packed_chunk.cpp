@@ -23,7 +23,7 @@ Header<Value> header_for(Value minimum, Value maximum) {
   using Unsigned = std::make_unsigned_t<Value>;
   const auto range =
       static_cast<Unsigned>(static_cast<Unsigned>(maximum) - static_cast<Unsigned>(minimum));
-  // HDF5 gives up on such a range before it notes the minimum.
+  // For such a range HDF5 gives up before it notes the minimum.
   if (range > std::numeric_limits<Unsigned>::max() - 2) return {kValueBits<Value>, 0};
   return {static_cast<std::uint32_t>(std::bit_width(range)), minimum};  // ceil(log2(range + 1))
 }
@@ -33,7 +33,7 @@ struct Range {
   Value least, greatest;
 };
 
-/// Without branches, so that it takes full vectors. Inlined, as templates cannot be cloned.
+/// Has no branches, so that it takes full vectors. Inlined, because templates cannot be cloned.
 template <std::integral Value>
 [[gnu::always_inline]] inline Range<Value> find_range(const Value* values, std::size_t n) {
   Range<Value> range{values[0], values[0]};
@@ -98,12 +98,12 @@ class BitPacker {
     return static_cast<Unsigned>(static_cast<Unsigned>(value) - minimum_);
   }
 
-  /// kJoined values at a time, a whole word at each store, as long as there is room for a word; the
-  /// values left.
+  /// Packs kJoined values at a time, with a whole word at each store, as long as there is room for
+  /// a word. Returns the values left.
   template <unsigned kJoined>
   std::span<const Value> pack_joined(std::span<const Value> values) {
     const unsigned bits = kJoined * minbits_;
-    std::uint64_t word = 0;  // the pending bits are its highest
+    std::uint64_t word = 0;  // holds the pending bits as its highest bits
     unsigned used = 0;
     std::byte* to = to_;
     std::size_t i = 0;

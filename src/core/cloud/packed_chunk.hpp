@@ -20,7 +20,7 @@ inline constexpr std::size_t kPackedHeaderBytes = 21;
 template <std::integral Value>
 inline constexpr unsigned kValueBits = 8 * sizeof(Value);
 
-/// Bytes of a chunk of `count` values in `minbits` bits.
+/// Size of a chunk of `count` values in `minbits` bits, bytes.
 template <std::integral Value>
 constexpr std::uint64_t packed_bytes(std::uint64_t count, unsigned minbits) {
   if (minbits == kValueBits<Value>) return kPackedHeaderBytes + count * sizeof(Value);
@@ -36,25 +36,25 @@ class PackedChunk {
 
   PackedChunk() = default;
 
-  /// `bytes` must be a whole chunk of exactly `count` values; throws InputError otherwise (the
-  /// caller adds file and cell).
+  /// bytes: a whole chunk of exactly `count` values; throws InputError otherwise, to which the
+  /// caller adds file and cell.
   PackedChunk(std::span<const std::byte> bytes, std::uint32_t count);
 
-  /// A chunk that was validated before, from the parts of its header and the payload after it.
+  /// A chunk that was validated before, made from the parts of its header and the payload after it.
   static PackedChunk of_payload(const std::byte* payload, std::uint32_t count, unsigned minbits,
                                 Value minimum);
 
   std::uint32_t size() const { return count_; }
   unsigned minbits() const { return minbits_; }
-  /// Of the header: not that of the values where minbits() is the full width.
+  /// Minimum from the header; not that of the values if minbits() is the full width.
   Value minimum() const { return static_cast<Value>(minimum_); }
   /// The bytes after the header.
   const std::byte* payload() const { return payload_; }
 
-  /// Value `index` < size().
+  /// Value number `index`, which must be below size().
   Value operator[](std::uint32_t index) const;
 
-  /// Values first .. first + out.size() - 1 into `out`.
+  /// Decodes values first .. first + out.size() - 1 into `out`.
   void decode(std::uint32_t first, std::span<Value> out) const;
 
  private:
@@ -87,7 +87,7 @@ inline PackedChunk<Value> PackedChunk<Value>::of_payload(const std::byte* payloa
   return chunk;
 }
 
-/// Big-endian 8 bytes from `byte` on, bytes past the payload read as zero.
+/// Eight bytes from `byte` on as a big-endian number; bytes past the payload read as zero.
 template <std::integral Value>
 inline std::uint64_t PackedChunk<Value>::window(std::uint64_t byte) const {
   std::uint64_t word = 0;
@@ -114,7 +114,7 @@ inline Value PackedChunk<Value>::operator[](std::uint32_t index) const {
   const auto shift = static_cast<unsigned>(bit % 8);
   std::uint64_t delta = window(bit / 8) << shift;
   if constexpr (sizeof(Value) == 8) {
-    if (shift + minbits_ > 64) {  // the ninth byte
+    if (shift + minbits_ > 64) {  // takes bits of the ninth byte
       delta |= window(bit / 8 + 8) >> (64 - shift);
     }
   }

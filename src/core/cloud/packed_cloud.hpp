@@ -23,39 +23,40 @@ class PackedCloud {
   virtual std::uint32_t cell_points() const = 0;
   virtual const Quantisation& quantisation() const = 0;
   virtual std::span<const Cell> cells() const = 0;
-  /// Preorder, see cell_tree.hpp. Empty for an empty cloud.
+  /// The tree over cells, in preorder, see cell_tree.hpp. Empty for an empty cloud.
   virtual std::span<const TreeNode> tree() const = 0;
-  /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries a cell; entries of
-  /// blocks past a cell's count are unused.
+  /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries for each cell; entries
+  /// of blocks past a cell's count are unused.
   virtual std::span<const BlockBox> blocks() const = 0;
 
-  /// The packed x, y and z of a cell. Checked against the cell's hash at the first touch; thread
-  /// safe. Throws InputError naming file and cell when the bytes are not those that were written.
+  /// The packed x, y and z of a cell, which are checked against the cell's hash at the first touch.
+  /// Thread safe. Throws InputError naming file and cell if the bytes are not those that were
+  /// written.
   virtual std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const = 0;
 
-  /// The same for a look that is no part of a search: it does not count as a touch.
+  /// coordinates() for a look that is no part of a search: it does not count as a touch.
   virtual std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const {
     return coordinates(cell);
   }
 
-  /// Bytes of the packed x, y and z of a cell together.
+  /// Size of the packed x, y and z of a cell together, bytes.
   virtual std::uint64_t packed_bytes(std::uint32_t cell) const = 0;
 
-  /// Brings the packed x, y and z of a cell, one after the other, into `to`, of packed_bytes(cell)
-  /// bytes, and checks them against the cell's hashes; the chunks returned are views of `to`.
-  /// Thread safe. Throws InputError naming file and cell when the bytes are not those that were
-  /// written, ResourceError when they cannot be read.
+  /// Reads the packed x, y and z of a cell, one after another, into `to`, which has
+  /// packed_bytes(cell) bytes, and checks them against the cell's hashes. The chunks returned are
+  /// views of `to`. Thread safe. Throws InputError naming file and cell if the bytes are not those
+  /// that were written, ResourceError if they cannot be read.
   virtual std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,
                                                                std::span<std::byte> to) const = 0;
 
-  /// The source index of a point, by its place in its cell. Thread safe. Throws InputError where
-  /// the cell is damaged.
+  /// The source index of a point by its index in its cell. Thread safe. Throws InputError if the
+  /// cell is damaged.
   virtual std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const = 0;
 
-  /// Whether points have classes; otherwise all have class 0.
+  /// Whether points have classes; otherwise all points have class 0.
   virtual bool has_classes() const { return false; }
-  /// The packed classes of a cell, in the order of its points. Only where has_classes(). Thread
-  /// safe. Throws InputError where the cell is damaged.
+  /// The packed classes of a cell, in the order of its points; only if has_classes(). Thread safe.
+  /// Throws InputError if the cell is damaged.
   virtual PackedChunk<std::uint8_t> classes(std::uint32_t /*cell*/) const { return {}; }
 
   std::uint32_t blocks_per_cell() const {

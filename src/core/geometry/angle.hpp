@@ -4,6 +4,6 @@
 
 namespace clearway {
 
-inline constexpr double kDegree = std::numbers::pi / 180;  ///< radians
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< one degree in radians
 
 }  // namespace clearway

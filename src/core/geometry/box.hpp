@@ -25,7 +25,8 @@ CLEARWAY_HD inline double least_squared_distance(const Box& box, const Vec3& m) 
   return squared_length(d[0], d[1], d[2]);
 }
 
-/// A value never below the predicate's d2 from m to any point e of the box; same argument.
+/// A value never below the predicate's d2 from m to any point e of the box, by the same argument as
+/// for least_squared_distance().
 CLEARWAY_HD inline double greatest_squared_distance(const Box& box, const Vec3& m) {
   double d[3];
   for (int k = 0; k < 3; ++k) {
@@ -36,7 +37,7 @@ CLEARWAY_HD inline double greatest_squared_distance(const Box& box, const Vec3& 
   return squared_length(d[0], d[1], d[2]);
 }
 
-/// Between the nearest points of two boxes.
+/// Squared distance between the nearest points of two boxes.
 CLEARWAY_HD inline double least_squared_distance(const Box& a, const Box& b) {
   double d[3];
   for (int k = 0; k < 3; ++k) {

@@ -5,12 +5,13 @@
 
 #include "core/geometry/triangle.hpp"
 
-/// Where the sign of a distance comes from: whether the surface of a solid winds around a place of
-/// the model's frame (docs/design/solids.md, "The definition"). The same on host and device.
+/// Decides the sign of a distance: whether the surface of a solid winds around a place of the
+/// model's frame (docs/design/solids.md, "The definition"). The result is the same on host and
+/// device.
 namespace clearway {
 
-/// A triangle of a model of which some triangles are solids. A type of its own, so that searches of
-/// surfaces do not ask for an inside.
+/// A triangle of a model some of whose triangles form solids. It is a type of its own, so that
+/// searches of surfaces do not ask for an inside.
 struct SolidTriangle : Triangle {
   using Triangle::Triangle;
   SolidTriangle() = default;
@@ -23,7 +24,8 @@ CLEARWAY_HD inline SolidTriangle transform(const Pose& pose, const SolidTriangle
   return transform(pose, static_cast<const Triangle&>(t));
 }
 
-/// x with transform(pose, x) = e, up to roundings; not finite where the rotation has no inverse.
+/// Pulls e back: returns x with transform(pose, x) = e, up to roundings; not finite if the rotation
+/// has no inverse.
 CLEARWAY_HD inline Vec3 pulled_back(const Pose& pose, const Vec3& e) {
   const double* const r = pose.rotation;
   const auto minor = [r](int a, int b, int c, int d) {
@@ -42,16 +44,16 @@ CLEARWAY_HD inline Vec3 pulled_back(const Pose& pose, const Vec3& e) {
   return x;
 }
 
-/// Places as whole numbers: steps of a power of two from the corner of a box, in which all solids
-/// lie.
+/// Places as whole numbers: steps of a power of two from the corner of a box that holds all solids.
 struct SolidLattice {
-  static constexpr int kBits = 41;  ///< of a coordinate: what is computed from them fits 128 bits
+  /// Bits of a coordinate, so that what is computed from them fits 128 bits
+  static constexpr int kBits = 41;
 
   struct Place {
     std::int64_t x, y, z;
   };
 
-  /// Smaller solids have fewer steps. Larger ones than the second are refused.
+  /// Solids smaller than kLeastSide have fewer steps; those larger than kMostSide are refused.
   static constexpr double kLeastSide = 1e-150, kMostSide = 1e150;
 
   Box box{};
@@ -67,13 +69,13 @@ struct SolidLattice {
     per_metre = std::ldexp(1.0, kBits - 1 - exponent);
   }
 
-  /// False for what is no number.
+  /// Whether x lies in the box; false for NaN.
   CLEARWAY_HD bool has_in_box(const Vec3& x) const {
     return x.x >= box.lo.x && x.x <= box.hi.x && x.y >= box.lo.y && x.y <= box.hi.y &&
            x.z >= box.lo.z && x.z <= box.hi.z;
   }
 
-  /// Of a place in the box: the nearest one.
+  /// The nearest place of the lattice to x, which lies in the box.
   CLEARWAY_HD Place place_of(const Vec3& x) const {
     return {along(x.x, box.lo.x), along(x.y, box.lo.y), along(x.z, box.lo.z)};
   }
@@ -94,12 +96,13 @@ CLEARWAY_HD inline Place difference(const Place& a, const Place& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// Twice the area of the origin and two places, seen along z.
+/// Twice the area of the triangle of the origin and two places, seen along z.
 CLEARWAY_HD inline Wide turn(const Place& a, const Place& b) {
   return static_cast<Wide>(a.x) * b.y - static_cast<Wide>(a.y) * b.x;
 }
 
-/// 1 or -1 where the edge from a to b passes the origin upwards or downwards in y, at a larger x.
+/// 1 or -1 if the edge from a to b passes the origin upwards or downwards in y, at a larger x;
+/// otherwise 0.
 CLEARWAY_HD inline int passes(const Place& a, const Place& b) {
   if ((a.y > 0) == (b.y > 0)) return 0;
   if (b.y > 0) return turn(a, b) > 0 ? 1 : 0;
@@ -108,8 +111,8 @@ CLEARWAY_HD inline int passes(const Place& a, const Place& b) {
 
 }  // namespace inside_detail
 
-/// What a triangle adds to how often its solid winds around x, which is in the lattice's box: 1 or
-/// -1 where it is above x, by its turn.
+/// A triangle's contribution to the winding number of its solid around x, which is in the lattice's
+/// box: 1 or -1 if the triangle is above x, by its orientation; otherwise 0.
 CLEARWAY_HD inline int winding_above(const SolidLattice& lattice, const SolidLattice::Place& x,
                                      const Triangle& t) {
   using namespace inside_detail;

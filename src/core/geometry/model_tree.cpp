@@ -13,8 +13,8 @@ ModelTreeOf<Element>::ModelTreeOf(std::span<const Element> model, int threads)
   if (elements_.empty()) return;
   box_ = box_of(std::span<const Element>(elements_));
   build(threads);
-  // A leaf's 4 to 8 points of a surface cover a square of some 2.5 spacings. Of triangles it is
-  // taken alike.
+  // The 4 to 8 points of a leaf on a surface cover a square of some 2.5 spacings. For triangles the
+  // same factor is used.
   spacing_ = median_leaf_diagonal() / 3.5;
 }
 
@@ -25,7 +25,8 @@ double ModelTreeOf<Element>::median_leaf_diagonal() const {
     const bool leaf = 2 * node + 1 >= boxes_.size();
     const Box& box = boxes_[node];
     const double squared = leaf ? squared_distance(box.lo, box.hi) : 0;
-    if (squared > 0) diagonals.push_back(std::sqrt(squared));  // not: unused, or one place
+    // Unused nodes, and those whose elements are at one place, do not count.
+    if (squared > 0) diagonals.push_back(std::sqrt(squared));
   }
   if (diagonals.empty()) return 0;
   const auto middle = diagonals.begin() + static_cast<std::ptrdiff_t>(diagonals.size() / 2);
@@ -33,7 +34,7 @@ double ModelTreeOf<Element>::median_leaf_diagonal() const {
   return *middle;
 }
 
-/// Level by level: the nodes of one are parts of their own.
+/// Builds the tree level by level, because the nodes of one level are separate parts.
 template <typename Element>
 void ModelTreeOf<Element>::build(int threads) {
   boxes_.resize(last_node(size()) + 1);
@@ -51,7 +52,7 @@ void ModelTreeOf<Element>::build(int threads) {
   }
 }
 
-/// The right half is never the smaller one.
+/// The greatest index of a node: the right half is never the smaller one.
 template <typename Element>
 std::size_t ModelTreeOf<Element>::last_node(std::uint32_t elements) {
   std::size_t node = 0;

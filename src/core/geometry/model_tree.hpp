@@ -22,20 +22,20 @@ class ModelTreeOf {
   const Element& element(std::uint32_t index) const { return elements_[index]; }
   const Box& box() const { return box_; }
 
-  /// An estimate of the distance between neighbouring elements, metres: for choosing sizes, never
+  /// An estimate of the distance between neighbouring elements, metres; for choosing sizes, never
   /// for answers.
   double spacing() const { return spacing_; }
 
-  /// Valid while the tree lives.
+  /// The tree for look-ups. Valid while the tree lives.
   Ref ref() const {
     return {elements_.data(), boxes_.data(), size(), static_cast<std::uint32_t>(boxes_.size())};
   }
 
   Nearest nearest(const Vec3& x, std::uint32_t guess = 0) const { return ref().nearest(x, guess); }
 
-  /// The elements with a computed squared distance to the box, of triangles of their own boxes, of
-  /// at most `squared_radius` (which is a number), into `out`, replaced; false, and some of them,
-  /// where they are more than `most`.
+  /// Replaces `out` by the elements whose computed squared distance to the box is at most
+  /// `squared_radius`, which must be a number; for triangles it is that of their own boxes. Returns
+  /// false, with only some of the elements, if they are more than `most`.
   bool within(const Box& box, double squared_radius, std::size_t most,
               std::vector<Element>& out) const {
     out.clear();
@@ -49,7 +49,7 @@ class ModelTreeOf {
  private:
   static constexpr std::uint32_t kLeafElements = Ref::kLeafElements;
 
-  /// A node with its elements.
+  /// A node with the range of its elements.
   struct Part {
     std::uint32_t begin, end;
     std::size_t node;
@@ -64,7 +64,7 @@ class ModelTreeOf {
               double squared_radius, std::size_t most, std::vector<Element>& out) const;
 
   std::vector<Element> elements_;
-  std::vector<Box> boxes_;  // of node i; children 2 i + 1 and 2 i + 2
+  std::vector<Box> boxes_;  // box of node i, whose children are 2 i + 1 and 2 i + 2
   Box box_{};
   double spacing_ = 0;
 };

@@ -10,27 +10,27 @@ namespace clearway {
 /// What a descent of a model's tree does with a box.
 enum class ModelStep { kSkip, kEnter, kTake };
 
-/// A ModelTree's elements and boxes where they lie, on the host or on a device. Does not own them.
+/// View of a ModelTreeOf on the host or on a device. Does not own its arrays.
 template <typename Element>
 struct ModelTreeRefOf {
   static constexpr std::uint32_t kLeafElements = kIsTriangle<Element> ? 4 : 8;
-  static constexpr int kMostParts = 40;  ///< open parts of a descent; 2^32 elements are 31 levels
+  /// Greatest number of open parts of a descent; 2^32 elements are 31 levels
+  static constexpr int kMostParts = 40;
 
   using Step = ModelStep;
 
   struct Nearest {
-    std::uint32_t element;  ///< in the order of the tree
+    std::uint32_t element;  ///< index in the order of the tree
     double squared_distance;
   };
 
   const Element* elements;
-  const Box* boxes;  ///< of node i; children 2 i + 1 and 2 i + 2
+  const Box* boxes;  ///< box of node i, whose children are 2 i + 1 and 2 i + 2
   std::uint32_t size;
   std::uint32_t box_count;
 
-  /// Goes down the tree: step(box) tells whether to leave out the elements of the box, to look
-  /// closer, or to answer true. Whether any box was taken or visit(element) was true; stops at the
-  /// first.
+  /// Descends the tree: step(box) says whether to skip the elements of the box, to enter it, or to
+  /// take it. Returns whether any box was taken or visit(element) was true; stops at the first.
   template <typename StepInto, typename Visit>
   CLEARWAY_HD bool any(StepInto step, Visit visit) const {
     if (size == 0) return false;
@@ -54,9 +54,8 @@ struct ModelTreeRefOf {
     return false;
   }
 
-  /// Whether visit(element) is true for any element with a computed squared distance to x of at
-  /// most `squared_radius`, and some others; stops at the first. A radius that is not a number
-  /// visits all.
+  /// Whether visit(element) is true for any element whose computed squared distance to x is at most
+  /// `squared_radius`; may visit some others. Stops at the first. A radius of NaN visits all.
   template <typename Visit>
   CLEARWAY_HD bool any_within(const Vec3& x, double squared_radius, Visit visit) const {
     return any(
@@ -66,11 +65,11 @@ struct ModelTreeRefOf {
         [&](const Element& m) { return !(squared_distance(x, m) > squared_radius) && visit(m); });
   }
 
-  /// The nearest element to x of a model that is not empty. `guess`: any, better a near one.
+  /// The element nearest to x in a model that is not empty. guess: any element, best a near one.
   CLEARWAY_HD Nearest nearest(const Vec3& x, std::uint32_t guess) const {
     Nearest best{guess, squared_distance(x, elements[guess])};
     Part open[kMostParts];
-    double squared[kMostParts];  // to the boxes of the open parts
+    double squared[kMostParts];  // squared distances to the boxes of the open parts
     int count = 0;
     squared[count] = 0;
     open[count++] = {0, 0, size};

@@ -7,7 +7,7 @@
 
 namespace clearway {
 
-/// The box of points, at least one.
+/// The box around points, of which there must be at least one.
 inline Box box_of(std::span<const Vec3> points) {
   Box box{points[0], points[0]};
   for (const Vec3& p : points) box.extend(p);

@@ -38,23 +38,23 @@ CLEARWAY_HD inline double rounded_quotient(double a, double b) {
 #endif
 }
 
-/// (a_x b_x + a_y b_y) + a_z b_z
+/// Dot product in this order of operations: (a_x b_x + a_y b_y) + a_z b_z.
 CLEARWAY_HD inline double rounded_dot(const Vec3& a, const Vec3& b) {
   return rounded_sum(rounded_sum(rounded_product(a.x, b.x), rounded_product(a.y, b.y)),
                      rounded_product(a.z, b.z));
 }
 
-/// (x x + y y) + z z
+/// Squared length in this order of operations: (x x + y y) + z z.
 CLEARWAY_HD inline double squared_length(double x, double y, double z) {
   return rounded_dot({x, y, z}, {x, y, z});
 }
 
-/// a - b
+/// The vector a - b, each coordinate rounded once.
 CLEARWAY_HD inline Vec3 difference(const Vec3& a, const Vec3& b) {
   return {rounded_sum(a.x, -b.x), rounded_sum(a.y, -b.y), rounded_sum(a.z, -b.z)};
 }
 
-/// m' = ((R_k0 * m_0 + R_k1 * m_1) + R_k2 * m_2) + p_k for k = 0, 1, 2.
+/// Moves m by a pose: m' = ((R_k0 * m_0 + R_k1 * m_1) + R_k2 * m_2) + p_k for k = 0, 1, 2.
 CLEARWAY_HD inline Vec3 transform(const Pose& pose, const Vec3& m) {
   Vec3 out;
   for (int k = 0; k < 3; ++k) {
@@ -65,19 +65,20 @@ CLEARWAY_HD inline Vec3 transform(const Pose& pose, const Vec3& m) {
   return out;
 }
 
-/// d2 between an environment point and a transformed model point.
+/// The predicate's d2, the squared distance between an environment point and a transformed model
+/// point.
 CLEARWAY_HD inline double squared_distance(const Vec3& e, const Vec3& m) {
   const Vec3 d = difference(e, m);
   return rounded_dot(d, d);
 }
 
-/// True when environment point e collides with the transformed model point m: d2 < r * r, strict.
+/// True if environment point e collides with the transformed model point m: d2 < r * r, strict.
 CLEARWAY_HD inline bool collides(const Vec3& e, const Vec3& m, double radius) {
   return squared_distance(e, m) < rounded_product(radius, radius);
 }
 
-/// True when e collides with the inside of the segment on which a model point moves from a, where a
-/// pose puts it, to b, where the next one does: 0 < n < D and w.w < r * r with n = ae.ab, D = ab.ab
+/// True if e collides with the inside of the segment on which a model point moves from a, its place
+/// at one pose, to b, its place at the next: 0 < n < D and w.w < r * r with n = ae.ab, D = ab.ab
 /// and w = ae - (n / D) ab. False for a = b. collides() decides about the segment's ends.
 CLEARWAY_HD inline bool collides_inside(const Vec3& e, const Vec3& a, const Vec3& b,
                                         double radius) {
@@ -92,7 +93,7 @@ CLEARWAY_HD inline bool collides_inside(const Vec3& e, const Vec3& a, const Vec3
   return beside & (rounded_dot(w, w) < rounded_product(radius, radius));
 }
 
-/// True when e collides with a model point on its way from a to b, both ends included. Each end is
+/// True if e collides with a model point on its way from a to b, both ends included. Each end is
 /// decided as at its pose, so a hit at a pose is a hit on the way to it and on the way from it.
 CLEARWAY_HD inline bool collides_on_way(const Vec3& e, const Vec3& a, const Vec3& b,
                                         double radius) {

@@ -7,8 +7,8 @@
 
 namespace clearway {
 
-/// Scale and offset per axis, metres. The position of a stored point is by definition
-/// q * scale + offset in double, each operation rounded: monotone in q for a scale > 0.
+/// Scale and offset for each axis, metres. The position of a stored point is by definition q *
+/// scale + offset in double, with each operation rounded; it is monotone in q for a scale > 0.
 struct Quantisation {
   double scale[3];
   double offset[3];

@@ -21,7 +21,7 @@ struct QuantumBox {
     }
   }
 
-  /// The smallest box around both.
+  /// The smallest box that holds both boxes.
   CLEARWAY_HD QuantumBox united(const QuantumBox& other) const {
     QuantumBox out = *this;
     out.extend(other.lo);
@@ -30,20 +30,21 @@ struct QuantumBox {
   }
 };
 
-/// The box of the positions: exact, because a position is monotone in its integers.
+/// The box of the positions of a box of integers. It is exact, because a position is monotone in
+/// its integers.
 CLEARWAY_HD inline Box position_box(const Quantisation& quantisation, const QuantumBox& box) {
   return {position(quantisation, box.lo[0], box.lo[1], box.lo[2]),
           position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
 }
 
-/// A block's box inside its cell's box, in steps of the cell's extent / 65535 per axis, rounded
-/// outwards. 12 bytes a block.
+/// A block's box inside its cell's box, in steps of the cell's extent / 65535 on each axis, rounded
+/// outwards. Takes 12 bytes.
 struct BlockBox {
   std::uint16_t lo[3];
   std::uint16_t hi[3];
   friend bool operator==(const BlockBox&, const BlockBox&) = default;
 
-  /// The smallest box around both, which are in steps of the same cell.
+  /// The smallest box that holds both boxes, which are in steps of the same cell.
   CLEARWAY_HD BlockBox united(const BlockBox& other) const {
     BlockBox out = *this;
     for (int k = 0; k < 3; ++k) {
@@ -56,8 +57,8 @@ struct BlockBox {
 
 inline constexpr std::uint64_t kBlockBoxSteps = 65535;
 
-/// A BlockBox whose decoded box holds `block` and exceeds it by at most a step (and a quantum) on
-/// any side; `block` lies in `cell`.
+/// Encodes the box of a block that lies in `cell`. The decoded box holds `block` and exceeds it by
+/// at most a step (and a quantum) on any side.
 CLEARWAY_HD inline BlockBox encode_block_box(const QuantumBox& cell, const QuantumBox& block) {
   BlockBox out;
   for (int k = 0; k < 3; ++k) {
@@ -71,7 +72,8 @@ CLEARWAY_HD inline BlockBox encode_block_box(const QuantumBox& cell, const Quant
   return out;
 }
 
-/// Integers again, rounded outwards: holds every point of the block.
+/// Decodes the box of a block to integers, rounded outwards, so that it holds every point of the
+/// block.
 CLEARWAY_HD inline QuantumBox decode_block_box(const QuantumBox& cell, const BlockBox& block) {
   QuantumBox out;
   for (int k = 0; k < 3; ++k) {

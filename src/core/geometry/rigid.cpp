@@ -29,7 +29,8 @@ Stretch stretch_of(const Pose& pose) {
 }
 
 double greatest_stretch_bound(const Pose& pose) {
-  // The largest row sum of |R^T R|, a norm of a symmetric matrix, bounds its largest eigenvalue.
+  // The largest row sum of |R^T R|, which is a norm of a symmetric matrix, bounds its largest
+  // eigenvalue.
   const double* r = pose.rotation;
   double greatest = 0;
   for (int i = 0; i < 3; ++i) {
@@ -49,8 +50,8 @@ bool is_rigid(const Stretch& stretch) {
 }
 
 double transform_rounding(const Vec3& reach, const Pose& pose) {
-  // Three products and three sums: at most 4 roundings on any path, each relative to at most the
-  // sum of magnitudes; 6 u covers the second-order terms.
+  // Three products and three sums make at most 4 roundings on any path, each relative to at most
+  // the sum of magnitudes; 6 u covers the second-order terms.
   double worst = 0;
   for (int k = 0; k < 3; ++k) {
     const double* row = pose.rotation + 3 * k;
@@ -68,7 +69,8 @@ double displacement_bound(const Box& model, const Pose& a, const Pose& b) {
     greatest = std::max(greatest, squared_distance(transform(a, m), transform(b, m)));
   }
   const Vec3 reach = reach_of(model);
-  // The corners' own transforms and those of the model points between them err by this much each.
+  // The transforms of the corners, and those of the model points between them, err by this much
+  // each.
   const double rounding = transform_rounding(reach, a) + transform_rounding(reach, b);
   return std::sqrt(greatest) * (1 + 8 * kUnitRoundoff) + 2 * std::sqrt(3.0) * rounding * 1.01;
 }

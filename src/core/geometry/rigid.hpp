@@ -5,11 +5,11 @@
 
 namespace clearway {
 
-/// Rigid means: singular values within this of 1 and a positive determinant. Printing with six
-/// digits moves them by less than 1e-5.
+/// Tolerance of a rigid pose: its singular values are within this of 1, and its determinant is
+/// positive. Printing with six digits moves them by less than 1e-5.
 inline constexpr double kRigidTolerance = 1e-4;
 
-/// Singular values of a pose's rotation. least <= greatest; each computed value lies within a few
+/// Singular values of a pose's rotation, least <= greatest. Each computed value lies within a few
 /// ulps of the true one, and both are widened by 1e-12 so that they bound it.
 struct Stretch {
   double least;
@@ -17,7 +17,7 @@ struct Stretch {
   double determinant;
 };
 
-/// Source: Eigen's JacobiSVD.
+/// The singular values and the determinant of a pose's rotation. Source: Eigen's JacobiSVD.
 Stretch stretch_of(const Pose& pose);
 
 /// An upper bound of the largest singular value of a pose's rotation, rounding included: within

@@ -12,10 +12,10 @@ namespace clearway {
 class SolidParts {
  public:
   SolidParts() = default;
-  /// The model may go afterwards. The number of each solid is below the number of triangles.
+  /// model: not needed afterwards; the number of each solid must be below the number of triangles.
   explicit SolidParts(const Model& model, int threads = 1);
 
-  /// Valid while they live.
+  /// The solids for look-ups. Valid while this object lives.
   SolidPartsRef ref() const {
     return {parts_.data(),
             triangles_.data(),
@@ -26,8 +26,8 @@ class SolidParts {
             lattice_};
   }
 
-  /// How far a place may be moved before it is asked whether it lies inside, metres in the model's
-  /// frame; and the triangles with it (docs/design/numerics.md, "Solids").
+  /// Bound of how far a place, and the triangles, are moved by rounding before the test whether the
+  /// place lies inside; metres in the model's frame (docs/design/numerics.md, "Solids").
   double rounding() const;
 
   std::uint64_t allocated_bytes() const {

@@ -7,20 +7,21 @@
 
 namespace clearway {
 
-/// A solid's tree within the arrays of all.
+/// The place of a solid's tree within the arrays of all solids.
 struct SolidPart {
-  std::uint32_t first, count;          ///< triangles
-  std::uint32_t first_box, box_count;  ///< of the tree; the first is that of the solid
+  std::uint32_t first, count;  ///< range of its triangles
+  /// Range of the tree's boxes; the first one is the box of the solid
+  std::uint32_t first_box, box_count;
 };
 
-/// SolidParts where they lie, on the host or on a device. Does not own them.
+/// View of SolidParts on the host or on a device. Does not own them.
 struct SolidPartsRef {
   using Tree = ModelTreeRefOf<Triangle>;
 
   const SolidPart* parts = nullptr;
   const Triangle* triangles = nullptr;
   const Box* boxes = nullptr;
-  std::uint32_t count = 0;  ///< solids
+  std::uint32_t count = 0;  ///< number of solids
   std::uint32_t triangle_count = 0, box_count = 0;
   SolidLattice lattice;
 
@@ -29,14 +30,14 @@ struct SolidPartsRef {
     return {triangles + part.first, boxes + part.first_box, part.count, part.box_count};
   }
 
-  /// x: in the model's frame; anything.
+  /// Whether any solid contains x, which is any place of the model's frame.
   CLEARWAY_HD bool contains(const Vec3& x) const {
     return any_with(
         x, [](std::uint32_t) { return false; }, [](std::uint32_t) { return true; });
   }
 
-  /// Whether visit(solid) is true for any solid that contains x; stops at the first. Does not look
-  /// at those for which skip(solid) is true.
+  /// Whether visit(solid) is true for any solid that contains x; stops at the first one. Solids for
+  /// which skip(solid) is true are left out.
   template <typename Skip, typename Visit>
   CLEARWAY_HD bool any_with(const Vec3& x, Skip skip, Visit visit) const {
     if (!lattice.has_in_box(x)) return false;
@@ -49,8 +50,9 @@ struct SolidPartsRef {
   }
 
  private:
-  /// Triangles of boxes that are left out add nothing: all their corners on the lattice are on one
-  /// side of x, or not above it. Two steps are more than the rounding to the lattice.
+  /// The winding number of a solid around x. Triangles of boxes that are left out add nothing: all
+  /// their corners on the lattice are on one side of x, or not above it. Two steps are more than
+  /// the rounding to the lattice.
   CLEARWAY_HD int winding(std::uint32_t solid, const Vec3& x,
                           const SolidLattice::Place& place) const {
     int sum = 0;

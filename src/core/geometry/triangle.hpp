@@ -9,10 +9,11 @@
 /// error is bounded in docs/design/numerics.md ("Triangles").
 namespace clearway {
 
-/// Its corners, metres. None is refused: without area it is its edges, without length a point.
+/// The corners of a triangle, metres. None is refused: a triangle without area counts as its edges,
+/// one without length as a point.
 struct Triangle {
   Triangle() = default;
-  /// So that three numbers in braces are never a triangle.
+  /// Declared so that three numbers in braces are never taken for a triangle.
   CLEARWAY_HD Triangle(const Vec3& at_a, const Vec3& at_b, const Vec3& at_c)
       : a(at_a), b(at_b), c(at_c) {}
 
@@ -27,19 +28,19 @@ CLEARWAY_HD inline Triangle transform(const Pose& pose, const Triangle& t) {
 
 namespace triangle_detail {
 
-/// a + g v
+/// The place a + g v, each operation rounded.
 CLEARWAY_HD inline Vec3 along(const Vec3& a, double g, const Vec3& v) {
   return {rounded_sum(a.x, rounded_product(g, v.x)), rounded_sum(a.y, rounded_product(g, v.y)),
           rounded_sum(a.z, rounded_product(g, v.z))};
 }
 
-/// What lies nearer lowers `least`; what is no number does not.
+/// Lowers `least` to the squared length of `place` if that is less; NaN changes nothing.
 CLEARWAY_HD inline void lower(double& least, const Vec3& place) {
   const double squared = rounded_dot(place, place);
   if (squared < least) least = squared;
 }
 
-/// Where the origin's foot on a line lies: at n / length of the way v from a.
+/// The foot of the origin on a line, at n / length of the vector v from a.
 struct Foot {
   double n, length;
 
@@ -47,7 +48,7 @@ struct Foot {
       : n(-rounded_dot(a, v)), length(rounded_dot(v, v)) {}
 
   CLEARWAY_HD double share() const { return rounded_quotient(n, length); }
-  /// Both strictly: an end is decided as a corner.
+  /// Strictly between both ends, because an end is decided as a corner.
   CLEARWAY_HD bool is_inside() const { return (0 < n) & (n < length); }
 };
 
@@ -56,7 +57,8 @@ CLEARWAY_HD inline void lower_by_edge(double& least, const Vec3& a, const Vec3& 
   if (foot.is_inside()) lower(least, along(a, foot.share(), v));
 }
 
-/// The foot on the plane, where it lies strictly within the triangle; on_ab: the foot on line ab.
+/// Lowers `least` by the foot on the plane if it lies strictly within the triangle. on_ab: the foot
+/// on line ab.
 CLEARWAY_HD inline void lower_by_face(double& least, const Vec3& a, const Vec3& ab, const Vec3& ac,
                                       const Foot& on_ab) {
   const double t = on_ab.share();
@@ -72,9 +74,9 @@ CLEARWAY_HD inline void lower_by_face(double& least, const Vec3& a, const Vec3& 
 
 }  // namespace triangle_detail
 
-/// d2 between e and a transformed triangle: the least squared length, seen from e, of its corners,
-/// of the feet strictly within its edges, and of the foot strictly within its face. Never more than
-/// squared_distance(e, corner).
+/// The predicate's d2 between e and a transformed triangle: the least squared length, seen from e,
+/// of its corners, of the feet strictly within its edges, and of the foot strictly within its face.
+/// Never more than squared_distance(e, corner).
 CLEARWAY_HD inline double squared_distance(const Vec3& e, const Triangle& t) {
   using namespace triangle_detail;
   const Vec3 a = difference(t.a, e), b = difference(t.b, e), c = difference(t.c, e);
@@ -91,7 +93,7 @@ CLEARWAY_HD inline double squared_distance(const Vec3& e, const Triangle& t) {
   return least;
 }
 
-/// True when environment point e collides with the transformed triangle: d2 < r * r, strict.
+/// True if environment point e collides with the transformed triangle: d2 < r * r, strict.
 CLEARWAY_HD inline bool collides(const Vec3& e, const Triangle& t, double radius) {
   return squared_distance(e, t) < rounded_product(radius, radius);
 }

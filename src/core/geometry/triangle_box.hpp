@@ -8,7 +8,7 @@
 
 namespace clearway {
 
-/// The triangles of a model, whose indices are all below the number of its vertices.
+/// The triangles of a model. Their indices must be below the number of its vertices.
 inline std::vector<Triangle> triangles_of(const Model& model) {
   std::vector<Triangle> triangles;
   triangles.reserve(model.triangles.size());
@@ -18,7 +18,7 @@ inline std::vector<Triangle> triangles_of(const Model& model) {
   return triangles;
 }
 
-/// The box of triangles, at least one.
+/// The box around triangles, of which there must be at least one.
 inline Box box_of(std::span<const Triangle> triangles) {
   Box box{triangles[0].a, triangles[0].a};
   for (const Triangle& t : triangles) {
@@ -27,12 +27,13 @@ inline Box box_of(std::span<const Triangle> triangles) {
   return box;
 }
 
-/// A lower bound: to the triangle's box.
+/// Lower bound of the squared distance between a box and a triangle: that to the triangle's box.
 inline double least_squared_distance(const Box& box, const Triangle& t) {
   return least_squared_distance(box, box_of(std::span<const Triangle>(&t, 1)));
 }
 
-/// By what elements are divided along an axis; for triangles three times their middle.
+/// The coordinate by which elements are divided along an axis; for triangles three times that of
+/// their centroid.
 inline double place_along(const Vec3& m, int axis) { return m[axis]; }
 inline double place_along(const Triangle& t, int axis) { return t.a[axis] + t.b[axis] + t.c[axis]; }
 

@@ -8,33 +8,35 @@
 
 namespace clearway {
 
-/// Up to eight triangles of a model, with what distances to them need, so that one instruction
-/// works on several. For bounds, never for answers: the distance to any of them is as wrong as
-/// that of the predicate, and its last bits are others (docs/design/numerics.md, "Triangles").
+/// Up to eight triangles of a model, with the values that distances to them need, so that one
+/// instruction works on several. For bounds, never for answers: a distance to one of them has the
+/// same error bound as that of the predicate, but its last bits differ (docs/design/numerics.md,
+/// "Triangles").
 struct TrianglePacket {
   static constexpr std::uint32_t kMost = 8;
 
-  double a[3][kMost];  ///< by axis; behind `count` the last triangle again
+  double a[3][kMost];  ///< corner a by axis; places behind `count` repeat the last triangle
   double ab[3][kMost], ac[3][kMost];
-  double height[3][kMost];  ///< over ab
-  double foot[kMost];       ///< of the height, as a share of ab
-  double per_ab[kMost];     ///< 1 / the squared length, which may be infinite
+  double height[3][kMost];  ///< height over ab
+  double foot[kMost];       ///< foot of the height, as a share of ab
+  double per_ab[kMost];     ///< 1 / squared length of ab, which may be infinite
   double per_ac[kMost], per_bc[kMost], per_height[kMost];
-  double squared_edge[kMost];  ///< of the longest edge, and a little that keeps off underflow
-  std::uint32_t index[kMost];  ///< of the triangle in the model's tree
+  /// Square of the longest edge, plus a little that prevents underflow
+  double squared_edge[kMost];
+  std::uint32_t index[kMost];  ///< index of the triangle in the model's tree
   std::uint32_t count;
 
-  /// Of the squares of a distance and of a triangle's longest edge: how much a plane across the way
-  /// between both is off because the way is not quite the shortest.
+  /// Share of the squares of a distance and of a triangle's longest edge by which a plane across
+  /// the way between the two is off, because the way is not quite the shortest.
   static constexpr double kTilt = 0x1p-21;
 
-  /// Products of lengths in from_hull() round by less than this share of the squared lengths.
+  /// Share of the squared lengths by which products of lengths in from_hull() round at most.
   static constexpr double kRounding = 32 * kUnitRoundoff;
 
-  /// What is nearest of a triangle to a place.
+  /// The place of a triangle that is nearest to a given place.
   struct Nearest {
     double squared;
-    Vec3 way;  ///< from there to the place
+    Vec3 way;  ///< vector from the triangle to the given place
   };
 
   void set(std::uint32_t i, const Triangle& t, std::uint32_t of) {
@@ -59,7 +61,7 @@ struct TrianglePacket {
     index[i] = of;
   }
 
-  /// Lane `from` of another packet, or of this one.
+  /// Copies lane `from` of another packet, or of this one, to lane i.
   void copy(std::uint32_t i, const TrianglePacket& other, std::uint32_t from) {
     for (int k = 0; k < 3; ++k) {
       a[k][i] = other.a[k][from];
@@ -76,7 +78,8 @@ struct TrianglePacket {
     index[i] = other.index[from];
   }
 
-  /// Behind `used` triangles, at least one, the last of them again.
+  /// Ends the packet after `used` triangles, at least one, and fills the rest with the last of
+  /// them.
   void close(std::uint32_t used) {
     count = used;
     for (std::uint32_t i = used; i < kMost; ++i) copy(i, *this, used - 1);
@@ -84,7 +87,8 @@ struct TrianglePacket {
 
   CLEARWAY_HD std::uint32_t element(std::uint32_t i) const { return index[i]; }
 
-  /// As the predicate, but with the ends of edges as feet, and shares as products.
+  /// The nearest place of triangle i to x. Computed like the predicate, but with the ends of edges
+  /// as feet, and with products instead of quotients.
   CLEARWAY_IN_CLONE CLEARWAY_HD Nearest nearest(std::uint32_t i, const Vec3& x) const {
     const Vec3 to_b{ab[0][i], ab[1][i], ab[2][i]}, to_c{ac[0][i], ac[1][i], ac[2][i]};
     const Vec3 over{height[0][i], height[1][i], height[2][i]};
@@ -103,11 +107,11 @@ struct TrianglePacket {
     return nearer(least, face);
   }
 
-  /// At most the square of the distance from the triangle to every place of some hull, of which x
-  /// is one. It is measured along `across`, which may be any direction; the bound is close where it
-  /// is the shortest way from the triangle to the hull. along: at most 0, and at most the product
-  /// of `across` and any place of the hull as seen from x, less its rounding
-  /// (docs/design/numerics.md, "Triangles", hulls).
+  /// Lower bound of the squared distance from triangle i to every place of some hull that includes
+  /// x. It is measured along `across`, which may be any direction; the bound is close if that is
+  /// the shortest way from the triangle to the hull. along: at most 0, and at most the product of
+  /// `across` and any place of the hull as seen from x, less its rounding (docs/design/numerics.md,
+  /// "Triangles", hulls).
   CLEARWAY_IN_CLONE CLEARWAY_HD double from_hull(std::uint32_t i, const Vec3& x,
                                                  double squared_from_x, const Vec3& across,
                                                  double along) const {
@@ -122,8 +126,9 @@ struct TrianglePacket {
     return above > 0 ? above / length * above : 0;
   }
 
-  /// The same across the way from the triangle's nearest place to x itself. It costs less and is
-  /// less close, unless x is the nearest place of the hull. along: of that way.
+  /// Lower bound as from_hull(), measured along the way from the triangle's nearest place to x. It
+  /// costs less and is less close, unless x is the nearest place of the hull. along: that of this
+  /// way.
   CLEARWAY_HD double from_nearest_hull(std::uint32_t i, double squared_from_x, double along) const {
     const double above = squared_from_x * (1 - kTilt) + along - kTilt * squared_edge[i];
     return above > 0 ? above / squared_from_x * above : 0;
@@ -134,7 +139,7 @@ struct TrianglePacket {
   }
 
   CLEARWAY_HD static double clamped(double share) {
-    const double from_0 = share > 0 ? share : 0;  // also of what is no number
+    const double from_0 = share > 0 ? share : 0;  // 0 for NaN, too
     return from_0 < 1 ? from_0 : 1;
   }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kWidth = WideBoxes::kWidth;
 
-/// Part `part` of the 2^depth parts that halving makes of the elements.
+/// Part number `part` of the 2^depth parts into which the elements are halved.
 template <typename Element>
 std::span<const Element> part_of(std::span<const Element> elements, std::uint32_t part, int depth) {
   for (int bit = depth - 1; bit >= 0; --bit) {
@@ -43,8 +43,8 @@ PointPacket packet_of(std::span<const Vec3> points, const Vec3* /*first*/) {
   return packet;
 }
 
-/// The area vectors of triangles, each turned to the side of the others' sum: which way a piece of
-/// a surface faces, whatever the order of its corners.
+/// The sum of the area vectors of triangles, each turned to the side of the sum of the others: the
+/// direction in which a piece of a surface faces, whatever the order of its corners.
 struct Facing {
   Vec3 sum{};
   double area = 0;
@@ -70,13 +70,13 @@ Facing facing_of(std::span<const Triangle> triangles) {
 
 Facing facing_of(std::span<const Vec3> /*points*/) { return {}; }
 
-/// A slab says no more than the box of triangles that share no direction: their area vectors then
-/// add up to less than this share of their areas.
+/// Least share of the triangles' areas that their area vectors add up to if they share a direction.
+/// For others a slab says no more than the box.
 constexpr double kLeastShared = 0.5;
 
 }  // namespace
 
-/// What a node's child holds.
+/// The elements that a node's child holds, with their box and facing.
 template <typename Element>
 struct WideTreeOf<Element>::Part {
   std::span<const Element> elements;
@@ -86,7 +86,7 @@ struct WideTreeOf<Element>::Part {
   explicit Part(std::span<const Element> of)
       : elements(of), box(box_of(of)), facing(facing_of(of)) {}
 
-  /// next: the part behind this one.
+  /// Appends the part that follows this one.
   void add(const Part& next) {
     elements = {elements.data(), elements.size() + next.elements.size()};
     facing.add(next.facing);
@@ -150,7 +150,7 @@ void WideTreeOf<Element>::add_level(const std::vector<Part>& children) {
   }
 }
 
-/// Across the mean direction of the triangles, where they share one.
+/// Adds a slab across the mean direction of the triangles, if they share one.
 template <typename Element>
 void WideTreeOf<Element>::add_slab(std::size_t child, const Part& part) {
   WideBoxes::Slabs& slabs = slabs_.back();

@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// A bounding volume hierarchy of eight children a node over the parts of a ModelTreeOf, so that
-/// eight boxes or elements are tested by one instruction each. It is a third as deep.
+/// A bounding volume hierarchy over the parts of a ModelTreeOf with eight children for each node,
+/// so that one instruction tests eight boxes or elements. It is a third as deep as that tree.
 template <typename Element>
 class WideTreeOf {
  public:
@@ -18,7 +18,7 @@ class WideTreeOf {
   WideTreeOf() = default;
   explicit WideTreeOf(const ModelTreeOf<Element>& model);
 
-  /// Valid while the tree lives.
+  /// The tree for look-ups. Valid while the tree lives.
   Ref ref() const;
 
   std::uint64_t allocated_bytes() const {
@@ -34,9 +34,9 @@ class WideTreeOf {
   void add_slab(std::size_t child, const Part& part);
 
   std::vector<WideBoxes::Node> nodes_;
-  std::vector<WideBoxes::Slabs> slabs_;  ///< a node, of triangles
+  std::vector<WideBoxes::Slabs> slabs_;  ///< one for each node; only for triangles
   std::vector<PacketOf<Element>> packets_;
-  std::vector<std::uint32_t> first_;  ///< node of each level
+  std::vector<std::uint32_t> first_;  ///< first node of each level
   Vec3 origin_{};
 };
 

@@ -14,26 +14,26 @@ namespace clearway {
 struct PointPacket {
   static constexpr std::uint32_t kMost = 8;
 
-  double at[3][kMost];  ///< by axis; behind `count` the last point again
+  double at[3][kMost];  ///< coordinates by axis; places behind `count` repeat the last point
   std::uint32_t count;
 
   CLEARWAY_HD Vec3 point(std::uint32_t i) const { return {at[0][i], at[1][i], at[2][i]}; }
 };
 
-/// What holds several elements of a model.
+/// The packet type that holds several elements of a model.
 template <typename Element>
 using PacketOf = std::conditional_t<kIsTriangle<Element>, TrianglePacket, PointPacket>;
 
-/// Places whose distances to elements are asked for: all between three corners, and so within a
-/// box.
+/// A set of places whose distances to elements are asked for: the triangle of three corners, and a
+/// box around it.
 struct PlaceHull {
   Box box;
   Vec3 corner[3];
 };
 
-/// Eight boxes in floats, and the squared distances to them. A box of triangles that face alike has
-/// a slab too: two planes that they lie between. Beside a surface that is not parallel to an axis a
-/// slab is far closer to it than the box (docs/design/numerics.md, "Clearance", slabs).
+/// Eight boxes in floats, and the squared distances to them. A box of triangles that face alike
+/// also has a slab: two planes between which they lie. Beside a surface that is not parallel to an
+/// axis, the slab is far closer to it than the box (docs/design/numerics.md, "Clearance", slabs).
 struct WideBoxes {
   static constexpr std::uint32_t kWidth = 8;
 
@@ -42,8 +42,8 @@ struct WideBoxes {
     float lo[3][kWidth], hi[3][kWidth];
   };
 
-  /// The slabs of a node's children: relative to the origin, normal.x is from lo to hi for every
-  /// place x of a child, rounded outwards. A normal is no longer than 1, and 0 where there is no
+  /// The slabs of a node's children: relative to the origin, normal.x is between lo and hi for
+  /// every place x of a child, rounded outwards. A normal is no longer than 1, and 0 if there is no
   /// slab.
   struct Slabs {
     float normal[3][kWidth];
@@ -58,17 +58,17 @@ struct WideBoxes {
   /// A hull relative to the origin.
   struct HullTarget {
     Target box;
-    float corner[3][3];  ///< by corner
-    float way[3];        ///< from the first corner to the second one, no longer than 1
-    float along[3];      ///< the way's product with each corner
-    float rounding;      ///< metres, of a product of a corner and a direction
+    float corner[3][3];  ///< coordinates of each corner
+    float way[3];        ///< direction from the first corner to the second one, no longer than 1
+    float along[3];      ///< product of the way and each corner
+    float rounding;      ///< rounding of a product of a corner and a direction, metres
   };
 
-  static constexpr float kLeastFloat = 0x1p-126F;  ///< that keeps all its digits
+  static constexpr float kLeastFloat = 0x1p-126F;  ///< the least float that keeps all its digits
   static constexpr float kMostFloat = 0x1.fffffep127F;
 
-  /// Bounds of a value that are floats. Beyond the range of floats they may be infinite or no
-  /// number, which visits.
+  /// Bounds of a value as floats. Beyond the range of floats they may be infinite or NaN, which
+  /// makes a search visit.
   CLEARWAY_HD static float below(double value) { return -above(-value); }
   CLEARWAY_HD static float above(double value) {
     const auto near = static_cast<float>(value);
@@ -95,7 +95,7 @@ struct WideBoxes {
         size += at < 0 ? -at : at;
       }
       const float rounding = size * 0x1p-19F + 4 * kLeastFloat;
-      // Also where it is no number: then no comparison dismisses.
+      // NaN is taken, too, because then no comparison dismisses.
       if (!(rounding <= target.rounding)) target.rounding = rounding;
     }
     const Vec3 way = difference(hull.corner[1], hull.corner[0]);
@@ -115,8 +115,8 @@ struct WideBoxes {
 #endif
   }
 
-  /// Squared distances, at most the true ones: a difference, a square and two sums round by 2^-24
-  /// each, and by less than above() adds where a square is too small for that.
+  /// Lower bounds of the squared distances to eight boxes: a difference, a square and two sums
+  /// round by 2^-24 each, and by less than above() adds if a square is too small for that.
   CLEARWAY_IN_CLONE CLEARWAY_HD static void to_boxes_one_by_one(const Node& node,
                                                                 const Target& from,
                                                                 float* squared) {
@@ -129,10 +129,10 @@ struct WideBoxes {
     }
   }
 
-  /// The same in vectors of the processor.
+  /// Does to_boxes_one_by_one() in vectors of the processor.
   static void to_boxes_in_vectors(const Node& node, const Target& from, float* squared);
 
-  /// Squared distances, at most the true ones, by boxes and slabs.
+  /// Lower bounds of the squared distances to eight children, by boxes and slabs.
   CLEARWAY_HD static void to_slabs(const Node& node, const Slabs& slabs, const HullTarget& from,
                                    float* squared) {
 #ifdef __CUDA_ARCH__
@@ -154,11 +154,11 @@ struct WideBoxes {
     }
   }
 
-  /// The same in vectors of the processor.
+  /// Does to_slabs_one_by_one() in vectors of the processor.
   static void to_slabs_in_vectors(const Node& node, const Slabs& slabs, const HullTarget& from,
                                   float* squared);
 
-  /// A child's part of a product, and how large it can be: over all places of its box.
+  /// A child's part of a product over all places of its box: bounds, and how large it can be.
   struct Range {
     float lo, hi, size;
   };
@@ -169,8 +169,9 @@ struct WideBoxes {
     return {one < other ? one : other, one < other ? other : one, one_size + other_size};
   }
 
-  /// The slab is looked at across the way: the part of its normal along the way is taken out, for a
-  /// plane that the way is not quite parallel to comes near it somewhere in its extension.
+  /// Lower bound of the squared distance to a slab. The slab is looked at across the way: the part
+  /// of its normal along the way is taken out, because a plane that is not quite parallel to the
+  /// way meets its extension somewhere.
   CLEARWAY_IN_CLONE CLEARWAY_HD static float to_slab(const Node& node, const Slabs& slabs,
                                                      const HullTarget& from, std::uint32_t i) {
     const float x = slabs.normal[0][i], y = slabs.normal[1][i], z = slabs.normal[2][i];
@@ -196,7 +197,7 @@ struct WideBoxes {
     return square <= kMostFloat ? square : 0;
   }
 
-  /// Shortens a unit vector of floats to a length of at most 1.
+  /// Factor that shortens a unit vector of floats to a length of at most 1.
   static constexpr double kShorter = 1 - 0x1p-20;
 
   CLEARWAY_HD static float product(const float (&a)[3], const float (&b)[3]) {
@@ -210,30 +211,31 @@ struct WideBoxes {
   }
 };
 
-/// A WideTreeOf where it lies, on the host or on a device. Does not own it.
+/// View of a WideTreeOf on the host or on a device. Does not own it.
 template <typename Element>
 struct WideTreeRefOf : WideBoxes {
   using Packet = PacketOf<Element>;
 
-  static constexpr std::uint32_t kMostLevels = 10;  ///< 2^32 elements are 2^29 packets at most
+  /// Enough for 2^32 elements, which are at most 2^29 packets
+  static constexpr std::uint32_t kMostLevels = 10;
   static constexpr std::uint32_t kMostOpen = kMostLevels * (kWidth - 1) + 2;
 
-  /// Of points the box of the places says all; triangles make use of their hull.
+  /// Places to measure from: for points their box is enough; triangles make use of the hull.
   using Places = std::conditional_t<kIsTriangle<Element>, PlaceHull, Box>;
 
-  const Node* nodes;   ///< level after level, the root first
-  const Slabs* slabs;  ///< likewise; of triangles on the host only
+  const Node* nodes;   ///< nodes, one level after another, the root first
+  const Slabs* slabs;  ///< slabs of the nodes; only for triangles on the host
   const Packet* packets;
   Vec3 origin;
   std::uint32_t node_count;
-  std::uint32_t packet_count;        ///< a power of 2, or 0
-  std::uint32_t levels;              ///< of nodes; 0 where there is one packet
-  std::uint32_t first[kMostLevels];  ///< node of a level
+  std::uint32_t packet_count;        ///< number of packets, a power of 2 or 0
+  std::uint32_t levels;              ///< levels of nodes; 0 if there is only one packet
+  std::uint32_t first[kMostLevels];  ///< first node of each level
 
   /// Visits every element whose squared distance is at most within(), and perhaps others, nearer
-  /// boxes first, until visit(packet, number in it) is true; whether it was. places: none that
-  /// distances are measured from is outside. to_elements(packet, out): a squared distance for each
-  /// element of a packet. A comparison that is not possible visits.
+  /// boxes first, until visit(packet, number in it) returns true; returns whether it did. places:
+  /// hold every place that distances are measured from. to_elements(packet, out): a squared
+  /// distance for each element of a packet. A comparison with NaN visits.
   template <typename Within, typename ToElements, typename Visit>
   CLEARWAY_HD bool any_nearest_first(const Places& places, Within within, ToElements to_elements,
                                      Visit visit) const {
@@ -272,13 +274,13 @@ struct WideTreeRefOf : WideBoxes {
 
  private:
   struct Open {
-    float squared;        ///< distance to its box, rounded down
-    std::uint32_t index;  ///< within the level
+    float squared;        ///< squared distance to its box, rounded down
+    std::uint32_t index;  ///< index within the level
     std::uint32_t level;
   };
 
-  // A lane of a GPU works through a node's children one by one. Slabs cost it more than they spare
-  // (measured), so there the boxes say all.
+  // A lane of a GPU works through a node's children one by one. Slabs cost it more than they save
+  // (measured), so there only the boxes are used.
 #ifdef __CUDA_ARCH__
   CLEARWAY_HD Target target_of(const Box& box) const { return target(box, origin); }
   CLEARWAY_HD Target target_of(const PlaceHull& hull) const { return target(hull.box, origin); }
@@ -293,7 +295,7 @@ struct WideTreeRefOf : WideBoxes {
     to_slabs(nodes[node], slabs[node], from, squared);
   }
 
-  /// Only the root may have fewer.
+  /// Number of children of a node: only the root may have fewer than kWidth.
   CLEARWAY_HD std::uint32_t children(std::uint32_t level) const {
     return level == 0 ? packet_count >> (3 * (levels - 1)) : kWidth;
   }

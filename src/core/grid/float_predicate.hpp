@@ -5,7 +5,7 @@
 #include "core/util/macros.hpp"
 
 /// The decision of the paper's GPU method: everything in float and in the scene's own coordinates.
-/// For comparison; wrong near the radius, more so far from the origin.
+/// Only for comparison; it is wrong near the radius, and more so far from the origin.
 namespace clearway {
 
 CLEARWAY_HD inline float float_product(float a, float b) {
@@ -24,7 +24,8 @@ CLEARWAY_HD inline float float_sum(float a, float b) {
 #endif
 }
 
-/// Environment point e, pose, model point m and radius, each rounded to float; never fused.
+/// Whether e collides with model point m at a pose in float arithmetic. All arguments are rounded
+/// to float first; operations are never fused.
 CLEARWAY_HD inline bool collides_in_float(const Vec3& e, const Pose& pose, const Vec3& m,
                                           double radius) {
   const float p[3] = {static_cast<float>(m.x), static_cast<float>(m.y), static_cast<float>(m.z)};

@@ -6,7 +6,7 @@
 /// The arrays behind a GridPageView, described once for the host and the device.
 namespace clearway {
 
-/// What plan_page writes for a page.
+/// The arrays that plan_page() writes for a page.
 struct GridPlanArrays {
   GridPlanArrays(ArrayRun& run, std::uint64_t cell_count, std::uint64_t node_count)
       : cells(run.add<GridCell>(cell_count)),
@@ -24,7 +24,7 @@ struct GridPlanArrays {
   ArrayPlace<std::uint32_t> entry_runs;
 };
 
-/// Memory in which the cells of a page are sorted and searched.
+/// The arrays in which the cells of a page are sorted and searched.
 struct GridWorkArrays {
   GridWorkArrays(ArrayRun& run, const GridScene& scene, std::uint64_t cells)
       : points(run.add<GridPoint>(cells * scene.view().slots)),
@@ -50,7 +50,7 @@ struct GridWorkArrays {
   ArrayPlace<std::uint64_t> occupancy, group_occupancy;
   ArrayPlace<std::uint64_t> done;
   ArrayPlace<std::uint32_t> latest;
-  ArrayPlace<std::uint32_t> keys, order;  ///< a slot's key, and the slots
+  ArrayPlace<std::uint32_t> keys, order;  ///< keys of the slots, and the slots themselves
 };
 
 }  // namespace clearway

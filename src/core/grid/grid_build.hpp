@@ -3,7 +3,7 @@
 #include "core/geometry/predicate.hpp"
 #include "core/grid/grid_index.hpp"
 
-/// Bodies that put the points of a page into its grid.
+/// The functions that put the points of a page into its grid.
 namespace clearway {
 
 /// The stored position of point `index` of a cell, as the predicate takes it.
@@ -18,8 +18,8 @@ CLEARWAY_HD inline GridPoint rebased(const GridCell& cell, const Vec3& e, std::u
           static_cast<float>(e.z - cell.origin.z), index};
 }
 
-/// The key by which slot `slot` of the page (cell after cell) is sorted: bucket of its cell; past
-/// the last bucket where no point is.
+/// The key by which a slot of the page is sorted: the bucket, counted over all cells; past the last
+/// bucket if the slot holds no point.
 CLEARWAY_HD inline std::uint32_t sort_key(const GridSceneView& scene, const GridPageView& page,
                                           std::uint32_t slot) {
   const std::uint32_t cell = slot / scene.slots, index = slot % scene.slots;
@@ -32,8 +32,8 @@ CLEARWAY_HD inline std::uint32_t sort_key(const GridSceneView& scene, const Grid
                            grid_step(p.z, grid.per_bucket), scene.bucket_count);
 }
 
-/// Puts the slot that is sorted to place `at` of `count` there: point, bucket and occupancies.
-/// keys, order: the sorted keys and their slots.
+/// Puts the point of the slot that is sorted to place `at` of `count` there, and records it in its
+/// bucket and in the occupancies. keys, order: the sorted keys and their slots.
 CLEARWAY_HD inline void place_point(const GridSceneView& scene, const GridPageView& page,
                                     const std::uint32_t* keys, const std::uint32_t* order,
                                     std::uint32_t at, std::uint32_t count) {

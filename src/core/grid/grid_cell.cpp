@@ -11,22 +11,23 @@ namespace {
 
 constexpr double kFloatRoundoff = 0x1p-24;
 
-/// Lengths beyond are left to the predicate alone: their squares would not fit a float.
+/// Greatest length that floats handle, because the squares of longer ones would not fit a float;
+/// those are left to the predicate alone.
 constexpr double kLargest = 1e15;
 
-/// Lengths below are not told apart: their squares would not fit a float.
+/// Least length that floats tell apart, because the squares of shorter ones would not fit a float.
 constexpr double kLeast = 1e-12;
 
-/// A search looks up at most this many grid cells on an axis, and some.
+/// Bound of the reach in grid cells, which limits how many of them a search looks up on an axis.
 constexpr double kStepsPerReach = 4;
 
-/// No extent has more grid cells, so that a grid cell's number is an int.
+/// Greatest number of grid cells along an extent, so that a grid cell's number is an int.
 constexpr double kMostSteps = 1 << 20;
 
 float rounded_up(double x) { return std::nextafter(static_cast<float>(x), INFINITY); }
 float rounded_down(double x) { return std::nextafter(static_cast<float>(x), -INFINITY); }
 
-/// The finest of a few resolutions at which the cells marked within `reach` of the points are
+/// The finest of a few resolutions at which the grid cells marked within `reach` of the points are
 /// likely to be less than half of an occupancy's bits.
 double occupancy_step(const GridCell& grid, double reach, double extent, double bits) {
   double step = reach / 2;
@@ -51,10 +52,11 @@ GridCell make_grid_cell(const GridScene& scene, const QuantumBox& box, std::uint
   for (int k = 0; k < 3; ++k) {
     const double side = grid.box.hi[k] - grid.box.lo[k];
     extent = std::max(extent, side);
-    grid.extent[k] = static_cast<float>(side);  // as the point at the upper side is rebased
+    // Computed as the point at the upper side is rebased
+    grid.extent[k] = static_cast<float>(side);
   }
   const double radius = view.search_radius;
-  // What rebasing to floats moves two points against each other at the most.
+  // Bound of how far rebasing to floats moves two points relative to each other.
   const double shift = 4 * kFloatRoundoff * (extent + 2 * radius);
   const double outer = (radius + std::sqrt(3.0) * shift) * (1 + 8 * kFloatRoundoff) + kLeast;
   const double inner = (radius - std::sqrt(3.0) * shift) * (1 - 8 * kFloatRoundoff);

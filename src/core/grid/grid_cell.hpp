@@ -7,11 +7,12 @@
 
 namespace clearway {
 
-/// The grid and the filters of a cell; first_entry and node_count are the caller's.
+/// The grid and the filters of a cell. first_entry and node_count are left to the caller.
 GridCell make_grid_cell(const GridScene& scene, const QuantumBox& box, std::uint32_t count);
 
-/// Prepares the search of a page: its cells' grids and its tasks. cells: one a cell; cell_runs: one
-/// more; entry_runs: one a motion node of the page. Returns the number of tasks.
+/// Prepares the search of a page: its cells' grids and its tasks. cells: one for each cell;
+/// cell_runs: one more than cells; entry_runs: one for each motion node of the page. Returns the
+/// number of tasks.
 std::uint64_t plan_page(const GridScene& scene, const PageRef& page, std::span<GridCell> cells,
                         std::span<std::uint64_t> cell_runs, std::span<std::uint32_t> entry_runs);
 

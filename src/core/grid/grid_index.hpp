@@ -7,17 +7,17 @@
 #include "core/util/device_bits.hpp"
 #include "core/util/macros.hpp"
 
-/// Places in a regular grid that takes the same memory however far a cell extends: grid cells come
+/// Places in a regular grid that takes the same memory however far a cell extends. Grid cells come
 /// in bricks of 4 x 4 x 4, and a brick's place is a hash of its coordinates. Bricks that share a
-/// place are searched together; that costs time, never an answer.
+/// place are searched together, which costs time but never changes an answer.
 namespace clearway {
 
-/// or_into, left out where the bits are set already.
+/// or_into(), skipped if the bits are set already.
 CLEARWAY_HD inline void or_bits(std::uint64_t& word, std::uint64_t bits) {
   if ((word & bits) != bits) or_into(&word, bits);
 }
 
-/// Monotone in x; |x * per_metre| < 2^22.
+/// The grid step that x lies in. Monotone in x; |x * per_metre| must be below 2^22.
 CLEARWAY_HD inline int grid_step(float x, float per_metre) {
   return static_cast<int>(floorf(x * per_metre));
 }
@@ -34,13 +34,14 @@ CLEARWAY_HD inline std::uint32_t place_in_brick(int x, int y, int z) {
   return static_cast<std::uint32_t>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
 }
 
-/// A grid cell's bucket, below `bucket_count`.
+/// The bucket of a grid cell, below `bucket_count`.
 CLEARWAY_HD inline std::uint32_t bucket_of(int x, int y, int z, std::uint32_t bucket_count) {
   const std::uint32_t brick = brick_hash(x >> 2, y >> 2, z >> 2) & (bucket_count / 64 - 1);
   return brick * 64 + place_in_brick(x, y, z);
 }
 
-/// Whether a point may be within `reach` (as it was marked) of (x, y, z) on every axis.
+/// Whether a point may be within `reach`, with which the points were marked, of (x, y, z) on every
+/// axis.
 CLEARWAY_HD inline bool is_marked(const std::uint64_t* words, std::uint32_t word_count,
                                   float per_metre, float x, float y, float z) {
   const int i = grid_step(x, per_metre), j = grid_step(y, per_metre), k = grid_step(z, per_metre);
@@ -55,8 +56,8 @@ CLEARWAY_HD inline std::uint32_t bits_within(int brick, int lo, int hi) {
   return bits;
 }
 
-/// Marks every grid cell that holds a place within `reach` of the point on every axis: rounding is
-/// monotone, so no place within it is left out.
+/// Marks every grid cell that holds a place within `reach` of the point on every axis. Rounding is
+/// monotone, so no such place is left out.
 CLEARWAY_HD inline void mark_around(std::uint64_t* words, std::uint32_t word_count, float per_metre,
                                     float reach, const GridPoint& p) {
   const int x0 = grid_step(p.x - reach, per_metre), x1 = grid_step(p.x + reach, per_metre);

@@ -5,7 +5,7 @@
 namespace clearway {
 namespace {
 
-/// A node is split for a box while it moves more than this many times the box's half diagonal.
+/// Motion of a node in half diagonals of a box up to which the node is not split for the box.
 constexpr double kMotionPerBox = 1.0;
 
 }  // namespace
@@ -25,7 +25,8 @@ void GridReach::narrow(const Box& box, std::span<const std::uint32_t> nodes,
   for (const std::uint32_t node : nodes) narrow_node(centre, rho, node, out);
 }
 
-/// Bounds: docs/design/numerics.md ("Sweep"), with the model's points in the place of the field.
+/// Whether a point within rho of `centre` may be in reach at a pose of the node. Bounds:
+/// docs/design/numerics.md ("Sweep"), with the model's points in place of the field.
 bool GridReach::may_reach(const MotionNode& node, const Vec3& centre, double rho) const {
   const InversePose& back = motion_.inverse_pose(node.mid);
   const double reach = radius_ + node.delta + rho + rounding_;

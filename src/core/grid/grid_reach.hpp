@@ -7,11 +7,11 @@
 
 namespace clearway {
 
-/// Which poses bring a model point within the radius of a box, by a ball search in the model's tree
-/// at the middle pose of each node. Needs no field. For queries at poses only.
+/// Finds the poses that bring a model point within the radius of a box, by a ball search in the
+/// model's tree at the middle pose of each node. Needs no field. Only for queries at poses.
 class GridReach final : public PoseReach {
  public:
-  /// All outlive it but the cloud, of which no points are read.
+  /// All arguments but the cloud must outlive this object; of the cloud no points are read.
   GridReach(const Query& query, const MotionTree& motion, const ModelTree& model,
             const PackedCloud& cloud);
 
@@ -27,7 +27,7 @@ class GridReach final : public PoseReach {
   const MotionTree& motion_;
   const ModelTree& model_;
   double radius_;
-  double rounding_;  ///< metres, of a test at one pose
+  double rounding_;  ///< rounding of a test at one pose, metres
 };
 
 }  // namespace clearway

@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-/// Bits of both a cell's occupancies, a point.
+/// Bits of each of a cell's two occupancies for each point of the cell.
 constexpr std::uint32_t kOccupancyBits = 16;
 
 void refuse_unanswerable(const Query& query) {
@@ -56,7 +56,8 @@ GridScene::GridScene(const Query& query, const MotionTree& motion, const PackedC
   choose_group_radius();
 }
 
-/// Nodes are in preorder, so their runs come in the order of their poses.
+/// Copies the motion nodes and finds the runs. Nodes are in preorder, so their runs come in the
+/// order of their poses.
 void GridScene::add_nodes() {
   const std::span<const MotionNode> motion = motion_.nodes();
   nodes_.reserve(motion.size());
@@ -78,7 +79,7 @@ void GridScene::add_nodes() {
   }
 }
 
-/// Nine groups of ten find their bit in the group occupancy at any pose.
+/// Chooses the radius so that nine of ten groups find their bit in the group occupancy at any pose.
 void GridScene::choose_group_radius() {
   std::vector<double> radii;
   for (const GridSphere& group : model_.groups()) radii.push_back(group.radius);
@@ -93,8 +94,8 @@ void GridScene::choose_group_radius() {
   group_radius_ = (view_.search_radius + greatest.stretch * *at + greatest.spread) * (1 + 1e-12);
 }
 
-/// Where floats decide, a pair is a hit only when it is closer than this (docs/design/numerics.md,
-/// "Floats alone").
+/// The distance beyond which a pair is no hit if floats decide (docs/design/numerics.md, "Floats
+/// alone").
 double GridScene::float_search_radius(const PackedCloud& cloud) const {
   double largest = 0;
   if (!cloud.tree().empty()) {

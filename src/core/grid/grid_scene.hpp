@@ -12,19 +12,20 @@ namespace clearway {
 
 enum class GridPrecision {
   kExact,  ///< floats filter, the predicate decides
-  kFloat,  ///< floats decide, in the scene's own coordinates: for comparison
+  kFloat,  ///< floats decide, in the scene's own coordinates; only for comparison
 };
 
 struct GridOptions {
-  double grid_cell = 0;  ///< metres; 0: chosen. Coarser where a cell needs it.
+  double grid_cell = 0;  ///< metres; 0: chosen. Coarser for cells that need it
   GridPrecision precision = GridPrecision::kExact;
 };
 
-/// Model, trajectory and environment as the grid engine needs them, the same for every page.
+/// Model, trajectory and environment as the grid engine needs them; the same for every page.
 class GridScene {
  public:
-  /// `query` (its model and poses), `motion` outlive it; of the cloud no points are read. Offers
-  /// sets and first poses: throws UsageError for a query between poses or with a clearance.
+  /// query: its model and poses must outlive this object, as must `motion`. Of the cloud no points
+  /// are read. Supports sets and first poses; throws UsageError for a query between poses or with a
+  /// clearance.
   GridScene(const Query& query, const MotionTree& motion, const PackedCloud& cloud,
             const GridOptions& options = {});
 
@@ -34,7 +35,7 @@ class GridScene {
   std::span<const GridNode> nodes() const { return nodes_; }
   std::span<const std::uint32_t> runs() const { return runs_; }
   bool first_pose() const { return first_pose_; }
-  double grid_cell() const { return grid_cell_; }  ///< metres
+  double grid_cell() const { return grid_cell_; }  ///< side of the grid cells, metres
   double group_radius() const { return group_radius_; }
 
   /// Calls visit(member of GridSceneView, values) for each array that the views refer to.
@@ -49,14 +50,14 @@ class GridScene {
     visit(&GridSceneView::runs, runs());
   }
 
-  /// Of all these arrays.
+  /// Size of all these arrays, bytes.
   std::uint64_t size_bytes() const {
     std::uint64_t bytes = 0;
     for_each_array([&](auto, auto values) { bytes += values.size_bytes(); });
     return bytes;
   }
 
-  /// Over the host's memory.
+  /// A view of the arrays in the host's memory.
   const GridSceneView& view() const { return view_; }
 
  private:

@@ -8,12 +8,12 @@
 #include "core/query/hit_set.hpp"
 #include "core/util/device_bits.hpp"
 
-/// Bodies of the search. Every bound: docs/design/numerics.md, "Grid".
-/// Source: Schauer et al. (the paper), section 3.2.
+/// The functions of the search. Every bound: docs/design/numerics.md, "Grid". Source: Schauer et
+/// al. (the paper), section 3.2.
 namespace clearway {
 
-/// Where a sphere's centre is at a pose, and how far from it a point may be that the sphere's
-/// points touch.
+/// A sphere at a pose: its centre, and the distance up to which an environment point may touch the
+/// sphere's points.
 struct MovedSphere {
   Vec3 centre;
   double reach;
@@ -25,7 +25,7 @@ CLEARWAY_HD inline MovedSphere moved(const GridSceneView& scene, const GridSpher
   return {transform(scene.poses[pose], sphere.centre), sum * (1 + 32 * kUnitRoundoff) + 1e-150};
 }
 
-/// False only when no point of the box can be touched. An overflow dismisses nothing.
+/// False only if no point of the box can be touched. An overflow dismisses nothing.
 CLEARWAY_HD inline bool may_touch(const Box& box, const MovedSphere& sphere) {
   const double squared = sphere.reach * sphere.reach * (1 + 8 * kUnitRoundoff);
   return !(least_squared_distance(box, sphere.centre) > squared);
@@ -39,7 +39,8 @@ CLEARWAY_HD inline bool part_is_open(const GridSceneView& scene, const GridPageV
                    moved(scene, scene.parts[part], node.mid, node.spread));
 }
 
-/// Whether the group may touch the cell at the pose: by box, then by one bit of the occupancy.
+/// Whether the group may touch the cell at the pose: tested by box, then by one bit of the
+/// occupancy.
 CLEARWAY_HD inline bool group_is_open(const GridSceneView& scene, const GridPageView& page,
                                       std::uint32_t cell, std::uint32_t group, std::uint32_t pose) {
   const GridCell& grid = page.cells[cell];
@@ -71,7 +72,7 @@ CLEARWAY_HD inline void mark_hit(const GridSceneView& scene, const GridPageView&
   if (page.first_poses != nullptr) lower_to(&page.first_poses[slot], pose);
 }
 
-/// The decision about a pair: the predicate's, or that of floats alone. m: as moved.
+/// The decision about a pair: by the predicate, or by floats alone. m: the moved model point.
 CLEARWAY_HD inline bool is_hit(const GridSceneView& scene, const GridPageView& page,
                                std::uint32_t cell, std::uint32_t index, std::uint32_t pose,
                                std::uint32_t model_point, const Vec3& m) {
@@ -80,7 +81,7 @@ CLEARWAY_HD inline bool is_hit(const GridSceneView& scene, const GridPageView& p
   return collides_in_float(e, scene.poses[pose], scene.points[model_point], scene.radius);
 }
 
-/// A model point at a pose: as the predicate has it, and in the cell's floats.
+/// A model point at a pose, for the predicate and in the cell's floats.
 struct MovedPoint {
   std::uint32_t pose;
   std::uint32_t model_point;
@@ -107,7 +108,7 @@ CLEARWAY_HD inline void test_pair(const GridSceneView& scene, const GridPageView
   if (page.done != nullptr) or_bits(page.done[at / 64], std::uint64_t{1} << (at % 64));
 }
 
-/// Tests the points begin .. end - 1 that are not hit yet.
+/// Tests the points of a range that are not hit yet.
 CLEARWAY_HD inline void test_open(const GridSceneView& scene, const GridPageView& page,
                                   std::uint32_t cell, const BucketRange& range,
                                   const MovedPoint& moved, GridStatistics& statistics) {
@@ -123,7 +124,7 @@ CLEARWAY_HD inline void test_open(const GridSceneView& scene, const GridPageView
 }
 
 /// Tests all points of a bucket, unless each has been hit at an earlier pose. Their latest first
-/// pose only ever falls, so one that another lane notes late is still a bound.
+/// pose only ever falls, so a value that another lane stores late is still a bound.
 CLEARWAY_HD inline void test_earlier(const GridSceneView& scene, const GridPageView& page,
                                      std::uint32_t cell, std::uint64_t bucket,
                                      const BucketRange& range, const MovedPoint& moved,
@@ -201,12 +202,12 @@ CLEARWAY_HD inline void search_point(const GridSceneView& scene, const GridPageV
   search_buckets(scene, page, cell, {pose, model_point, m, x}, statistics);
 }
 
-/// An open pair of group and pose in one word.
+/// An open pair of group and pose, encoded in one word.
 CLEARWAY_HD inline std::uint32_t encode_pair(std::uint32_t group, std::uint32_t pose_of_run) {
   return group * kRunPoses + pose_of_run;
 }
 
-/// Searches lane `lane` of a pair's group: one model point, where the group has so many.
+/// Searches lane `lane` of a pair's group: one model point, if the group has that many.
 CLEARWAY_HD inline void search_lane(const GridSceneView& scene, const GridPageView& page,
                                     const GridTask& task, std::uint32_t pair, std::uint32_t lane,
                                     GridStatistics& statistics) {
@@ -217,8 +218,8 @@ CLEARWAY_HD inline void search_lane(const GridSceneView& scene, const GridPageVi
   }
 }
 
-/// Pair `index` of an open part: of its groups and the poses of the task's node. False where it is
-/// dismissed or the group does not exist.
+/// Encodes pair `index` of the groups of an open part and the poses of the task's node. Returns
+/// false if the pair is dismissed or the group does not exist.
 CLEARWAY_HD inline bool open_pair(const GridSceneView& scene, const GridPageView& page,
                                   const GridTask& task, std::uint32_t part, std::uint32_t index,
                                   std::uint32_t& pair, GridStatistics& statistics) {

@@ -7,10 +7,10 @@
 namespace clearway {
 namespace {
 
-/// Blocks looked at for the density.
+/// Number of blocks that are looked at for the density.
 constexpr std::size_t kSamples = 4096;
 
-/// What looking up a grid cell costs, in tests of a point.
+/// Cost of looking up a grid cell, in tests of a point.
 constexpr double kLookUpCost = 3;
 
 }  // namespace
@@ -21,7 +21,8 @@ double surface_density(const PackedCloud& cloud) {
   const std::size_t step = std::max<std::size_t>(1, blocks / kSamples);
   for (std::size_t i = 0; i < blocks; i += step) {
     const Cell& cell = cloud.cells()[i / cloud.blocks_per_cell()];
-    if ((i % cloud.blocks_per_cell() + 1) * kBlockPoints > cell.count) continue;  // not full
+    // Blocks that are not full are left out.
+    if ((i % cloud.blocks_per_cell() + 1) * kBlockPoints > cell.count) continue;
     const Box box =
         position_box(cloud.quantisation(), decode_block_box(cell.box, cloud.blocks()[i]));
     double sides[3] = {box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};

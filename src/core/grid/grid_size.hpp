@@ -4,8 +4,8 @@
 
 namespace clearway {
 
-/// Environment points a square metre of scanned surface, typically: from the boxes of blocks. 0 for
-/// an empty cloud.
+/// Typical number of environment points per square metre of scanned surface, from the boxes of
+/// blocks; 0 for an empty cloud.
 double surface_density(const PackedCloud& cloud);
 
 /// The grid cell size, metres, that makes a range search cheapest by a model of its cost: grid

@@ -6,10 +6,10 @@
 #include "core/grid/grid_view.hpp"
 #include "core/util/macros.hpp"
 
-/// How a page's search is cut into tasks.
+/// How a page's search is divided into tasks.
 namespace clearway {
 
-/// One cell, at most kRunPoses poses and kTaskParts parts of the model.
+/// One task: one cell, at most kRunPoses poses and kTaskParts parts of the model.
 struct GridTask {
   std::uint32_t cell;
   std::uint32_t node;
@@ -31,7 +31,7 @@ CLEARWAY_HD inline std::uint32_t last_not_above(const Value* starts, std::uint32
   return lo;
 }
 
-/// Task `index` below cell_runs[cells] * task_slices.
+/// The task with this index, which is below cell_runs[cells] * task_slices().
 CLEARWAY_HD inline GridTask task_of(const GridSceneView& scene, const GridPageView& page,
                                     std::uint64_t index) {
   const std::uint32_t slices = task_slices(scene);

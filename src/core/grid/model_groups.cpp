@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-/// Orders the points so that each run of `unit` is compact.
+/// Orders the points so that each run of `unit` points is compact.
 void sort_by_splits(std::span<Vec3> points, std::uint64_t unit) {
   if (points.size() <= unit) return;
   const int axis = box_of(points).longest_axis();

@@ -9,20 +9,21 @@
 
 namespace clearway {
 
-/// Points of a group, searched by one warp.
+/// Number of points of a group, which one warp searches.
 inline constexpr std::uint32_t kGroupPoints = 32;
 
-/// Groups of a part.
+/// Number of groups of a part.
 inline constexpr std::uint32_t kPartGroups = 32;
 
-/// No point of what it bounds is farther from the centre than the radius, rounding included.
+/// A bounding sphere: none of its points is farther from the centre than the radius, rounding
+/// included.
 struct GridSphere {
   Vec3 centre;  ///< inside the model's box
   double radius;
 };
 
-/// A model in k-d order: group g is the points 32 g .. 32 g + 31, part p the groups 32 p .. 32 p +
-/// 31 (the last ones may be short), each compact in space.
+/// A model in k-d order. Group g is the points 32 g .. 32 g + 31, part p the groups 32 p .. 32 p +
+/// 31 (the last ones may be short); each is compact in space.
 class ModelGroups {
  public:
   explicit ModelGroups(std::span<const Vec3> model);

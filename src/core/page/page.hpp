@@ -8,40 +8,40 @@
 #include "core/util/macros.hpp"
 
 /// A page: one run of bytes that holds what an engine needs of some planned cells, the same on the
-/// host and on a device. Layout: PageCell[cells], motion nodes uint32[nodes], BlockBox[cells *
-/// blocks_per_cell], where points are ignored masks uint64[cells * blocks_per_cell], then the
-/// packed payloads, each section on kPageAlignment bytes, kPagePadding zero bytes at the end, so
-/// that a decoder may read whole words past a payload.
+/// host and on a device. Layout: PageCell[cells]; motion nodes uint32[nodes]; BlockBox[cells *
+/// blocks_per_cell]; if points are ignored, masks uint64[cells * blocks_per_cell]; then the packed
+/// payloads. Each section is aligned to kPageAlignment bytes, and kPagePadding zero bytes follow at
+/// the end, so that a decoder may read whole words past a payload.
 namespace clearway {
 
 inline constexpr std::size_t kPageAlignment = 16;
 inline constexpr std::size_t kPagePadding = 16;
 
 /// The payload of one packed chunk (core/cloud/packed_chunk.hpp): value i is `minimum` plus the
-/// `minbits` bits from bit i * minbits on, most significant first; minbits 32: little-endian
-/// values.
+/// `minbits` bits from bit i * minbits on, most significant first. With minbits 32 the payload is
+/// the little-endian values themselves.
 struct PageChunk {
-  std::uint64_t payload;  ///< bytes from the begin of the page
+  std::uint64_t payload;  ///< offset of the payload from the beginning of the page, bytes
   std::int32_t minimum;
   std::uint32_t minbits;
 };
 
 struct PageCell {
-  std::uint32_t cell;   ///< index in the cloud
-  std::uint32_t count;  ///< points
+  std::uint32_t cell;   ///< index of the cell in the cloud
+  std::uint32_t count;  ///< number of points
   std::uint32_t first_node;
   std::uint32_t node_count;
   QuantumBox box;
   PageChunk chunks[3];  ///< x, y, z
 };
 
-/// How large the sections of a page are.
+/// The sizes of a page's sections.
 struct PageShape {
   std::uint32_t cells = 0;
   std::uint32_t blocks_per_cell = 0;
   std::uint32_t nodes = 0;
-  std::uint64_t payload_bytes = 0;  ///< of all chunks
-  bool masked = false;              ///< some points may be ignored: a word a block says which
+  std::uint64_t payload_bytes = 0;  ///< bytes of all chunks together
+  bool masked = false;  ///< whether points may be ignored: one word for each block says which
 
   CLEARWAY_HD static constexpr std::uint64_t aligned(std::uint64_t bytes) {
     return divide_up(bytes, kPageAlignment) * kPageAlignment;
@@ -64,7 +64,7 @@ struct PageShape {
   }
 };
 
-/// A page at its address, on the host or on a device. Does not own it.
+/// View of a page at its address, on the host or on a device. Does not own it.
 struct PageRef {
   const std::byte* begin;
   PageShape shape;
@@ -81,7 +81,8 @@ struct PageRef {
     return reinterpret_cast<const BlockBox*>(begin + shape.blocks_at()) +
            std::uint64_t{index} * shape.blocks_per_cell;
   }
-  /// Which points of a block there are to search, a bit each: none behind the cell's last.
+  /// The points of a block that are to be searched, as bits; bits behind the cell's last point are
+  /// 0.
   CLEARWAY_HD std::uint64_t searched(std::uint32_t index, std::uint32_t block) const {
     if (shape.masked) {
       return reinterpret_cast<const std::uint64_t*>(
@@ -92,18 +93,18 @@ struct PageRef {
     return count - first >= kBlockPoints ? ~std::uint64_t{0}
                                          : ~std::uint64_t{0} >> (kBlockPoints - (count - first));
   }
-  /// Whether point `point` of a cell is among them.
+  /// Whether point `point` of a cell is to be searched.
   CLEARWAY_HD bool is_searched(std::uint32_t index, std::uint32_t point) const {
     if (!shape.masked) return point < cell(index).count;
     return (searched(index, point / kBlockPoints) >> (point % kBlockPoints) & 1) != 0;
   }
-  /// Where point `index` of a cell is.
+  /// Position of point `index` of a cell, metres.
   CLEARWAY_HD Vec3 position(const Quantisation& quantisation, const PageCell& cell,
                             std::uint32_t index) const {
     return clearway::position(quantisation, value(cell.chunks[0], index),
                               value(cell.chunks[1], index), value(cell.chunks[2], index));
   }
-  /// Stored integer `index` < the cloud's cell_points of a chunk.
+  /// Stored integer number `index` of a chunk; index must be below the cloud's cell_points.
   CLEARWAY_HD std::int32_t value(const PageChunk& chunk, std::uint32_t index) const;
 };
 
@@ -112,7 +113,7 @@ struct PageRef {
 CLEARWAY_HD inline std::int32_t PageRef::value(const PageChunk& chunk, std::uint32_t index) const {
   if (chunk.minbits == 0) return chunk.minimum;
   const std::uint64_t bit = std::uint64_t{index} * chunk.minbits;
-  // Whole aligned words: a page begins on one, and its padding follows the last payload.
+  // Reads whole aligned words: a page begins on one, and its padding follows the last payload.
   const std::uint64_t byte = chunk.payload + bit / 8;
   const auto* words = reinterpret_cast<const std::uint32_t*>(begin) + byte / 4;
   const auto shift = static_cast<std::uint32_t>(8 * (byte % 4));
@@ -120,7 +121,7 @@ CLEARWAY_HD inline std::int32_t PageRef::value(const PageChunk& chunk, std::uint
   const std::uint64_t window =
       shift == 0 ? low : low >> shift | std::uint64_t{words[2]} << (64 - shift);
   if (chunk.minbits == 32) return static_cast<std::int32_t>(static_cast<std::uint32_t>(window));
-  std::uint64_t reversed = 0;  // the compilers make this one byte swap
+  std::uint64_t reversed = 0;  // compilers make this a single byte swap
   for (int i = 0; i < 8; ++i) reversed |= (window >> (8 * i) & 0xff) << (56 - 8 * i);
   const std::uint64_t delta = reversed << (bit % 8) >> (64 - chunk.minbits);
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(chunk.minimum) +

@@ -12,15 +12,14 @@
 
 namespace clearway {
 
-/// How many pages an engine holds at a time, and how large they and their answers may be.
+/// The number of pages that an engine holds at a time, and the limits of their sizes.
 struct SlotLayout {
   std::uint32_t slots = 1;
-  std::uint64_t page_bytes = 0;  ///< of a page, rounded up to kPageAlignment
-  std::uint32_t cells = 1;       ///< of a page at the most
+  std::uint64_t page_bytes = 0;  ///< size of a page, rounded up to kPageAlignment
+  std::uint32_t cells = 1;       ///< greatest number of cells of a page
 };
 
-/// Plain memory on the host for the pages and answers of a fixed number of slots, allocated at
-/// once.
+/// Host memory for the pages and answers of a fixed number of slots, allocated at once.
 class PagePool {
  public:
   PagePool(const PackedCloud& cloud, const Query& query, const SlotLayout& layout);
@@ -28,21 +27,22 @@ class PagePool {
   const SlotLayout& layout() const { return layout_; }
   std::span<std::byte> page(std::uint32_t slot);
 
-  /// Where the answers of the slot's page go: as PageResult describes them, for its largest number
-  /// of cells; first poses and clearances are empty unless asked for.
+  /// Memory for the answers of a slot's page, as PageResult describes them, for its largest number
+  /// of cells. First poses and clearances are empty unless asked for.
   std::span<std::uint64_t> hits(std::uint32_t slot);
   std::span<std::uint32_t> first_poses(std::uint32_t slot);
   std::span<Clearance> clearances(std::uint32_t slot);
 
-  /// They, for a page of so many cells.
+  /// The answers in a slot, for a page of `cells` cells.
   PageResult result(std::uint32_t slot, std::uint32_t cells);
 
-  /// What one slot takes, bytes.
+  /// Memory of one slot, bytes.
   static std::uint64_t slot_bytes(const PackedCloud& cloud, const Query& query,
                                   const SlotLayout& layout);
 
  private:
-  /// Of one slot. A result's bytes are a multiple of 8, so that those of all slots are aligned.
+  /// The arrays of one slot. A result's bytes are a multiple of 8, so that the results of all slots
+  /// are aligned.
   struct Arrays {
     Arrays(const PackedCloud& cloud, const Query& query, const SlotLayout& layout);
     std::uint64_t page_bytes;

@@ -6,14 +6,15 @@
 
 namespace clearway {
 
-/// What a query asks for beside the colliding points.
+/// The parts of a page's result beside the colliding points.
 struct ResultParts {
   bool first_pose, clearance;
-  bool profile = false;           ///< as a device lists it
-  std::uint64_t facts_ahead = 0;  ///< of it that there is room for beside one a block
+  bool profile = false;           ///< whether there are facts of a profile, as a device lists them
+  std::uint64_t facts_ahead = 0;  ///< room for facts of a profile beyond one for each block
 };
 
-/// The arrays of a PageResult of so many blocks in a run of bytes; those not asked for are empty.
+/// The arrays of a PageResult for a number of blocks in a run of bytes. Arrays not asked for are
+/// empty.
 struct PageResultArrays {
   PageResultArrays(ArrayRun& run, std::uint64_t blocks, const ResultParts& parts)
       : hits(run.add<std::uint64_t>(blocks)),
@@ -22,7 +23,7 @@ struct PageResultArrays {
         facts(run.add<ProfileFact>(parts.profile ? blocks + parts.facts_ahead : 0)),
         fact_counts(run.add<ProfileCounts>(parts.profile ? 1 : 0)) {}
 
-  /// What was found in the first `blocks` of them, in the run at `begin`.
+  /// The result in the first `blocks` blocks of the arrays, whose run begins at `begin`.
   PageResult in(const std::byte* begin, std::size_t blocks) const {
     const auto first = [](auto values, std::size_t count) {
       return values.empty() ? values : values.first(count);

@@ -17,9 +17,9 @@ class PoseReach {
 
   virtual const MotionTree& motion() const = 0;
 
-  /// Of `nodes` of the motion tree and the nodes below them, those that may matter to a point of
-  /// the box, as fine as the box is small; replaces `out`. In the order of the poses when `nodes`
-  /// are. Thread safe.
+  /// Replaces `out` by those of `nodes` of the motion tree, and the nodes below them, that may
+  /// matter to a point of the box; they are as fine as the box is small, and in the order of the
+  /// poses if `nodes` are. Thread safe.
   virtual void narrow(const Box& box, std::span<const std::uint32_t> nodes,
                       std::vector<std::uint32_t>& out) const = 0;
 };

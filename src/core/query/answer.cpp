@@ -57,7 +57,8 @@ std::vector<Reason> Answer::reasons() const {
 }
 
 const std::optional<FoundPlace>& Answer::nearest() const {
-  // A profile does not say which body is so near, so equal distances are told of the clearance.
+  // A profile does not say which body is nearest, so the clearance is reported if both distances
+  // are equal.
   if (!bodies.empty() && least_clearance &&
       (!least_profile || least_clearance->distance <= least_profile->distance)) {
     return least_clearance;

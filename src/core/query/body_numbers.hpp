@@ -7,9 +7,9 @@
 
 namespace clearway {
 
-/// A pose of the path and a body in one number, pose * bodies + body: the smallest number of a
-/// point is its first pose, and there the lowest body. Hits, clearances, pages and journal hold
-/// numbers in the place of poses. With no bodies, or one, a number is the pose itself.
+/// Encodes a pose of the path and a body in one number, pose * bodies + body. The smallest number
+/// of a point is its first pose, and there the lowest body. Hits, clearances, pages and journals
+/// hold such numbers in place of poses. With one body or none, a number is the pose itself.
 class BodyNumbers {
  public:
   explicit BodyNumbers(std::uint64_t bodies)
@@ -23,7 +23,7 @@ class BodyNumbers {
     return bodies_ == 1 ? number : number / bodies_;
   }
   std::uint32_t body_of(std::uint32_t number) const { return bodies_ == 1 ? 0 : number % bodies_; }
-  /// All numbers are below it.
+  /// Bound that all numbers are below.
   std::uint64_t end(std::uint64_t poses) const { return poses * bodies_; }
 
  private:

@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// Where a body is at a pose of the path; null where it has no pose there. path_pose: as Body has
-/// it; empty: the poses are the path's.
+/// The pose of a body at a pose of the path; null if it has none there. path_pose: as in Body; if
+/// empty, the poses are those of the path.
 inline const Pose* pose_at(std::span<const Pose> poses, std::span<const std::uint32_t> path_pose,
                            std::uint32_t pose) {
   if (path_pose.empty()) return pose < poses.size() ? &poses[pose] : nullptr;
@@ -19,7 +19,7 @@ inline const Pose* pose_at(std::span<const Pose> poses, std::span<const std::uin
   return &poses[static_cast<std::size_t>(at - path_pose.begin())];
 }
 
-/// The same of a body, which has as many of both.
+/// The pose of `body` at a pose of the path; null if it has none there.
 inline const Pose* pose_at(const Body& body, std::uint32_t pose) {
   return body.poses.empty() ? nullptr : pose_at(body.poses, body.path_pose, pose);
 }

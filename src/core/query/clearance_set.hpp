@@ -9,8 +9,8 @@
 namespace clearway {
 
 /// The least computed d2 between an environment point and the model over all poses, square metres,
-/// and the lowest pose that has it. The distance is the root of it. Of a point inside solids it is
-/// below 0: minus the square of the greatest depth.
+/// and the lowest pose that has it. The distance is its root. For a point inside solids it is below
+/// 0: minus the square of the greatest depth.
 struct Clearance {
   double squared = std::numeric_limits<double>::infinity();
   std::uint32_t pose = std::numeric_limits<std::uint32_t>::max();
@@ -18,7 +18,7 @@ struct Clearance {
   friend bool operator==(const Clearance&, const Clearance&) = default;
 };
 
-/// Clearances of a PackedCloud by entry, 12 bytes each; none where none is below the distance asked
+/// Clearances of a PackedCloud by entry, 12 bytes each; none if it is not below the distance asked
 /// for. Different entries may be set at the same time.
 class ClearanceSet {
  public:
@@ -34,7 +34,7 @@ class ClearanceSet {
     return {std::bit_cast<double>(squared_[entry] ^ kNone), ~poses_[entry]};
   }
 
-  /// Which of the entries 64 * index + i have one, as bits i.
+  /// The entries 64 * index + i that have a clearance, as bits i.
   std::uint64_t word(std::uint64_t index) const {
     std::uint64_t bits = 0;
     for (unsigned i = 0; i < 64; ++i) {
@@ -48,7 +48,7 @@ class ClearanceSet {
   }
 
  private:
-  /// Stored as differences from what means none, so that zeros mean that.
+  /// Values are stored as differences from the one that means none, so that zeros mean none.
   static constexpr std::uint64_t kNone = std::bit_cast<std::uint64_t>(Clearance{}.squared);
 
   ZeroedArray<std::uint64_t> squared_;

@@ -10,8 +10,8 @@
 
 namespace clearway {
 
-/// The colliding points of a PackedCloud by entry: one bit each, and the first pose where asked
-/// for. Marking is thread safe; reading is for after the threads have joined.
+/// The colliding points of a PackedCloud by entry: one bit each, and the first pose if asked for.
+/// Marking is thread safe; reading is for after the threads have joined.
 class HitSet {
  public:
   static constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
@@ -42,13 +42,14 @@ class HitSet {
     }
   }
 
-  /// Takes the marks of 64 entries a word away, not their first poses. Not while others mark.
+  /// Removes the marks of `count` words of 64 entries each, but not their first poses. Must not be
+  /// called while others mark.
   void clear_words(std::uint64_t first, std::uint64_t count) {
     std::fill_n(words_.begin() + static_cast<std::ptrdiff_t>(first), count, 0);
   }
 
-  /// Takes the marks 64 * word + i of all set bits i away, and their first poses. Not while others
-  /// mark these.
+  /// Removes the marks of the entries 64 * word + i of all set bits i, and their first poses. Must
+  /// not be called while others mark these.
   void forget(std::uint64_t word, std::uint64_t bits) {
     words_[word] &= ~bits;
     if (!has_first_pose_) return;

@@ -11,7 +11,8 @@ namespace {
 
 using ClassTable = std::array<std::uint8_t, 256>;
 
-/// The least integer of [-2^31, 2^31] at which `holds` is true, as it is at all above; 2^31: none.
+/// The least integer of [-2^31, 2^31] at which `holds` is true; 2^31 if there is none. `holds` must
+/// be true for all integers above the first for which it is.
 template <typename Holds>
 std::int64_t first_where(const Holds& holds) {
   std::int64_t lo = std::numeric_limits<std::int32_t>::min();
@@ -27,8 +28,8 @@ std::int64_t first_where(const Holds& holds) {
   return lo;
 }
 
-/// Bit i is set where the i-th of 64 values of kBits bits each is ignored. table: by value. Reads 8
-/// bytes at a time: up to 8 - kBits behind the values.
+/// The ignored ones of 64 values of kBits bits each: bit i is set if value i is ignored. table: 1
+/// for each ignored value. Reads 8 bytes at a time, so up to 8 - kBits bytes behind the values.
 template <unsigned kBits>
 std::uint64_t ignored_of_block(const std::byte* from, const ClassTable& table) {
   std::uint64_t ignored = 0;
@@ -76,7 +77,7 @@ std::optional<QuantumBox> quanta_in(const Quantisation& quantisation, const Box&
 
 void sort_ignored(QueryParameters& query) {
   for (Box& box : query.ignore_boxes) {
-    for (int k = 0; k < 3; ++k) {  // no -0
+    for (int k = 0; k < 3; ++k) {  // turns -0 into 0
       box.lo[k] += 0.0;
       box.hi[k] += 0.0;
     }
@@ -159,7 +160,7 @@ void IgnoredPoints::leave_out_classes(std::uint32_t cell, std::span<std::uint64_
     return;
   }
   const std::uint8_t minimum = minbits == 8 ? std::uint8_t{0} : classes.minimum();
-  ClassTable table{};  // by what the chunk stores
+  ClassTable table{};  // indexed by the values that the chunk stores
   for (unsigned i = 0; i < 1U << minbits; ++i) {
     table[i] = is_ignored_[static_cast<std::uint8_t>(minimum + i)];
   }

@@ -14,28 +14,28 @@
 
 namespace clearway {
 
-/// The integers whose positions lie in a closed box; none where no integer's does. Exact, because a
-/// position is monotone in its integers.
+/// The integers whose positions lie in a closed box; none if there are no such integers. Exact,
+/// because a position is monotone in its integers.
 std::optional<QuantumBox> quanta_in(const Quantisation& quantisation, const Box& box);
 
-/// Puts the lists of what is ignored in ascending order, each value once: the same question then
-/// has the same lists.
+/// Puts the lists of what is ignored in ascending order, without duplicates, so that equal
+/// questions have equal lists.
 void sort_ignored(QueryParameters& query);
 
-/// Which points of a cloud a query leaves out of the search (docs/design/ignored.md).
+/// Tells which points of a cloud a query leaves out of the search (docs/design/ignored.md).
 class IgnoredPoints {
  public:
-  /// What is to be searched: all points but the ignored ones, or the ignored ones alone.
+  /// The points to be searched: all but the ignored ones, or only the ignored ones.
   enum class Search { kOthers, kIgnored };
 
-  /// The cloud outlives it. Without classes, all points have class 0.
+  /// cloud: must outlive this object; without classes, all its points have class 0.
   IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query,
                 Search search = Search::kOthers);
 
   /// Whether the query leaves anything out.
   bool any() const { return any_; }
 
-  /// Whether none of the cell's points is to be searched, as far as boxes alone tell.
+  /// Whether none of the cell's points is to be searched, as far as boxes alone can tell.
   bool skips(std::uint32_t cell) const {
     return search_ == Search::kOthers ? holds(cell) : !touches(cell);
   }
@@ -46,9 +46,10 @@ class IgnoredPoints {
   /// Whether a box holds the whole cell, so that none of its points is searched.
   bool holds(std::uint32_t cell) const;
 
-  /// searched: a word for each block of the cell; bit i is set where point i is to be searched.
-  /// coordinates(): the cell's packed x, y and z, asked for where they are needed. Returns how many
-  /// points are not to be searched. Thread safe. Throws InputError where the cell is damaged.
+  /// Fills the masks of a cell and returns how many of its points are not to be searched. searched:
+  /// one word for each block of the cell, in which bit i is set if point i is to be searched.
+  /// coordinates(): returns the cell's packed x, y and z; called only if they are needed. Thread
+  /// safe. Throws InputError if the cell is damaged.
   template <typename Coordinates>
   std::uint32_t mask(std::uint32_t cell, std::span<std::uint64_t> searched,
                      const Coordinates& coordinates) const {

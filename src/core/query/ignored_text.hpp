@@ -8,16 +8,16 @@
 
 namespace clearway {
 
-/// What a query leaves out: "classes 2, 7-9 and 1 box"; of one that leaves nothing out, "nothing".
+/// What a query leaves out, such as "classes 2, 7-9 and 1 box"; "nothing" if it leaves nothing out.
 std::string ignored_text(const QueryParameters& query);
 
-/// The same with the number of points: "1,234 points ignored (class 2)".
+/// What a query leaves out with the number of points, such as "1,234 points ignored (class 2)".
 std::string ignored_text(const QueryParameters& query, const IgnoredPointCounts& counts);
 
-/// The corners: "1 2 3 to 4 5 6".
+/// The two corners of a box, such as "1 2 3 to 4 5 6".
 std::string box_text(const Box& box);
 
-/// Of all, separated by semicolons; "none".
+/// All boxes, separated by semicolons; "none" if there are none.
 std::string boxes_text(const std::vector<Box>& boxes);
 
 }  // namespace clearway

@@ -7,7 +7,7 @@ Body backwards(const Body& body, std::uint32_t last, bool between_poses) {
   Body out = body;
   std::ranges::reverse(out.poses);
   std::ranges::reverse(out.path_pose);
-  // A body that has a single pose has no way: it stands where the way that ends there begins.
+  // A body with a single pose has no way; it counts at the beginning of the way that ends there.
   const bool single = between_poses && out.poses.size() == 1;
   for (std::uint32_t& pose : out.path_pose) {
     pose = last - pose;

@@ -10,12 +10,12 @@
 
 namespace clearway {
 
-/// The same question with the poses in reverse order: its first poses tell the last poses of the
-/// question. It asks for nothing else.
+/// The question with the poses in reverse order, whose first poses tell the last poses of `query`.
+/// It asks for nothing else.
 Query backwards(const Query& query);
 
 /// The greatest pose that touches each colliding point. Between poses it is the start of the last
-/// way that does (docs/design/findings.md, "Last poses").
+/// way that touches it (docs/design/findings.md, "Last poses").
 class LastPoses {
  public:
   /// answer: the hits of backwards(query).
@@ -25,7 +25,7 @@ class LastPoses {
         last_(static_cast<std::uint32_t>(std::max<std::size_t>(query.poses.size(), 1) - 1)),
         ways_(query.between_poses && last_ > 0 ? 1 : 0) {}
 
-  /// first: the point's first pose.
+  /// The last pose of an entry. first: the point's first pose.
   std::uint32_t at(std::uint64_t entry, std::uint32_t first) const {
     if (!answer_.contains(entry)) return first;
     const std::uint32_t before = numbers_.pose_of(answer_.first_pose(entry)) + ways_;
@@ -36,7 +36,7 @@ class LastPoses {
   HitSet answer_;
   BodyNumbers numbers_;
   std::uint32_t last_;
-  std::uint32_t ways_;  ///< 1 where a pose stands for the way from it to the next
+  std::uint32_t ways_;  ///< 1 if a pose stands for the way from it to the next, otherwise 0
 };
 
 }  // namespace clearway

@@ -8,7 +8,7 @@
 
 namespace clearway {
 
-/// Points 64 * word + i, of all set bits i, that the model touches at `pose`, or, without first
+/// The points 64 * word + i, for all set bits i, that the model touches at `pose` or, without first
 /// poses, at some pose.
 struct PoseMark {
   std::uint64_t word;
@@ -16,9 +16,9 @@ struct PoseMark {
   std::uint32_t pose;
 };
 
-/// Keeps what an engine that works pose by pose has found, so that another run can go on from it.
-/// A mark is true whatever becomes of the poses around it; poses are finished when every mark that
-/// they need was appended before.
+/// Keeps what an engine that works pose by pose has found, so that another run can continue from
+/// it. A mark is true whatever becomes of the poses around it; poses are finished when every mark
+/// that they need was appended before.
 class PoseJournal {
  public:
   virtual ~PoseJournal() = default;
@@ -28,15 +28,15 @@ class PoseJournal {
   /// Whether all of the poses were finished.
   virtual bool poses_finished(std::uint32_t first, std::uint32_t count) const = 0;
 
-  // Thread safe:
-  virtual void append_marks(std::span<PoseMark> marks) = 0;  ///< may be put into another order
+  // The functions that append are thread safe:
+  virtual void append_marks(std::span<PoseMark> marks) = 0;  ///< may reorder the marks
   virtual void append_finished_poses(std::uint32_t first, std::uint32_t count) = 0;
 };
 
 /// The marks of one thread on their way to a journal, in a buffer of fixed size.
 class PoseMarkLog {
  public:
-  /// journal: none keeps nothing.
+  /// journal: null keeps nothing.
   explicit PoseMarkLog(PoseJournal* journal) : journal_(journal) {
     if (journal_ != nullptr) marks_.reserve(kMarks);
   }

@@ -7,18 +7,19 @@
 
 namespace clearway {
 
-/// A parameter of a query, with everything that the places that list parameters say of it: the
+/// A parameter of a query, with all texts and names for the places that list parameters: the
 /// command line, campaigns, results and their comparison, journals, pages and Python. Value: bool,
 /// double (a length in metres), or a list.
 template <typename Value>
 struct QueryField {
   Value QueryParameters::*member;
-  const char* name;    ///< in results, JSON, campaigns and Python
-  const char* topic;   ///< in messages, as in "the radius"
-  const char* option;  ///< of `clearway run`
-  const char* help;    ///< of that option
-  const char* doc;     ///< of the property in Python
-  /// The version from which on every result has it; 0: only results that do not have its default.
+  const char* name;    ///< name in results, JSON, campaigns and Python
+  const char* topic;   ///< name in messages, as in "the radius"
+  const char* option;  ///< option of `clearway run`
+  const char* help;    ///< help text of that option
+  const char* doc;     ///< documentation of the property in Python
+  /// The version of results from which on every result has it; 0: only results in which it is not
+  /// the default have it.
   std::uint32_t since = 0;
 
   const Value& of(const QueryParameters& query) const { return query.*member; }
@@ -65,7 +66,7 @@ void for_each_value_field(Visit visit) {
       "which saves time; metres; 0: the answer is exact."});
 }
 
-/// The same for the parameters that are lists: of points that are left out of the search.
+/// Calls visit(field) for each parameter that is a list, of points that are left out of the search.
 template <typename Visit>
 void for_each_list_field(Visit visit) {
   using Q = QueryParameters;

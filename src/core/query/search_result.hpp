@@ -10,14 +10,15 @@
 
 namespace clearway {
 
-/// What an engine says of every entry of a cloud.
+/// The answer of an engine for every entry of a cloud.
 struct SearchResult {
   HitSet hits;
-  ClearanceSet clearances;  ///< without entries unless asked for
-  ProfileSet profile = {};  ///< without poses unless asked for
-  /// Of the cells that were searched, those of a journal not included.
+  ClearanceSet clearances;  ///< no entries unless asked for
+  ProfileSet profile = {};  ///< no poses unless asked for
+  /// Number of ignored points in the cells that were searched, without those of a journal.
   std::uint64_t ignored_points = 0;
-  std::optional<LastPoses> last_poses = {};  ///< where first poses were asked for, once searched
+  /// Set after a search for them, if first poses were asked for
+  std::optional<LastPoses> last_poses = {};
 };
 
 }  // namespace clearway

@@ -4,7 +4,8 @@
 
 namespace clearway {
 
-/// A distance from its square; both are below 0 inside solids (docs/design/solids.md).
+/// The distance that belongs to a squared distance; both are below 0 inside solids
+/// (docs/design/solids.md).
 inline double signed_root(double squared) {
   return squared < 0 ? -std::sqrt(-squared) : std::sqrt(squared);
 }

@@ -8,9 +8,9 @@
 namespace clearway {
 namespace {
 
-/// A curve is straight enough, and its poses are close enough together, where both are small beside
-/// this share of the radius: what lies between the radius and the radius and a curve's error goes
-/// to the predicate.
+/// Share of the radius beside which a curve's error and the spacing of its poses must be small,
+/// because points at a distance between the radius and the radius plus that error go to the
+/// predicate.
 constexpr double kSpacingOfRadius = 0.5;
 
 }  // namespace
@@ -21,7 +21,7 @@ bool HitRuns<Element>::is_available() const {
          !(sweep_.resolved_from < sweep_.radius);
 }
 
-/// The last packets may be half empty.
+/// Counts twice the packets that are needed, because packets may be half empty.
 template <typename Element>
 std::uint64_t HitRuns<Element>::most_bytes() const {
   if (!is_available()) return 0;
@@ -61,8 +61,9 @@ void HitRuns<Element>::join(std::vector<std::uint32_t>& nodes) const {
       motion_.ref().join(nodes.data(), count, [&](std::uint32_t node) { return is_run(node); }));
 }
 
-/// No triangle within the ball of the curve: at no pose of the run does one touch e, and no wall
-/// comes between e and the model on the way from one pose to the next, so that all have one sign.
+/// If no triangle is within the ball of the curve, no triangle touches e at any pose of the run,
+/// and no wall comes between e and the model on the way from one pose to the next, so that e is
+/// inside at all poses or at none.
 template <typename Element>
 typename HitRuns<Element>::Answer HitRuns<Element>::search(const Vec3& e, std::uint32_t run,
                                                            bool any, std::uint32_t& end,

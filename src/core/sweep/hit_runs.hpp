@@ -14,51 +14,51 @@
 
 namespace clearway {
 
-/// Whole runs of poses against one point, on the host: for surfaces that run along what was
-/// scanned, as a load does in a tunnel that it just fits. There a point is as far from the model at
-/// hundreds of poses, so that bounds at single poses decide one pose each. A run of poses is a
-/// parabola through the model's frame, and one search of the model decides about all of them
-/// (docs/design/numerics.md, "Sweep", runs). What it needs is made when it is first asked for, by
-/// one thread; nobody waits for that.
+/// Tests whole runs of poses against one point, on the host. It is for surfaces that run along the
+/// scanned ones, as a load does in a tunnel that it just fits: there a point is equally far from
+/// the model at hundreds of poses, so that bounds at single poses decide one pose each. A run of
+/// poses is a parabola through the model's frame, and one search of the model decides about all of
+/// them (docs/design/numerics.md, "Sweep", runs). What it needs is made by one thread when it is
+/// first asked for; no thread waits for that.
 template <typename Element>
 class HitRuns {
  public:
-  /// All arguments outlive it. sweep: of a query without between_poses and tolerance.
+  /// sweep: of a query without between_poses and tolerance. All arguments must outlive this object.
   HitRuns(const MotionTree& motion, const ModelTreeOf<StoredElement<Element>>& model,
           const SweepRefOf<Element>& sweep)
       : motion_(motion), model_(model), sweep_(sweep) {}
 
-  /// Whether runs can be searched: for surfaces and solids of moderate size, whose second tree then
+  /// Whether runs can ever be searched: for surfaces and solids of moderate size, whose second tree
   /// takes little memory.
   bool is_available() const;
-  /// Of all that may be made.
+  /// Greatest memory of what prepare() makes, in bytes.
   std::uint64_t most_bytes() const;
 
-  /// Whether runs can be searched now. Makes what that takes, unless another thread does so. The
-  /// functions below are for threads that were told so.
+  /// Whether runs can be searched now. Makes what that takes, unless another thread is doing so.
+  /// The functions below are only for threads for which this returned true.
   bool prepare() const;
 
-  /// The nodes, in the order of their poses, with halves replaced by what they are halves of
-  /// wherever that is one run.
+  /// Joins motion nodes in the order of their poses: halves are replaced by the node that they are
+  /// halves of wherever that is one run.
   void join(std::vector<std::uint32_t>& nodes) const;
 
-  /// Whether the poses of the node are one run.
+  /// Whether the poses of the node form one run.
   bool is_run(std::uint32_t node) const;
 
-  /// What is known of a point at the poses of a run.
+  /// What a search tells of a point at the poses of a run.
   enum class Answer {
-    kNever,  ///< touches it at none of the poses asked for
+    kNever,  ///< touched at none of the poses asked for
     kHit,
-    kUnknown,  ///< solids only: no triangle touches it, but one is so near that it may change sides
+    kUnknown,  ///< undecided: for solids, a triangle is so near that the point may change sides
   };
 
-  /// Whether the model touches e at a pose of a run that is below `end`. any: the answer may be
-  /// that of any such pose; otherwise it is that of the first. A hit lowers `end` to its pose.
+  /// Whether the model touches e at a pose of a run that is below `end`. any: any such pose will
+  /// do; otherwise the first is searched. A pose that is found lowers `end` to itself.
   Answer search(const Vec3& e, std::uint32_t run, bool any, std::uint32_t& end,
                 SweepStatistics& statistics) const;
 
  private:
-  /// No more triangles: their packets take 40 MB.
+  /// Greatest number of triangles; their packets take 40 MB.
   static constexpr std::uint32_t kMostTriangles = 1 << 18;
 
   struct Made {

@@ -12,14 +12,14 @@
 
 namespace clearway {
 
-/// The exact clearance of one environment point: branch and bound over motion tree and model. What
-/// is given up is proven to have only computed d2 above the best so far, so that ties reach the
-/// lowest pose (docs/design/numerics.md, "Clearance"). Of solids the depth comes first: below 0, it
-/// is the answer.
+/// Finds the exact clearance of one environment point by branch and bound over motion tree and
+/// model. Whatever is given up is proven to have only computed d2 above the best so far, so that
+/// ties reach the lowest pose (docs/design/numerics.md, "Clearance"). For solids the depth is
+/// searched first; if its value is below 0, it is the answer.
 template <typename Element>
 class PointClearance {
  public:
-  /// best: known so far, of the point or the limit that clearances are below.
+  /// best: the best known so far for this point, or the limit that clearances must be below.
   CLEARWAY_HD PointClearance(const SweepRefOf<Element>& sweep, const Vec3& e, const Clearance& best,
                              SweepStatistics& statistics)
       : sweep_(sweep), statistics_(statistics), e_(e) {
@@ -29,10 +29,10 @@ class PointClearance {
 
   CLEARWAY_HD const Clearance& best() const { return best_; }
   CLEARWAY_HD bool is_inside() const { return best_.squared < 0; }
-  /// That the best was found with, unless it is inside.
+  /// The model's element that the best was found with; has no meaning if the point is inside.
   CLEARWAY_HD const Element& element() const { return near_; }
 
-  /// Looks whether the point is inside at a pose.
+  /// Tests whether the point is inside at a pose, and keeps its depth if that is better.
   CLEARWAY_HD void offer_inside(std::uint32_t pose) {
     if constexpr (kIsSolid<Element>) {
       SolidDepth<Element> depth(sweep_, e_, best_, statistics_);
@@ -48,8 +48,9 @@ class PointClearance {
     set_best(squared, pose);
   }
 
-  /// Every pose of some nodes, at most kMostNodes. First a look at all, far apart ones first, for a
-  /// best that is close from the start; then the one that may be nearest comes first.
+  /// Searches every pose of some nodes, at most kMostNodes. It first looks once at each, with those
+  /// far apart first, so that the best is close from the start; then it begins with the node that
+  /// may be nearest.
   CLEARWAY_HD void search(const std::uint32_t* nodes, std::uint32_t count) {
     search_inside(nodes, count);
     if (is_inside()) return;
@@ -71,7 +72,7 @@ class PointClearance {
   static constexpr std::uint32_t kMostNodes = BitReversalOrder::kMost;
 
  private:
-  /// Poses; covers the rounding of a place.
+  /// Slack in poses that covers the rounding of a place.
   static constexpr double kPlaceSlack = 1e-6;
 
   CLEARWAY_HD std::uint32_t size_of(std::uint32_t at) const {
@@ -86,7 +87,7 @@ class PointClearance {
     }
   }
 
-  /// What the square of the distance is at least, pulled back by the middle pose of the node.
+  /// Lower bound of the squared distance of the point, pulled back by the middle pose of the node.
   CLEARWAY_HD double look(std::uint32_t at) {
     ++statistics_.point_tests;
     const MotionNode& node = sweep_.motion.nodes[at];
@@ -103,8 +104,8 @@ class PointClearance {
     return farther(sweep_.motion.inverse_poses[node.mid].least, squared_lower, reach_ + node.delta);
   }
 
-  /// In preorder the subtree of a range of n poses is a run of 2 n - 1 nodes, so that no stack is
-  /// needed.
+  /// Searches all poses of a node. In preorder the subtree of a range of n poses is a run of 2 n -
+  /// 1 nodes, so that no stack is needed.
   CLEARWAY_HD void search(std::uint32_t top, double squared_lower) {
     const std::uint32_t end = top + size_of(top);
     for (std::uint32_t at = top; at < end;) {
@@ -114,18 +115,19 @@ class PointClearance {
     }
   }
 
-  /// Whether that leaves few model points open.
+  /// Whether a curve with this error leaves few model points open.
   CLEARWAY_HD bool is_close_enough(double error) const {
     return error * reach_ <= sweep_.open_area;
   }
 
-  /// How far from a curve, which is wrong by at most `error`, a model point can lie that is the
-  /// nearest at one of its poses.
+  /// Greatest distance from a curve, wrong by at most `error`, at which a model point can lie that
+  /// is the nearest at one of its poses.
   CLEARWAY_HD double ball(double least, double error) const {
     return sweep_.ball_around_curve(reach_, least, error);
   }
 
-  /// One search of the model for all poses of a node; false where its curve is not close enough.
+  /// Searches the model once for all poses of a node. Returns false if the node's curve is not
+  /// close enough.
   CLEARWAY_HD bool search_model(std::uint32_t at) {
     const MotionCurve& smooth = sweep_.motion.curves[at];
     const MotionNode& node = sweep_.motion.nodes[at];
@@ -185,7 +187,7 @@ class PointClearance {
         });
   }
 
-  /// One triangle against the poses of a smooth node, the likely nearest first.
+  /// Tests one triangle against the poses of a smooth node, the likely nearest first.
   CLEARWAY_HD void search_poses(const MotionNode& node, const TrianglePacket& packet,
                                 std::uint32_t i, const TriangleCurve& curve, double least,
                                 double error) {
@@ -203,7 +205,7 @@ class PointClearance {
     return radius * radius * kRoundedUp;
   }
 
-  /// One model point against the poses of a smooth node, the likely nearest first.
+  /// Tests one model point against the poses of a smooth node, the likely nearest first.
   CLEARWAY_HD void search_poses(const MotionNode& node, const Vec3& m, const PointCurve& curve,
                                 double least, double error) {
     const double last = node.count - 1;

@@ -10,12 +10,13 @@
 
 namespace clearway {
 
-/// The parabola c(t) = start + t way + t (1 - t) bend that a point moves along, seen from the
-/// model, while the model moves through the poses of a node; t from 0 to 1. Where its speed changes
-/// too much to bound distances, only its middle is kept (docs/design/numerics.md, "Clearance").
+/// The parabola c(t) = start + t way + t (1 - t) bend, t from 0 to 1, on which an environment point
+/// moves as seen from the model while the model moves through the poses of a node. If its speed
+/// changes too much to bound distances, only its middle is kept (docs/design/numerics.md,
+/// "Clearance").
 class PointCurve {
  public:
-  /// reach: no model point farther than this from the curve matters.
+  /// reach: model points farther than this from the curve do not matter.
   CLEARWAY_HD PointCurve(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e,
                          double reach)
       : way_{}, bend_{} {
@@ -44,12 +45,13 @@ class PointCurve {
     }
   }
 
-  /// How far the true parabola may be from this one.
+  /// Greatest distance of the true parabola from this one.
   CLEARWAY_HD double beside() const { return beside_; }
 
   CLEARWAY_HD Box box() const { return MotionParabola::box(start_, way_, bend_); }
 
-  /// At most the squares of the distances to the points of a packet, where they are within reach.
+  /// Lower bounds of the squared distances from the curve to the points of a packet, for points
+  /// within reach.
   CLEARWAY_HD void to_points(const PointPacket& packet,
                              double (&squared)[PointPacket::kMost]) const {
 #ifdef __CUDA_ARCH__
@@ -59,7 +61,8 @@ class PointCurve {
 #endif
   }
 
-  /// The places within sqrt(squared) of m lie between two ends; low > high where there are none.
+  /// The places within sqrt(squared) of m lie between `low` and `high`; low > high if there are
+  /// none.
   struct Places {
     double nearest, low, high;
   };
@@ -78,13 +81,13 @@ class PointCurve {
   }
 
  private:
-  /// Where the way is shorter, squares of squares of it lose digits to underflow.
+  /// With a smaller squared way, squares of squares of the way lose digits to underflow.
   static constexpr double kLeastSquaredWay = 1e-140;
 
-  /// A model point seen from a place of the curve.
+  /// How a model point is seen from a place of the curve.
   struct From {
-    double squared;  ///< distance
-    double gain;     ///< minus half of its slope
+    double squared;  ///< squared distance
+    double gain;     ///< minus half of the slope of `squared` over t
   };
 
   CLEARWAY_HD void to_all_points(const PointPacket& packet, double* squared) const {
@@ -95,7 +98,7 @@ class PointCurve {
     }
   }
 
-  /// The same in vectors of the processor.
+  /// Does to_all_points() in vectors of the processor.
   void to_points_in_vectors(const PointPacket& packet, double* squared) const;
 
   CLEARWAY_HD static double clamped(double t) {
@@ -103,7 +106,7 @@ class PointCurve {
     return from_0 < 1 ? from_0 : 1;
   }
 
-  /// Of the chord, nearest to m.
+  /// The t of the place of the chord that is nearest to m.
   CLEARWAY_HD double near_place(const Vec3& m) const {
     return clamped(
         (way_.x * (m.x - start_.x) + way_.y * (m.y - start_.y) + way_.z * (m.z - start_.z)) *

@@ -7,18 +7,18 @@
 
 namespace clearway {
 
-/// How deep one environment point lies inside at single poses.
+/// Finds how deep one environment point lies inside solids at single poses.
 template <typename Element>
 class DepthAtPose {
  public:
-  /// All outlive it.
+  /// sweep and statistics must outlive this object.
   CLEARWAY_HD DepthAtPose(const SweepRefOf<Element>& sweep, const Vec3& e,
                           SweepStatistics& statistics)
       : sweep_(sweep), statistics_(statistics), e_(e) {}
 
-  /// The square of the depth, as the greatest of the solids that contain e of the least d2 to their
-  /// triangles; 0 where none does. Less than `below` is not exact, but at least the square.
-  /// near: a triangle to begin with, and that which was the nearest; any.
+  /// The square of the depth: the greatest, over the solids that contain e, of the least d2 to
+  /// their triangles; 0 if no solid contains e. A result less than `below` is not exact, but at
+  /// least the true square. near: any triangle to begin with; becomes the nearest one.
   CLEARWAY_HD double squared(std::uint32_t pose_index, double below, std::uint32_t& near) const {
     const Pose& pose = sweep_.motion.poses[pose_index];
     const SolidPartsRef& solids = sweep_.field.inside.solids;
@@ -59,7 +59,7 @@ class DepthAtPose {
     return squared_distance(e_, transform(pose, t));
   }
 
-  /// The least d2 to the triangles of a solid, or one that is below `below`.
+  /// The least d2 to the triangles of a solid, or any d2 that is below `below`.
   CLEARWAY_HD double least_squared(const SolidPartsRef::Tree& tree, std::uint32_t nearest,
                                    std::uint32_t pose_index, const Vec3& x, double below) const {
     const Pose& pose = sweep_.motion.poses[pose_index];
@@ -81,7 +81,7 @@ class DepthAtPose {
     return least;
   }
 
-  /// Triangles beyond it, seen from x, have only larger d2 at the pose.
+  /// Square of a distance from x: triangles beyond it have only larger d2 at the pose.
   CLEARWAY_HD double squared_ball(double least, std::uint32_t pose_index) const {
     const double reach = (std::sqrt(least) * kRoundedUp + sweep_.rounding) /
                          sweep_.motion.inverse_poses[pose_index].least * kRoundedUp;
@@ -93,20 +93,20 @@ class DepthAtPose {
   Vec3 e_;
 };
 
-/// The square of a depth that stays below the square `best` with `more` metres added, roundings
-/// included; 0 for none.
+/// The square of a depth that stays below the depth with square `best` when `more` metres are
+/// added, roundings included; 0 if there is none.
 CLEARWAY_HD inline double squared_depth_below(double best, double more) {
   const double depth = std::sqrt(best) * (1 - 256 * kUnitRoundoff) - more;
   return depth > 0 ? depth * depth : 0;
 }
 
-/// The greatest depth of one environment point: branch and bound over the motion tree. What is
-/// given up is proven to have only computed depths below the best so far, so that ties reach the
-/// lowest pose (docs/design/numerics.md, "Solids").
+/// Finds the greatest depth of one environment point by branch and bound over the motion tree.
+/// Whatever is given up is proven to have only computed depths below the best so far, so that ties
+/// reach the lowest pose (docs/design/numerics.md, "Solids").
 template <typename Element>
 class SolidDepth {
  public:
-  /// best: known so far, of which only what is inside counts.
+  /// best: the best known so far; used only if it is inside.
   CLEARWAY_HD SolidDepth(const SweepRefOf<Element>& sweep, const Vec3& e, const Clearance& best,
                          SweepStatistics& statistics)
       : sweep_(sweep), statistics_(statistics), e_(e), at_pose_(sweep, e_, statistics) {
@@ -115,10 +115,11 @@ class SolidDepth {
   SolidDepth(const SolidDepth&) = delete;
   SolidDepth& operator=(const SolidDepth&) = delete;
 
-  /// Below 0, where the point was inside at any pose; otherwise 0.
+  /// The greatest depth so far: `squared` is below 0 if the point was inside at any pose, otherwise
+  /// 0.
   CLEARWAY_HD const Clearance& best() const { return best_; }
 
-  /// Every pose of a node of the motion tree.
+  /// Searches every pose of a node of the motion tree.
   CLEARWAY_HD void search(std::uint32_t top) {
     if (is_outside(top)) return;
     find_deep(top);
@@ -126,7 +127,7 @@ class SolidDepth {
     for (std::uint32_t at = top; at < end;) at += is_done(at) ? size_of(at) : 1;
   }
 
-  /// Looks at one pose.
+  /// Searches one pose.
   CLEARWAY_HD void offer(std::uint32_t pose) { offer(pose, -best_.squared); }
 
  private:
@@ -134,7 +135,8 @@ class SolidDepth {
     return 2 * sweep_.motion.nodes[at].count - 1;
   }
 
-  /// below: as DepthAtPose has it, no more than the best. The square of the depth, or above it.
+  /// Searches one pose and returns the square of the depth or an upper bound of it. below: as for
+  /// DepthAtPose::squared(), at most the square of the best.
   CLEARWAY_HD double offer(std::uint32_t pose, double below) {
     const double squared = at_pose_.squared(pose, below, near_);
     if (squared > -best_.squared || (squared == -best_.squared && pose < best_.pose)) {
@@ -143,7 +145,8 @@ class SolidDepth {
     return squared;
   }
 
-  /// Down to one pose, where it is deeper: most others need no exact depth then.
+  /// Descends to one pose, each time into the half whose middle pose is deeper. Most other poses
+  /// then need no exact depth.
   CLEARWAY_HD void find_deep(std::uint32_t top) {
     const MotionNode* nodes = sweep_.motion.nodes;
     for (std::uint32_t at = top; nodes[at].count > 2;) {
@@ -153,7 +156,7 @@ class SolidDepth {
     }
   }
 
-  /// Whether no pose below a node has the point inside, by the field.
+  /// Whether the field proves that the point is inside at no pose of a node.
   CLEARWAY_HD bool is_outside(std::uint32_t at) {
     ++statistics_.point_tests;
     const MotionNode& node = sweep_.motion.nodes[at];
@@ -164,8 +167,8 @@ class SolidDepth {
     return is_same && !sweep_.is_inside(x, squared_lower);
   }
 
-  /// Whether the poses below a node need no look. No pose of it has a greater depth than its middle
-  /// one by more than delta.
+  /// Whether the poses below a node need no look: at none of them is the depth greater than at the
+  /// middle pose by more than delta.
   CLEARWAY_HD bool is_done(std::uint32_t at) {
     if (is_outside(at)) return true;
     const MotionNode& node = sweep_.motion.nodes[at];
@@ -182,7 +185,7 @@ class SolidDepth {
   SweepStatistics& statistics_;
   Vec3 e_;
   DepthAtPose<Element> at_pose_;
-  std::uint32_t near_ = 0;  ///< triangle of the solids, near e at the last pose
+  std::uint32_t near_ = 0;  ///< triangle of the solids that was near e at the last pose
   Clearance best_{0, 0};    ///< pose 0, so that a depth of 0 is no improvement
 };
 

@@ -10,10 +10,10 @@
 
 namespace clearway {
 
-/// The first step for one block of 64 points, by one warp: clears its answer, then goes through the
-/// planned motion nodes, a lane a node, and puts those that may touch the block on the page's list
-/// of entries, or where that is full the block as a whole. With clearances the points are
-/// searched at once, because only one warp may improve theirs.
+/// First step of a page for one block of 64 points, by one warp. It clears the block's answer, goes
+/// through the planned motion nodes, one by each lane, and puts those that may touch the block on
+/// the page's list of entries or, if that is full, the block as a whole. With clearances the points
+/// are searched at once, because only one warp may improve theirs.
 template <typename Warp, bool kClearance, typename Element = Vec3>
 class SweepBlock {
  public:
@@ -23,11 +23,11 @@ class SweepBlock {
   static constexpr std::uint32_t kQueue = SweepSubtrees::kMost;
   static constexpr std::uint32_t kOpen = 96;
 
-  /// What the lanes share.
+  /// The memory that the lanes share.
   struct Shared {
     std::uint32_t open[kOpen];    ///< nodes to be looked at
-    std::uint32_t queue[kQueue];  ///< nodes for the points
-    std::uint32_t joined;         ///< of them, for clearances
+    std::uint32_t queue[kQueue];  ///< nodes at which points are to be searched
+    std::uint32_t joined;         ///< number of queued nodes after joining them for clearances
   };
 
   CLEARWAY_HD SweepBlock(const SweepPageOf<Element>& job, std::uint32_t block, Shared& shared,
@@ -62,7 +62,7 @@ class SweepBlock {
   CLEARWAY_HD void narrow(const PointBox& points, const std::uint32_t* nodes) {
     double limit = job_.sweep.radius;
     if constexpr (kClearance) limit = clearance_limit(points.centre, points.rho, nodes);
-    for (std::uint32_t next = 0;;) {  // of `nodes`
+    for (std::uint32_t next = 0;;) {  // next: index in `nodes`
       const bool done = open_ == 0 && next >= cell_.node_count;
       if (queued_ > kQueue - kWarpLanes || (done && queued_ > 0)) empty_queue();
       if (done || is_whole_) return;
@@ -71,7 +71,7 @@ class SweepBlock {
     }
   }
 
-  /// The next planned nodes are open. Returns how many were so far.
+  /// Opens the next planned nodes. Returns how many were opened so far.
   CLEARWAY_HD std::uint32_t open_planned(const std::uint32_t* nodes, std::uint32_t next) {
     const std::uint32_t left = cell_.node_count - next;
     open_ = left < kWarpLanes ? left : kWarpLanes;
@@ -81,9 +81,9 @@ class SweepBlock {
     return next + open_;
   }
 
-  /// Looks at the last open nodes, a lane a node. Those that are fine enough go to the queue, those
-  /// that are not leave their halves open; without room for them they are fine enough. True where
-  /// the whole block is accepted.
+  /// Looks at the last open nodes, one by each lane. Nodes that are fine enough go to the queue,
+  /// and the others leave their halves open; without room for the halves a node counts as fine
+  /// enough. Returns true if the whole block is accepted.
   CLEARWAY_HD bool narrow_open(const PointBox& points, double limit) {
     const std::uint32_t count = open_ < kWarpLanes ? open_ : kWarpLanes;
     open_ -= count;
@@ -168,7 +168,8 @@ class SweepBlock {
     }
   }
 
-  /// All of the queue, or nothing.
+  /// Puts the whole queue on the page's list, or nothing if there is no room. Returns whether there
+  /// was.
   CLEARWAY_HD bool put_on_list() {
     const SweepWork& work = job_.work;
     const auto nodes = SweepWork::room<Warp>(&work.counts->nodes, queued_, work.node_capacity);
@@ -187,7 +188,7 @@ class SweepBlock {
     return entries.fits();
   }
 
-  /// The points are then put to all planned nodes.
+  /// Lists the block as a whole; its points are then tested at all planned nodes.
   CLEARWAY_HD void put_whole_on_list() {
     const std::uint32_t first = Warp::add(&job_.work.counts->whole, halves(), SweepWork::kNone);
     Warp::each([&](std::uint32_t lane) {
@@ -201,8 +202,8 @@ class SweepBlock {
   std::uint32_t block_;
   const PageCell& cell_;
   Shared& shared_;
-  std::uint32_t open_ = 0, queued_ = 0;  ///< how many
-  bool is_whole_ = false;                ///< because the list was full
+  std::uint32_t open_ = 0, queued_ = 0;  ///< numbers of open and of queued nodes
+  bool is_whole_ = false;  ///< whether the block was listed as a whole because the list was full
   PerLane<SweepStatistics>& statistics_;
 };
 

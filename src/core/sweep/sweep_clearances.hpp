@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// The clearances of the 32 points of a half block over the poses of some subtrees: improves those
-/// in the answer of the page. A lane a point; no other warp works on the same points.
+/// Improves the clearances of the 32 points of a half block, in the answer of the page, over the
+/// poses of some subtrees. One lane for each point; no other warp works on the same points.
 template <typename Warp, typename Element>
 class SweepClearances {
  public:
@@ -32,7 +32,7 @@ class SweepClearances {
       if (!job_.is_searched(block_, first_ + lane)) return false;
       ++statistics_[lane].points_tested;
       Clearance& answer = job_.clearances[block_ * kBlockPoints + first_ + lane];
-      // Pose 0, so that a tie with the limit is no improvement.
+      // Pose 0, so that a distance equal to the limit is no improvement.
       const Clearance best = answer.squared < limit ? answer : Clearance{limit, 0};
       PointClearance<Element> search(job_.sweep, job_.point(cell_, begin + lane), best,
                                      statistics_[lane]);
@@ -50,7 +50,7 @@ class SweepClearances {
  private:
   const SweepPageOf<Element>& job_;
   std::uint32_t block_;
-  std::uint32_t first_;  ///< point of the block
+  std::uint32_t first_;  ///< first point of the half, in the block
   const PageCell& cell_;
   PerLane<SweepStatistics>& statistics_;
 };

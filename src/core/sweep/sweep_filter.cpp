@@ -15,20 +15,20 @@ using Verdict = SweepVerdict;
 
 double rounding_of(const Query& query, const MotionTree& motion, const ModelField& field,
                    const PackedCloud& cloud) {
-  // What the question for an inside rounds counts as so much more of a lattice.
+  // Rounding of the question for the inside, expressed as an additional margin of the lattice.
   const double lattice = field.margin() + field.inside_rounding() / (1024 * kUnitRoundoff);
   const double rounding =
       motion.rounding(largest_coordinate(cloud) + search_radius(query), lattice) + 1e-150;
-  // Between poses, the part of a computed hit's error that does not grow with the step.
+  // Between poses: the part of a computed hit's error that does not grow with the step.
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
 
-/// At a distance d from a surface, a curve that is wrong by x leaves the model points of a strip of
-/// width sqrt(8 d x) open, so d x is kept below this many squared spacings (measured).
+/// Bound of d x in squared spacings (measured): at a distance d from a surface, a curve that is
+/// wrong by x leaves the model points of a strip of width sqrt(8 d x) open.
 constexpr double kOpenArea = 1;
 
-/// A triangle may be longer than what is asked for: a curve is of use where it is straight beside
-/// this share of the clearance, too.
+/// Share of the clearance beside which a curve must be straight, too, because a triangle may be
+/// longer than the clearance asked for.
 constexpr double kSpacingOfClearance = 0.25;
 
 template <typename Element>
@@ -37,11 +37,11 @@ double spacing_of(const ModelTreeOf<Element>& model, double clearance) {
   return std::min(model.spacing(), kSpacingOfClearance * clearance);
 }
 
-/// A point of a block that took more tests than these grazes the model: its neighbours are searched
-/// in runs of poses (measured).
+/// Number of tests beyond which a point grazes the model, so that its neighbours in the block are
+/// searched in runs of poses (measured).
 constexpr std::uint64_t kGrazingTests = 128;
 
-/// An exact test takes as long as so many others.
+/// Number of other tests that take as long as one exact test.
 constexpr std::uint64_t kTestsOfExact = 4;
 
 }  // namespace
@@ -93,7 +93,8 @@ void SweepFilterOf<Element>::narrow(const Box& box, std::span<const std::uint32_
   narrow(for_plan_, box, nodes, {ref_.profile * kRoundedUp, false}, out, not_counted);
 }
 
-/// limits.distance: one within which every pose matters at least.
+/// Descends from `nodes` for a box. limits.distance: a distance within which every pose matters at
+/// least.
 template <typename Element>
 bool SweepFilterOf<Element>::narrow(const SweepRefOf<Element>& ref, const Box& box,
                                     std::span<const std::uint32_t> nodes, Limits limits,
@@ -141,8 +142,8 @@ Verdict SweepFilterOf<Element>::test(const Vec3& e, const MotionNode& node,
   return ref_.collides_at(e, node) ? Verdict::kHitAtMid : Verdict::kDismissed;
 }
 
-/// First the middle poses of all nodes, far apart ones first: most points that collide do so at one
-/// of them. Then what stayed open, in halves.
+/// Tests the middle poses of all nodes first, those far apart first, because most points that
+/// collide do so at one of them; then searches the nodes that stayed open, in halves.
 template <typename Element>
 bool SweepFilterOf<Element>::touches(const Vec3& e, std::span<const std::uint32_t> nodes,
                                      SweepStatistics& statistics) const {
@@ -152,7 +153,7 @@ bool SweepFilterOf<Element>::touches(const Vec3& e, std::span<const std::uint32_
     const std::span part =
         nodes.first(std::min<std::size_t>(nodes.size(), BitReversalOrder::kMost));
     nodes = nodes.subspan(part.size());
-    std::uint64_t open = 0;  // as bits
+    std::uint64_t open = 0;  // the nodes that stayed open, as bits
     bool hit = false;
     BitReversalOrder(static_cast<std::uint32_t>(part.size())).for_each([&](std::uint32_t i) {
       const Verdict verdict = test(e, motion_.nodes()[part[i]], statistics, squared_lower);
@@ -200,7 +201,7 @@ std::uint32_t SweepFilterOf<Element>::first_pose(const Vec3& e,
   return best;
 }
 
-/// Lowers `best` to the least pose of the node whose way touches e, where that is less.
+/// Lowers `best` to the least pose of the node whose way touches e, if that is less.
 template <typename Element>
 void SweepFilterOf<Element>::first_pose_below(const Vec3& e, std::uint32_t index,
                                               std::uint32_t& best,

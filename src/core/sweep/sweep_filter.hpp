@@ -17,13 +17,13 @@
 
 namespace clearway {
 
-/// The inverse query, answered for ranges of poses and boxes of environment points at once by
-/// going down the motion tree with the tests of SweepRef.
+/// Answers the inverse query for ranges of poses and boxes of environment points at once, by
+/// descending the motion tree with the tests of SweepRefOf.
 template <typename Element>
 class SweepFilterOf final : public PoseReach {
  public:
-  /// All arguments outlive it. cloud: for the largest coordinates, which the rounding bound needs.
-  /// threads: to build with.
+  /// All arguments must outlive this object. cloud: for the largest coordinates, which the rounding
+  /// bound needs. threads: number of threads to build with.
   SweepFilterOf(const Query& query, const MotionTree& motion,
                 const ModelTreeOf<StoredElement<Element>>& model, const ModelField& field,
                 const PackedCloud& cloud, int threads = 1);
@@ -36,34 +36,35 @@ class SweepFilterOf final : public PoseReach {
     return curves_.allocated_bytes() + wide_.allocated_bytes() + runs_.most_bytes();
   }
 
-  /// Of `nodes` and the nodes below them those that may touch a point of the box, or with a
-  /// clearance be the nearest to one, as fine as the box is small; replaces `out`. In the order of
-  /// the poses when `nodes` are. True, and only some of them, where every point of the box
-  /// collides and nothing else is asked.
+  /// Replaces `out` by those of `nodes` and the nodes below them that may touch a point of the box
+  /// or, with a clearance, be the nearest to one; they are as fine as the box is small, and in the
+  /// order of the poses if `nodes` are. Returns true, with only some of the nodes, if every point
+  /// of the box collides and nothing else is asked.
   bool narrow(const Box& box, std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& out,
               SweepStatistics& statistics) const;
 
-  /// The same for the plan: with a profile also those that may be within its distance.
+  /// Narrows nodes for the plan, which with a profile includes those that may be within its
+  /// distance.
   void narrow(const Box& box, std::span<const std::uint32_t> nodes,
               std::vector<std::uint32_t>& out) const override;
 
-  /// Whether the model touches e at a pose of `nodes`, or between poses on the way from one to the
-  /// next.
+  /// Whether the model touches e at a pose of `nodes` or, between poses, on the way from one of
+  /// them to the next.
   bool touches(const Vec3& e, std::span<const std::uint32_t> nodes,
                SweepStatistics& statistics) const;
 
-  /// The first pose of e (clearway/query.hpp), or HitSet::kNever. `nodes` in the order of their
-  /// poses: what narrow() left of all for a box around e.
+  /// The first pose of e (clearway/query.hpp), or HitSet::kNever. nodes: what narrow() left of all
+  /// nodes for a box around e, in the order of their poses.
   std::uint32_t first_pose(const Vec3& e, std::span<const std::uint32_t> nodes,
                            SweepStatistics& statistics) const;
 
-  /// Joins nodes that narrow() left for a block into runs of poses, where one of the block's points
+  /// Joins nodes that narrow() left for a block into runs of poses, if one of the block's points
   /// took so many tests that its neighbours are better searched in runs. of_point: those tests.
-  /// False, and no runs, where they are few, or where runs cannot be searched, or not yet.
+  /// Returns false, without runs, if the tests are few or if runs cannot be searched, or not yet.
   bool join_runs(const SweepStatistics& of_point, std::span<const std::uint32_t> nodes,
                  std::vector<std::uint32_t>& runs) const;
 
-  /// As touches() and first_pose(), for nodes that join_runs() joined.
+  /// touches() for nodes that join_runs() joined; first_pose_of_runs() is their first_pose().
   bool touches_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
                     SweepStatistics& statistics) const;
   std::uint32_t first_pose_of_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
@@ -71,8 +72,8 @@ class SweepFilterOf final : public PoseReach {
 
  private:
   struct Limits {
-    double distance;  ///< nothing beyond matters
-    bool accept;      ///< boxes as a whole
+    double distance;  ///< distance beyond which nothing matters
+    bool accept;      ///< whether boxes may be accepted as a whole
   };
 
   static bool narrow(const SweepRefOf<Element>& ref, const Box& box,
@@ -91,10 +92,10 @@ class SweepFilterOf final : public PoseReach {
   const MotionTree& motion_;
   const ModelTreeOf<StoredElement<Element>>& model_;
   SweepRefOf<Element> ref_;
-  MotionCurves curves_;                      ///< with a clearance
-  WideTreeOf<StoredElement<Element>> wide_;  ///< likewise
+  MotionCurves curves_;                      ///< made only with a clearance
+  WideTreeOf<StoredElement<Element>> wide_;  ///< made only with a clearance
   HitRuns<Element> runs_;
-  SweepRefOf<Element> for_plan_;  ///< makes no bricks: cells are too large to need them
+  SweepRefOf<Element> for_plan_;  ///< makes no bricks, because cells are too large to need them
 };
 
 using SweepFilter = SweepFilterOf<Vec3>;

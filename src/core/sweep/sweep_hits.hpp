@@ -8,8 +8,8 @@
 
 namespace clearway {
 
-/// Which points collide at the poses of some subtrees: marks them in the answer of the page. A lane
-/// a point. Other warps may work on the same points at the same time.
+/// Marks in the answer of the page which points collide at the poses of some subtrees. One lane for
+/// each point. Other warps may work on the same points at the same time.
 template <typename Warp, typename Element>
 class SweepHits {
  public:
@@ -19,8 +19,8 @@ class SweepHits {
   CLEARWAY_HD SweepHits(const SweepPageOf<Element>& job, PerLane<SweepStatistics>& statistics)
       : job_(job), statistics_(statistics) {}
 
-  /// The 32 points of a half block against the same subtrees: a first look at their tops, then what
-  /// is open. defer: put that on the page's lists while there is room.
+  /// Searches the 32 points of a half block at the same subtrees: first their tops, then what is
+  /// open. defer: puts open work on the page's lists while there is room.
   CLEARWAY_HD void search_half(std::uint32_t half, const SweepSubtrees& subtrees, bool defer) {
     defer_ = defer;
     const std::uint32_t first = half * kWarpLanes;
@@ -42,7 +42,7 @@ class SweepHits {
     });
   }
 
-  /// Walks of the page's list, those from `first` on, a lane each.
+  /// Searches walks of the page's list, from `first` on, one by each lane.
   CLEARWAY_HD void search_walks(std::uint32_t first, std::uint32_t count) {
     defer_ = true;
     Warp::each([&](std::uint32_t lane) {
@@ -61,7 +61,7 @@ class SweepHits {
   }
 
  private:
-  /// The point in a slot of the page, unless nothing is left to find there.
+  /// Loads the point in a slot of the page, unless nothing is left to find for it.
   CLEARWAY_HD void load(std::uint32_t lane, std::uint32_t slot) {
     slot_[lane] = slot;
     best_[lane] = kSweepNever;
@@ -87,7 +87,7 @@ class SweepHits {
     wanted_[lane] = false;
   }
 
-  /// Whether the subtree stays open.
+  /// Looks at the top of a subtree. Returns whether the subtree stays open.
   CLEARWAY_HD bool look_at_top(std::uint32_t lane, std::uint32_t at) {
     const MotionNode& node = job_.sweep.motion.nodes[at];
     if (node.first >= best_[lane]) return false;
@@ -128,7 +128,8 @@ class SweepHits {
     }
   }
 
-  /// All open subtrees of all lanes, or nothing.
+  /// Puts the open subtrees of all lanes on the page's list, or none of them if there is no room.
+  /// Returns whether there was.
   CLEARWAY_HD bool put_walks_on_list(const SweepSubtrees& subtrees) {
     const SweepWork& work = job_.work;
     PerLane<std::uint32_t> before;
@@ -151,7 +152,8 @@ class SweepHits {
     return room.fits();
   }
 
-  /// The single poses of all lanes that wait, or none.
+  /// Puts the single poses of all waiting lanes on the page's list, or none if there is no room.
+  /// Returns whether there was.
   CLEARWAY_HD bool put_items_on_list(std::uint32_t waiting) {
     const SweepWork& work = job_.work;
     const auto room =
@@ -169,13 +171,13 @@ class SweepHits {
   PerLane<SweepStatistics>& statistics_;
   PerLane<SweepWay> ways_;
   PerLane<Vec3> points_;
-  PerLane<std::uint32_t> slot_;  ///< within the page
-  PerLane<std::uint32_t> best_;  ///< first pose known; without first poses any, as a mark
-  PerLane<bool> wanted_;         ///< has something to find
+  PerLane<std::uint32_t> slot_;  ///< slot of the lane's point, within the page
+  PerLane<std::uint32_t> best_;  ///< first pose known; without first poses any pose, as a mark
+  PerLane<bool> wanted_;         ///< whether there is something left to find
   bool defer_ = false;
 };
 
-/// The second step: puts the points of a half block to the runs of poses of an entry.
+/// Second step of a page: tests the points of a half block at the runs of poses of an entry.
 template <typename Warp, typename Element>
 CLEARWAY_HD void search_entry(const SweepPageOf<Element>& job, const SweepWork::Entry& entry,
                               typename Warp::template PerLane<SweepStatistics>& statistics) {
@@ -192,7 +194,7 @@ CLEARWAY_HD void search_entry(const SweepPageOf<Element>& job, const SweepWork::
   }
 }
 
-/// The last step, after the walks: searches the model for a point and a single pose.
+/// Last step of a page, after the walks: searches the model for a point and a single pose.
 template <typename Element>
 CLEARWAY_HD void search_item(const SweepPageOf<Element>& job, const SweepWork::Item& item,
                              SweepStatistics& statistics) {

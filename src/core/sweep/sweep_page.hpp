@@ -8,42 +8,44 @@
 
 namespace clearway {
 
-/// What is still to be done for a page: runs of poses that may touch a half block, runs that may
-/// touch a point (walks), and single poses that may touch a point (items). All lists are bounded. A
-/// block whose runs find no room is put down once as a whole, for which there is always room; walks
-/// and items that find none are done at once.
+/// Work that is still to be done for a page: runs of poses that may touch a half block (entries),
+/// runs that may touch a point (walks), and single poses that may touch a point (items). All lists
+/// are bounded. A block whose runs find no room is listed once as a whole, for which there is
+/// always room; walks and items that find no room are done at once.
 struct SweepWork {
-  /// Points of a half block to be put to nodes first_node .. first_node + node_count - 1 of the
-  /// list, or to all planned nodes of its cell (kWhole).
+  /// Points of a half block to be tested at nodes first_node .. first_node + node_count - 1 of the
+  /// list, or at all planned nodes of its cell (kWhole).
   struct Entry {
-    std::uint32_t half;  ///< within the page: 32 points
+    std::uint32_t half;  ///< number of the half block within the page: 32 points
     std::uint32_t first_node, node_count;
   };
   struct Item {
-    std::uint32_t point;  ///< slot within the page: 64 a block
+    std::uint32_t point;  ///< slot within the page: 64 for each block
     std::uint32_t node;
   };
   struct Counts {
-    std::uint32_t nodes, entries, walks, items;  ///< asked for: may exceed the capacities
-    std::uint32_t whole;                         ///< entries with kWhole
-    std::uint32_t taken;                         ///< of entries and whole
+    /// Places asked for, which may exceed the capacities
+    std::uint32_t nodes, entries, walks, items;
+    std::uint32_t whole;  ///< number of entries with kWhole
+    std::uint32_t taken;  ///< number of entries, whole ones included, that were taken
   };
-  static constexpr std::uint32_t kNone = 0xffffffff;   ///< half or point of a place not used
-  static constexpr std::uint32_t kWhole = 0xffffffff;  ///< node_count
-  static constexpr std::uint32_t kHalves = 2;          ///< of a block
+  static constexpr std::uint32_t kNone = 0xffffffff;  ///< half or point of an unused place
+  /// Value of node_count of an entry that stands for all nodes of its cell
+  static constexpr std::uint32_t kWhole = 0xffffffff;
+  static constexpr std::uint32_t kHalves = 2;  ///< halves of a block
 
   std::uint32_t* nodes;
-  Entry* entries;  ///< entry_capacity, then two a block
+  Entry* entries;  ///< entry_capacity entries, then two for each block
   Item* walks;
   Item* items;
   Counts* counts;
   std::uint32_t node_capacity, entry_capacity, walk_capacity, item_capacity;
 
-  /// Room for `count` places of a list, taken by a warp.
+  /// Room for `count` places of a list, reserved by a warp.
   struct Room {
     std::uint32_t first, count, capacity;
     CLEARWAY_HD bool fits() const { return first < capacity && count <= capacity - first; }
-    /// Places that must be written: all, or those left, as not used.
+    /// Number of places that must be written: all if they fit; otherwise those left, as unused.
     CLEARWAY_HD std::uint32_t written() const {
       return fits() ? count : first < capacity ? capacity - first : 0;
     }
@@ -54,7 +56,7 @@ struct SweepWork {
     return {Warp::add(counter, count, capacity), count, capacity};
   }
 
-  /// Entries to be looked at, those with kWhole after the others.
+  /// Number of entries to be looked at; those with kWhole come after the others.
   CLEARWAY_HD std::uint32_t entry_count() const { return listed_entries() + counts->whole; }
   CLEARWAY_HD Entry entry(std::uint32_t index) const {
     const std::uint32_t listed = listed_entries();
@@ -74,18 +76,19 @@ struct SweepWork {
   }
 };
 
-inline constexpr std::uint32_t kSweepNever = 0xffffffff;  ///< a first pose: there is none
+/// First pose of a point that is touched at no pose
+inline constexpr std::uint32_t kSweepNever = 0xffffffff;
 
-/// A page under search: the query, the points, and where answers and open work go, cell after
-/// cell of the page; null for what is not asked for.
+/// A page under search: the query, the points, and where answers and open work go, cell after cell
+/// of the page. A pointer is null if its values are not asked for.
 template <typename Element>
 struct SweepPageOf {
   SweepRefOf<Element> sweep;
   PageRef page;
   Quantisation quantisation;
-  std::uint64_t* hits;         ///< a word a block
-  std::uint32_t* first_poses;  ///< 64 a block
-  Clearance* clearances;       ///< likewise
+  std::uint64_t* hits;         ///< one word for each block, a bit for each point
+  std::uint32_t* first_poses;  ///< 64 for each block
+  Clearance* clearances;       ///< 64 for each block
   SweepWork work;
 
   static constexpr std::uint32_t kNever = kSweepNever;
@@ -96,11 +99,11 @@ struct SweepPageOf {
   CLEARWAY_HD const PageCell& cell_of_block(std::uint32_t block) const {
     return page.cell(block / page.shape.blocks_per_cell);
   }
-  /// Index in its cell of a block's first point.
+  /// Index, in its cell, of a block's first point.
   CLEARWAY_HD std::uint32_t first_point(std::uint32_t block) const {
     return block % page.shape.blocks_per_cell * kBlockPoints;
   }
-  /// Of a block's points those to be searched, as bits.
+  /// The points of a block that are to be searched, as bits.
   CLEARWAY_HD std::uint64_t searched(std::uint32_t block) const {
     const std::uint32_t per_cell = page.shape.blocks_per_cell;
     return page.searched(block / per_cell, block % per_cell);

@@ -12,13 +12,13 @@
 
 namespace clearway {
 
-/// How often the steps of a descent were taken.
+/// Counts of the steps that a descent took.
 struct SweepStatistics {
   std::uint64_t node_tests = 0;      ///< field look-ups for cells, runs of blocks and blocks
   std::uint64_t point_tests = 0;     ///< field look-ups for points
   std::uint64_t exact_tests = 0;     ///< ball searches in the model
   std::uint64_t points_tested = 0;   ///< points that no block dismissed
-  std::uint64_t resolved_tests = 0;  ///< ball searches that a tolerance spared
+  std::uint64_t resolved_tests = 0;  ///< ball searches that a tolerance saved
 
   CLEARWAY_HD void add(const SweepStatistics& other) {
     node_tests += other.node_tests;
@@ -28,7 +28,7 @@ struct SweepStatistics {
     resolved_tests += other.resolved_tests;
   }
 
-  /// What was added to an earlier one.
+  /// The counts added since an earlier state.
   CLEARWAY_HD SweepStatistics since(const SweepStatistics& earlier) const {
     return {node_tests - earlier.node_tests, point_tests - earlier.point_tests,
             exact_tests - earlier.exact_tests, points_tested - earlier.points_tested,
@@ -36,11 +36,11 @@ struct SweepStatistics {
   }
 };
 
-/// Environment points, known by their box.
+/// A set of environment points, known only by its box.
 struct PointBox {
   Box box;
   Vec3 centre;
-  double rho;  ///< none is farther from the centre
+  double rho;  ///< no point is farther than this from the centre
 
   CLEARWAY_HD explicit PointBox(const Box& of)
       : box(of), centre(of.centre()), rho(half_diagonal(of)) {}
@@ -49,22 +49,21 @@ struct PointBox {
 /// What becomes of a motion node for the points of a box.
 enum class SweepBoxClass {
   kDismissed,  ///< no pose of the node matters
-  kAccepted,   ///< its middle pose touches, or contains, every point of the box
-  kSplit,      ///< to be looked at in halves
-  kKept,       ///< fine enough for a box of this size
+  kAccepted,   ///< the model at the middle pose touches, or contains, every point of the box
+  kSplit,      ///< the node has to be looked at in halves
+  kKept,       ///< the node is fine enough for a box of this size
 };
 
-/// And for a point.
+/// What becomes of a motion node for a single point.
 enum class SweepVerdict {
-  kDismissed,  ///< no pose of the node touches the point, or need not
-  kHitAtMid,   ///< its middle pose does
-  kOpen,       ///< to be looked at in halves, or of a single pose: collides_at decides
+  kDismissed,  ///< no pose of the node touches the point, or none has to be found
+  kHitAtMid,   ///< the model touches the point at the middle pose
+  kOpen,       ///< to be looked at in halves; for a single pose collides_at() decides
 };
 
-/// The tests of the sweep on data where it lies, on the host or on a device: the inverse query
-/// at one node of the motion tree. e collides with pose i exactly when the model is closer than the
-/// radius to e pulled back by pose i. Bounds: docs/design/numerics.md ("Sweep"). Element: what the
-/// model consists of.
+/// The tests of the sweep on data on the host or on a device: the inverse query at one node of the
+/// motion tree. e collides with pose i exactly if the model is closer than the radius to e pulled
+/// back by pose i. Bounds: docs/design/numerics.md ("Sweep"). Element: what the model consists of.
 template <typename Element>
 struct SweepRefOf {
   /// A node of the motion tree is split for a box while it moves more than this many times the
@@ -74,18 +73,19 @@ struct SweepRefOf {
   MotionTreeRef motion;
   ModelTreeRefOf<StoredElement<Element>> model;
   ModelFieldRef field;
-  WideTreeRefOf<StoredElement<Element>> wide;  ///< the model's elements again, with a clearance
-  double radius;  ///< whatever is closer is a hit; with a tolerance search_radius()
-  double
-      resolved_from;  ///< at most the radius: a point this far at a single pose need not be a hit
-  double clearance;   ///< 0: not asked for
-  double profile;     ///< likewise
-  double open_area;   ///< square metres: how straight a chord must be, times the distance
-  double rounding;    ///< metres, of a test of one point at one pose
+  /// Wide tree of the model's elements; set only with a clearance
+  WideTreeRefOf<StoredElement<Element>> wide;
+  double radius;  ///< points strictly closer than this are hits; with a tolerance, search_radius()
+  /// A distance of at most the radius: a point this far at a single pose need not be a hit
+  double resolved_from;
+  double clearance;  ///< metres; 0: not asked for
+  double profile;    ///< metres; 0: not asked for
+  double open_area;  ///< square metres: bound of a chord's error times the distance
+  double rounding;   ///< rounding of a test of one point at one pose, metres
   bool first_pose;
   bool between_poses;
 
-  /// Whether the least d2 below the clearance alone says which points collide.
+  /// Whether the least d2 below the clearance tells by itself which points collide.
   CLEARWAY_HD bool hits_follow_from_clearance() const { return clearance >= radius && !first_pose; }
 
   CLEARWAY_HD bool moves_on(const MotionNode& node) const {
@@ -93,28 +93,30 @@ struct SweepRefOf {
     return between_poses && node.count == 1 && node.first + 1 < motion.pose_count;
   }
 
-  /// The first pose is this or less where a model point hits at `pose`: between poses that is
-  /// also the end of the way from the one before.
+  /// Upper bound of the first pose if a model point hits at `pose`. Between poses that is also the
+  /// end of the way from the pose before, which then counts.
   CLEARWAY_HD std::uint32_t first_pose_of_hit(std::uint32_t pose) const {
     return between_poses && pose > 0 ? pose - 1 : pose;
   }
 
   /// Whether a box may be accepted as a whole: every point that collides is marked alike, and
-  /// nothing else is asked about it. With a tolerance the answer would depend on the box.
+  /// nothing else is asked about it. Not with a tolerance, because the answer would then depend on
+  /// the box.
   CLEARWAY_HD bool accepts_boxes() const {
     return !first_pose && !(clearance > 0) && !(resolved_from < radius);
   }
 
-  /// How far from a curve, which is wrong by at most `error` and whose poses shrink nothing by more
-  /// than `least`, an element of the model can lie that is within `reach` at one of its poses.
+  /// Greatest distance from a curve, wrong by at most `error`, at which an element of the model can
+  /// lie that is within `reach` at one of its poses. The poses shrink no distance by more than the
+  /// factor `least`.
   CLEARWAY_HD double ball_around_curve(double reach, double least, double error) const {
     return ((reach + 2 * rounding) / least + error) * kRoundedUp;
   }
 
   using BoxClass = SweepBoxClass;
 
-  /// What becomes of a node for the points of a box, to which nothing beyond `limit` matters.
-  /// accept: whether kAccepted is of use.
+  /// What becomes of a node for the points of a box. limit: distance beyond which nothing matters
+  /// to them. accept: whether kAccepted is of use.
   CLEARWAY_HD BoxClass classify_box(const MotionNode& node, const PointBox& points, double limit,
                                     bool accept) const {
     const Vec3& centre = points.centre;
@@ -147,7 +149,7 @@ struct SweepRefOf {
   }
 
   /// A distance beyond which nothing matters to any point within rho of `centre`: the clearance
-  /// asked for, or what a pair found at the middle pose of one of `nodes` keeps them all below;
+  /// asked for, or a smaller bound from a pair of points at the middle pose of one of `nodes`;
   /// never less than a radius still to be searched.
   CLEARWAY_HD double clearance_limit(const Vec3& centre, double rho, const std::uint32_t* nodes,
                                      std::uint32_t count, SweepStatistics& statistics) const {
@@ -167,8 +169,8 @@ struct SweepRefOf {
     return hits_follow_from_clearance() ? limit : greater_of(limit, radius);
   }
 
-  /// Whether a solid contains x, where a bound proves that no surface is within the rounding. Then
-  /// it is so wherever, and at whatever poses, the same proof holds.
+  /// Whether a solid contains x, if a bound proves that no surface is within the rounding. The
+  /// answer is then the same for all places and poses for which that proof holds.
   CLEARWAY_HD bool is_inside(const Vec3& x, double squared_lower) const {
     if constexpr (kIsSolid<Element>) return field.contains(x, squared_lower);
     return false;
@@ -176,8 +178,8 @@ struct SweepRefOf {
 
   using Verdict = SweepVerdict;
 
-  /// Looks at a node for the point e without a search of the model. squared_lower: of the field at
-  /// the middle pose.
+  /// Looks at a node for the point e without a search of the model. squared_lower: becomes the
+  /// field's bound at the middle pose.
   CLEARWAY_HD Verdict look(const Vec3& e, const MotionNode& node, SweepStatistics& statistics,
                            double& squared_lower) const {
     ++statistics.point_tests;
@@ -191,7 +193,7 @@ struct SweepRefOf {
         collides(e, transform(motion.poses[node.mid], model.elements[bounds.near]), radius)) {
       return Verdict::kHitAtMid;
     }
-    // Not earlier, and only at single poses: the answer must not depend on the nodes looked at.
+    // Only at single poses, because the answer must not depend on which nodes are looked at.
     if (resolved_from < radius && node.count == 1 &&
         farther(back.least, squared_lower, resolved_from + rounding)) {
       ++statistics.resolved_tests;
@@ -200,7 +202,7 @@ struct SweepRefOf {
     return Verdict::kOpen;
   }
 
-  /// Whether the predicate is worth asking: that of points costs no more than the test.
+  /// Whether to ask the predicate. For points always, because it costs no more than the test.
   CLEARWAY_HD bool may_hit_at_mid(const InversePose& back, double squared_lower) const {
     if constexpr (!kIsTriangle<Element>) return true;
     return !farther(back.least, squared_lower, radius + rounding);

@@ -9,7 +9,7 @@
 
 namespace clearway {
 
-/// Nodes whose subtrees all lanes of a warp have to do with.
+/// Motion nodes whose subtrees all lanes of a warp work on.
 struct SweepSubtrees {
   static constexpr std::uint32_t kMost = BitReversalOrder::kMost;
 
@@ -17,12 +17,12 @@ struct SweepSubtrees {
   std::uint32_t count;  ///< at most kMost
 };
 
-/// A lane's way through its part of some subtrees. It needs no stack: in preorder the subtree of a
-/// range of n poses is a run of 2 n - 1 nodes.
+/// A lane's way through its part of some subtrees. It needs no stack, because in preorder the
+/// subtree of a range of n poses is a run of 2 n - 1 nodes.
 struct SweepWay {
   std::uint64_t open = 0;         ///< subtrees still to be entered, as bits
-  std::uint32_t at = 0, end = 0;  ///< the node to look at, and the first behind the subtree
-  bool waits = false;             ///< for a search of the model at the single pose `at`
+  std::uint32_t at = 0, end = 0;  ///< the node to look at, and the first one behind the subtree
+  bool waits = false;  ///< whether the way waits for a search of the model at the single pose `at`
 
   CLEARWAY_HD bool is_inside() const { return at != end; }
 
@@ -31,13 +31,13 @@ struct SweepWay {
     end = node + 2 * motion.nodes[node].count - 1;
   }
 
-  /// Enters the subtree below its top, which was looked at; a single pose is looked at again.
+  /// Enters a subtree below its top, which was looked at already; a single pose is looked at again.
   CLEARWAY_HD void enter_below(const MotionTreeRef& motion, std::uint32_t node) {
     enter(motion, node);
     if (end - at > 1) ++at;
   }
 
-  /// Enters the next subtree where the last one is done; false at the end.
+  /// Enters the next subtree if the last one is done. Returns false at the end.
   CLEARWAY_HD bool go_on(const MotionTreeRef& motion, const SweepSubtrees& subtrees) {
     if (is_inside()) return true;
     if (open == 0) return false;
@@ -52,9 +52,9 @@ struct SweepWay {
   }
 };
 
-/// The first look at the tops of the subtrees, all lanes at the same, far ones first: most points
-/// that collide do so at one of them. is_wanted(lane): whether the lane has anything to find; look(
-/// lane, node): whether the subtree stays open.
+/// Looks at the tops of the subtrees, all lanes at the same one, those far apart first, because
+/// most points that collide do so at one of them. is_wanted(lane): whether the lane has anything to
+/// find; look(lane, node): whether the subtree stays open.
 template <typename Warp, typename IsWanted, typename Look>
 CLEARWAY_HD void look_at_tops(const SweepSubtrees& subtrees,
                               typename Warp::template PerLane<SweepWay>& ways, IsWanted is_wanted,
@@ -70,10 +70,10 @@ CLEARWAY_HD void look_at_tops(const SweepSubtrees& subtrees,
   });
 }
 
-/// The lanes' ways to their ends, each at its own pace: step(lane, way) looks at a node and moves
-/// the way on or lets it wait, defer(waiting lanes as bits) takes what waits off their hands where
-/// it can, search(lane, way) searches the model at a single pose. Lanes that wait do so until all
-/// do, then search together.
+/// Walks all lanes to the ends of their ways, each at its own pace. step(lane, way) looks at a node
+/// and moves the way on or lets it wait; defer(waiting lanes as bits) takes over the waiting
+/// searches if it can; search(lane, node) searches the model at a single pose. Lanes that wait do
+/// so until all lanes do, and then search together.
 template <typename Warp, typename Step, typename Defer, typename Search>
 CLEARWAY_HD void walk(const MotionTreeRef& motion, const SweepSubtrees& subtrees,
                       typename Warp::template PerLane<SweepWay>& ways, Step step, Defer defer,

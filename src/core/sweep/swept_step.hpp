@@ -8,12 +8,14 @@
 
 namespace clearway {
 
-/// The model on its way from one pose to the next, every point on its straight segment: what of the
-/// model's tree comes near a point of the environment. Long steps cost little more than short ones.
+/// The model on its way from one pose to the next, with every point on its straight segment. Finds
+/// what of the model's tree comes near a point of the environment; long steps cost little more than
+/// short ones.
 class SweptStep {
  public:
-  /// `pose` is not the last one. rounding: a bound in metres of every rounding of a test, as
-  /// docs/design/numerics.md ("Between poses") asks for. What the refs point to outlives it.
+  /// pose: not the last one. rounding: a bound in metres of every rounding of a test, as
+  /// docs/design/numerics.md ("Between poses") asks for. What the refs point to must outlive this
+  /// object.
   CLEARWAY_HD SweptStep(const MotionTreeRef& motion, const ModelTreeRef& model, std::uint32_t pose,
                         double radius, double rounding)
       : model_(model),
@@ -36,7 +38,7 @@ class SweptStep {
         });
   }
 
-  /// False only when no point within rho of `centre` collides on the way or at either of its ends.
+  /// False only if no point within rho of `centre` collides on the way or at either of its ends.
   CLEARWAY_HD bool may_touch(const Vec3& centre, double rho) const {
     return model_.any(
         [&](const Box& box) {
@@ -48,7 +50,7 @@ class SweptStep {
   }
 
  private:
-  /// Nowhere on the way is a point of the box farther from the box's centre.
+  /// Bound of the distance of a point of the box from the box's centre, anywhere on the way.
   CLEARWAY_HD double half_width(const Box& box) const { return stretch_ * half_diagonal(box); }
 
   CLEARWAY_HD bool near(const Vec3& e, double rho, const Box& box, double half_width) const {
@@ -58,8 +60,8 @@ class SweptStep {
     return !farther(1, squared, radius_ + rho + half_width + rounding_);
   }
 
-  /// The squared distance of e to the segment from a to b; its root is too large by at most
-  /// 20 u (|e - a| + |b - a|), and 0 stands for what overflows.
+  /// The squared distance of e to the segment from a to b. Its root is too large by at most 20 u
+  /// (|e - a| + |b - a|); it is 0 if the computation overflows.
   CLEARWAY_HD static double squared_distance_to_segment(const Vec3& e, const Vec3& a,
                                                         const Vec3& b) {
     const Vec3 ab = difference(b, a);

@@ -11,12 +11,12 @@
 namespace clearway {
 namespace {
 
-/// How much larger than without thinning a distance may be, less what roundings of the predicate
-/// need. Below 0 for a tolerance smaller than these.
+/// How much a distance may grow by thinning, in metres: the tolerance less what the roundings of
+/// the predicate need. Below 0 if the tolerance is smaller than these.
 double thinning_budget(const Query& query, const Box& model) {
   double errors = 16 * kUnitRoundoff * query.radius + 1e-150;
-  if (query.model
-          .is_surface()) {  // twice that of a triangle (docs/design/numerics.md, "Triangles")
+  // Twice the error of a triangle (docs/design/numerics.md, "Triangles").
+  if (query.model.is_surface()) {
     double stretch = 0;
     for (const Pose& pose : query.poses) stretch = std::max(stretch, greatest_stretch_bound(pose));
     errors += kUnitRoundoff * (16 * query.radius + 322 * stretch * 2 * half_diagonal(model));
@@ -24,8 +24,8 @@ double thinning_budget(const Query& query, const Box& model) {
   return query.tolerance - errors;
 }
 
-/// How far from each other two model points may be so that no pose moves them farther apart than
-/// `most`, roundings included; not above 0 where nothing is left for them.
+/// Greatest distance between two model points that no pose moves farther apart than `most`,
+/// roundings included; not above 0 if nothing is left for them.
 double cover_of(double most, std::span<const Pose> poses, const Vec3& reach) {
   double stretch = 0, rounding = 0;
   for (const Pose& pose : poses) {
@@ -35,8 +35,9 @@ double cover_of(double most, std::span<const Pose> poses, const Vec3& reach) {
   return (most - 2 * std::sqrt(3.0) * 1.01 * rounding) / (stretch * kRoundedUp);
 }
 
-/// A run of poses from `first` on that one of them may stand for: where the motion is smooth, twice
-/// as long as a run that its first pose stands for. Each pose is compared three times at the most.
+/// A run of poses, from `first` on, that one of them may stand for. Where the motion is smooth it
+/// is twice as long as a run that its first pose stands for. Each pose is compared at most three
+/// times.
 class PoseRun {
  public:
   PoseRun(std::span<const Pose> poses, std::size_t first, const Box& model, double most_motion)
@@ -78,8 +79,8 @@ class PoseRun {
   std::size_t kept_, end_ = 0;
 };
 
-/// The points kept so far, in the cells of a grid. Cells share buckets: a bucket may name points of
-/// several.
+/// The points kept so far, in the cells of a grid. Cells share buckets, so a bucket may name points
+/// of several cells.
 class KeptPoints {
  public:
   KeptPoints(std::span<const Vec3> model, double cover)
@@ -96,7 +97,7 @@ class KeptPoints {
       lo[k] = cell_along(k, m[k] - cover_);
       hi[k] = cell_along(k, m[k] + cover_);
     }
-    // At most two cells along an axis.
+    // The ball meets at most two cells along an axis.
     for (int corner = 0; corner < 8; ++corner) {
       if ((corner & 1 && lo[0] == hi[0]) || (corner & 2 && lo[1] == hi[1]) ||
           (corner & 4 && lo[2] == hi[2])) {
@@ -122,7 +123,8 @@ class KeptPoints {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// Cells are so large that most balls of radius `cover` lie in one, and hold few kept points.
+  /// Number of the cell along an axis. Cells are so large that most balls of radius `cover` lie in
+  /// one, yet hold few kept points.
   double cell_along(int axis, double at) const {
     return cover_ > 0 ? std::floor((at - origin_[axis]) / (4 * cover_)) : at;
   }
@@ -140,8 +142,8 @@ class KeptPoints {
   Vec3 origin_;
   double cover_;
   double squared_cover_;
-  std::vector<std::uint32_t> first_;  ///< point of a bucket
-  std::vector<std::uint32_t> next_;   ///< of the same bucket, by point
+  std::vector<std::uint32_t> first_;  ///< for each bucket, its first point
+  std::vector<std::uint32_t> next_;   ///< for each point, the next one of its bucket
 };
 
 template <typename Value>
@@ -187,7 +189,7 @@ ThinnedQuery::ThinnedQuery(const Query& query) : query_({}, {}, query) {
   const Box box = box_of(query.model.vertices);
   const double half = thinning_budget(query, box) / 2;
   query_.poses = parts_of(query.poses, kept_poses(query.poses, box, half));
-  if (query.model.is_surface()) {  // whose triangles are few
+  if (query.model.is_surface()) {  // a surface has few triangles, so all are kept
     query_.model.vertices = query.model.vertices;
     query_.model.triangles = query.model.triangles;
     return;

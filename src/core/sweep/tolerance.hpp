@@ -13,31 +13,31 @@
 /// may be taken.
 namespace clearway {
 
-/// What is searched for, metres: the radius, or with a tolerance the largest distance at which a
-/// point may be taken. Nothing farther is.
+/// The distance up to which a search looks, in metres: the radius, or with a tolerance the greatest
+/// distance at which a point may be taken.
 double search_radius(const Query& query);
 
-/// Indices of some of the poses, ascending: at each of the others no point of the box `model` is
-/// farther than `most_motion` from where it is at one of these, rounding included. Equal poses that
-/// follow each other are one, whatever most_motion is.
+/// Indices of some of the poses, ascending: at each of the other poses no point of the box `model`
+/// is farther than `most_motion` from where it is at one of these, rounding included. Equal
+/// consecutive poses count as one, whatever most_motion is.
 std::vector<std::uint32_t> kept_poses(std::span<const Pose> poses, const Box& model,
                                       double most_motion);
 
-/// Indices of some of the points, ascending: each of the others lies within `cover` of one of
-/// these, rounding included. Equal points are one, whatever the cover is. Takes 12 bytes a point
-/// meanwhile.
+/// Indices of some of the points, ascending: each of the other points lies within `cover` of one of
+/// these, rounding included. Equal points count as one, whatever the cover is. Takes 12 bytes a
+/// point while it runs.
 std::vector<std::uint32_t> kept_points(std::span<const Vec3> model, double cover);
 
-/// A query with no more of model and trajectory than its tolerance needs: half of the tolerance
+/// A query with only as much of model and trajectory as its tolerance needs: half of the tolerance
 /// is spent on each.
 class ThinnedQuery {
  public:
-  /// `query` has a tolerance and a model; its data may go afterwards.
+  /// query: has a tolerance and a model; its data is not needed afterwards.
   explicit ThinnedQuery(const Query& query);
   ThinnedQuery(const ThinnedQuery&) = delete;
   ThinnedQuery& operator=(const ThinnedQuery&) = delete;
 
-  /// Valid while this lives.
+  /// The thinned query, valid while this object lives.
   const Query& query() const { return query_; }
   std::uint64_t allocated_bytes() const {
     return query_.poses.capacity() * sizeof(Pose) +

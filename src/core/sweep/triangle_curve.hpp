@@ -10,9 +10,9 @@
 
 namespace clearway {
 
-/// The parabola c(t) = start + t way + t (1 - t) bend that a point moves along, seen from the
-/// model, while the model moves through the poses of a node, against triangles. It lies in the
-/// convex hull of c(0), c(1) and the place where its tangents there meet.
+/// The parabola c(t) = start + t way + t (1 - t) bend on which an environment point moves as seen
+/// from the model while the model moves through the poses of a node; for tests against triangles.
+/// It lies in the convex hull of c(0), c(1) and the point where its tangents at these two meet.
 class TriangleCurve {
  public:
   CLEARWAY_HD TriangleCurve(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e)
@@ -30,13 +30,13 @@ class TriangleCurve {
     rounding_ = 32 * kUnitRoundoff * size;
   }
 
-  /// Of all its places.
+  /// The convex hull of the curve, and its box.
   CLEARWAY_HD PlaceHull hull() const {
     return {MotionParabola::box(start_, way_, bend_),
             {start_, beyond(start_, 1, way_), beyond(beyond(start_, 0.5, way_), 0.5, bend_)}};
   }
 
-  /// At most the squares of the distances to the triangles of a packet.
+  /// Lower bounds of the squared distances from the curve to the triangles of a packet.
   CLEARWAY_HD void to_triangles(const TrianglePacket& packet,
                                 double (&squared)[TrianglePacket::kMost]) const {
 #ifdef __CUDA_ARCH__
@@ -46,15 +46,15 @@ class TriangleCurve {
 #endif
   }
 
-  /// The t of a place that is near the triangle.
+  /// The t of a place of the curve that is near the triangle.
   CLEARWAY_HD double place(const TrianglePacket& packet, std::uint32_t i) const {
     const Vec3 x = at(0.5);
     return place_near(difference(x, packet.nearest(i, x).way));
   }
 
-  static constexpr std::uint32_t kMostPlaces = 8;  ///< worked on together
+  static constexpr std::uint32_t kMostPlaces = 8;  ///< number of places that are computed together
 
-  /// At most the squares of the distances from a triangle to parts of the curve: number k has
+  /// Lower bounds of the squared distances from a triangle to parts of the curve: part k has
   /// `length` places from (k length) per_last on.
   CLEARWAY_HD void from_parts(const TrianglePacket& packet, std::uint32_t i, std::uint32_t length,
                               double per_last, double (&squared)[kMostPlaces]) const {
@@ -65,9 +65,9 @@ class TriangleCurve {
 #endif
   }
 
-  /// Calls visit(k) for those of `count` places, number k at k / (count - 1), that may be within
-  /// the root of within() of the triangle, until it is true; whether it was. The likely nearest
-  /// comes first, whatever within() is.
+  /// Calls visit(k) for those of `count` places that may be within the square root of within() of
+  /// the triangle, until it returns true, and returns whether it did. Place k is at k / (count -
+  /// 1). The place that is likely nearest comes first, whatever within() is.
   template <typename Within, typename Visit>
   CLEARWAY_HD bool any_place(const TrianglePacket& packet, std::uint32_t i, std::uint32_t count,
                              Within within, Visit visit) const {
@@ -102,7 +102,7 @@ class TriangleCurve {
   }
 
  private:
-  /// Where the way is shorter, it is as good as a place.
+  /// A way with a smaller square is as good as a single place.
   static constexpr double kLeastSquaredWay = 1e-140;
 
   CLEARWAY_IN_CLONE CLEARWAY_HD void to_all_triangles(const TrianglePacket& packet,
@@ -111,10 +111,11 @@ class TriangleCurve {
       const double t = place(packet, i);
       const Vec3 x = at(t);
       const TrianglePacket::Nearest from = packet.nearest(i, x);
-#ifdef __CUDA_ARCH__  // where the closer bound costs more than it spares (measured)
+#ifdef __CUDA_ARCH__  // where the closer bound costs more than it saves (measured)
       squared[i] = packet.from_nearest_hull(i, from.squared, along_hull(from.way, t));
 #else
-      // The way from the triangle to the place of the chord that is nearest to where it starts.
+      // Vector from the triangle to the place of the chord that is nearest to where `from.way`
+      // starts.
       const double slope = TrianglePacket::dot(from.way, way_) * per_squared_way_;
       const Vec3 across = beyond(from.way, TrianglePacket::clamped(t - slope) - t, way_);
       squared[i] = packet.from_hull(i, x, from.squared, across, along_hull(across, t));
@@ -122,11 +123,11 @@ class TriangleCurve {
     }
   }
 
-  /// The same in vectors of the processor.
+  /// Does to_all_triangles() in vectors of the processor.
   void to_triangles_in_vectors(const TrianglePacket& packet, double* squared) const;
 
-  /// A part from t - half to t + half lies within half |c'| along its tangent at t and half^2
-  /// |bend| beside that.
+  /// Computes from_parts(). A part from t - half to t + half lies within half |c'| along its
+  /// tangent at t and within half^2 |bend| beside that.
   CLEARWAY_IN_CLONE CLEARWAY_HD void from_all_parts(const TrianglePacket& packet, std::uint32_t i,
                                                     std::uint32_t length, double per_last,
                                                     double* squared) const {
@@ -157,7 +158,7 @@ class TriangleCurve {
     }
   }
 
-  /// The same in vectors of the processor.
+  /// Does from_all_parts() in vectors of the processor.
   void from_parts_in_vectors(const TrianglePacket& packet, std::uint32_t i, std::uint32_t length,
                              double per_last, double* squared) const;
 
@@ -171,7 +172,7 @@ class TriangleCurve {
     }
   }
 
-  /// The same in vectors of the processor.
+  /// Does from_all_places() in vectors of the processor.
   void from_places_in_vectors(const TrianglePacket& packet, std::uint32_t i, std::uint32_t first,
                               double per_last, double* squared) const;
 
@@ -185,13 +186,13 @@ class TriangleCurve {
     return {from.x + share * way.x, from.y + share * way.y, from.z + share * way.z};
   }
 
-  /// Of the chord.
+  /// The t of the place of the chord that is nearest to m.
   CLEARWAY_HD double place_near(const Vec3& m) const {
     return TrianglePacket::clamped(TrianglePacket::dot(way_, difference(m, start_)) *
                                    per_squared_way_);
   }
 
-  /// At most the least product of v and a corner of the hull as seen from at(t), and at most 0.
+  /// Lower bound of the product of v and any corner of the hull as seen from at(t); at most 0.
   CLEARWAY_HD double along_hull(const Vec3& v, double t) const {
     const double way = TrianglePacket::dot(v, way_), bend = TrianglePacket::dot(v, bend_);
     const double here = t * (way + (1 - t) * bend);
@@ -203,7 +204,7 @@ class TriangleCurve {
   }
 
   Vec3 start_, way_, bend_;
-  double rounding_ = 0;  ///< square metres, of products with a way
+  double rounding_ = 0;  ///< bound for products with a way, square metres
   double per_squared_way_ = 0;
 };
 

@@ -8,9 +8,10 @@ namespace clearway {
 
 inline constexpr std::uint32_t kWarpLanes = 32;
 
-/// Warp code is written once, as steps that all lanes take: `each` and `ballot` call a function
-/// with the lane's number, values of a lane live in a PerLane. Here the lanes of a CUDA warp, whose
-/// threads all come along; everything between the steps is computed alike by all of them.
+/// The lanes of a CUDA warp. Warp code is written once, as steps that all lanes take: `each` and
+/// `ballot` call a function with the lane's number, and values of a lane live in a PerLane. All
+/// threads of the warp must take part; everything between the steps is computed alike by all of
+/// them.
 struct CudaWarp {
   template <typename Value>
   struct PerLane {
@@ -26,7 +27,7 @@ struct CudaWarp {
 #endif
   }
 
-  /// Before lanes write what others may still read outside of a step.
+  /// Synchronises the lanes before some write what others may still read outside of a step.
   CLEARWAY_HD static void sync() {
 #ifdef __CUDA_ARCH__
     __syncwarp();
@@ -43,7 +44,7 @@ struct CudaWarp {
 #endif
   }
 
-  /// The least of the lanes' values.
+  /// The least of the values of all lanes.
   CLEARWAY_HD static double least([[maybe_unused]] PerLane<double>& values) {
 #ifdef __CUDA_ARCH__
     double value = values.value;
@@ -57,7 +58,7 @@ struct CudaWarp {
 #endif
   }
 
-  /// A value that other warps may change meanwhile, read once for all lanes.
+  /// Reads a value, which other warps may change meanwhile, once for all lanes.
   template <typename Read>
   CLEARWAY_HD static double once([[maybe_unused]] Read read) {
 #ifdef __CUDA_ARCH__
@@ -67,8 +68,8 @@ struct CudaWarp {
 #endif
   }
 
-  /// Replaces every lane's value by the sum of those of the lanes before it. Returns the sum of
-  /// all.
+  /// Replaces every lane's value by the sum of the values of the lanes before it. Returns the sum
+  /// of all values.
   CLEARWAY_HD static std::uint32_t sum_before([[maybe_unused]] PerLane<std::uint32_t>& values) {
 #ifdef __CUDA_ARCH__
     const std::uint32_t lane = threadIdx.x % kWarpLanes;
@@ -84,8 +85,8 @@ struct CudaWarp {
 #endif
   }
 
-  /// Adds n, once for the warp, to a counter that other warps add to, unless it is at `full`
-  /// already, so that it cannot overflow. What it was before.
+  /// Adds n, once for the warp, to a counter that other warps also add to, unless the counter has
+  /// already reached `full`, so that it cannot overflow. Returns the counter's value before.
   CLEARWAY_HD static std::uint32_t add([[maybe_unused]] std::uint32_t* counter,
                                        [[maybe_unused]] std::uint32_t n,
                                        [[maybe_unused]] std::uint32_t full) {
@@ -102,7 +103,7 @@ struct CudaWarp {
   }
 };
 
-/// The lanes as a loop: the same code without a GPU.
+/// The lanes of a warp as a loop, which runs warp code on the host.
 struct HostWarp {
   template <typename Value>
   struct PerLane {

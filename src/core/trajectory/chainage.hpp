@@ -7,8 +7,8 @@
 
 namespace clearway {
 
-/// Of each pose the metres along the positions of the path: 0 at the first one, then the sum of the
-/// distances of consecutive positions, in double and in this order.
+/// The chainage of each pose, metres: 0 for the first one, then the sum of the distances between
+/// consecutive positions, in double and in this order.
 std::vector<double> chainage_of(std::span<const Pose> poses);
 
 }  // namespace clearway

@@ -10,14 +10,14 @@
 namespace clearway {
 namespace {
 
-/// Curves that move the model by more than this share of its size have boxes that are too wide for
-/// the distance to them to tell much (measured).
+/// Greatest motion of a curve as a share of the model's size. Curves that move it by more have
+/// boxes too wide for the distance to them to tell much (measured).
 constexpr double kMostMotion = 0.1;
-/// No curve is of use that is wrong by more than this share of the spacing of the model's points,
-/// or that has gaps of about twice this many spacings between its poses.
+/// Greatest error of a useful curve as a share of the spacing of the model's points, and greatest
+/// gap between its poses, in units of about two such spacings.
 constexpr double kMostError = 0.125, kMostGap = 1;
 
-/// The box of what may be near the model at a pose, in the model's frame.
+/// The box, in the model's frame, of places that may be near the model at a pose.
 struct Region {
   Vec3 centre, half;
 };
@@ -33,7 +33,7 @@ Vec3 product(const double (&a)[9], const Vec3& v) {
           a[6] * v.x + a[7] * v.y + a[8] * v.z};
 }
 
-/// Where a place that `pose` pulls back to y is pulled back to by `other`.
+/// Where `other` pulls back the place that `pose` pulls back to y.
 Vec3 seen_by(const InversePose& other, const Pose& pose, const Vec3& y) {
   const Vec3 turned = product(pose.rotation, y);
   return product(other.inverse, {turned.x + (pose.translation[0] - other.translation[0]),
@@ -41,8 +41,8 @@ Vec3 seen_by(const InversePose& other, const Pose& pose, const Vec3& y) {
                                  turned.z + (pose.translation[2] - other.translation[2])});
 }
 
-/// How far any place that `pose`, at place t of the curve, pulls back into the region is there from
-/// the curve: that is affine in the place.
+/// Bound of the distance between the curve at place t and any place that `pose` pulls back into the
+/// region. The difference is affine in the place.
 double distance_from_curve(const MotionTree& motion, const MotionParabola& curve, double t,
                            const Pose& pose, const Region& region) {
   const double height = curve.height();
@@ -108,7 +108,7 @@ MotionCurves::MotionCurves(const MotionTree& motion, const Box& model, double re
   for (std::size_t node = 0; node < curves_.size(); ++node) at(static_cast<std::uint32_t>(node));
 }
 
-/// Who comes second finds the same.
+/// Two threads that compute the same curve get the same result.
 MotionCurve MotionCurves::at(std::uint32_t node) const {
   MotionCurve& curve = curves_[node];
   const std::atomic_ref shared(curve.error);

@@ -12,15 +12,17 @@ namespace clearway {
 /// How smoothly the poses of every node of a motion tree move, seen from the model.
 class MotionCurves {
  public:
-  /// For points that are at most `reach` metres from the model, the rounding of a test included.
-  /// spacing: of the model's points, metres. Nodes whose curve is of no use beside it have none.
+  /// Computes all curves at once. reach: greatest distance of points from the model, metres,
+  /// including the rounding of a test. spacing: that of the model's points, metres; nodes whose
+  /// curve is of no use for it have none.
   MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing,
                int threads);
-  /// By need: at() finds the curve of a node when it is first asked for. The tree outlives it.
+  /// Computes curves by need: at() finds the curve of a node when it is first asked for. The tree
+  /// must outlive this object.
   MotionCurves(const MotionTree& motion, const Box& model, double reach, double spacing);
   MotionCurves() = default;
 
-  /// A node, in the order of the tree; not for curves by need.
+  /// One curve for each node, in the order of the tree; not for curves by need.
   const MotionCurve* data() const { return curves_.data(); }
 
   /// The curve of a node. Thread safe.
@@ -29,7 +31,8 @@ class MotionCurves {
   std::uint64_t allocated_bytes() const { return curves_.capacity() * sizeof(MotionCurve); }
 
  private:
-  /// The error of a curve that nobody asked for yet: neither one place nor smooth.
+  /// The error of a curve that was not asked for yet; it makes the curve neither one place nor
+  /// smooth.
   static constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
   float error_of(const MotionNode& node, double least) const;

@@ -10,11 +10,12 @@
 namespace clearway {
 namespace {
 
-/// Ranges up to this long get their delta pose by pose, longer ones from nodes kLevels below.
+/// Longest range whose delta is computed pose by pose; longer ranges get it from nodes kLevels
+/// below.
 constexpr std::uint32_t kExactPoses = 8;
 constexpr int kLevels = 4;
 
-/// Where the determinant lies within this and its reciprocal, nothing that matters to the bound of
+/// Bound of the determinant: between this and its reciprocal, nothing that matters to the bound of
 /// the inverse's rounding under- or overflows.
 constexpr double kLeastDeterminant = 1e-270;
 
@@ -28,8 +29,8 @@ InversePose inverse_pose_of(const Pose& pose) {
   std::copy(inverse.data(), inverse.data() + 9, out.inverse);
   std::copy(pose.translation, pose.translation + 3, out.translation);
   out.greatest = greatest_stretch_bound(pose);
-  // Singular values of the inverse are the reciprocals; the inverse by cofactors errs by less than
-  // 20 u condition^2 (docs/design/numerics.md, "Sweep").
+  // The singular values of the inverse are the reciprocals. The inverse by cofactors errs by less
+  // than 20 u condition^2 (docs/design/numerics.md, "Sweep").
   const double inverse_greatest = greatest_stretch_bound(inverse_pose);
   const double condition = out.greatest * inverse_greatest;
   out.least = 1 / (inverse_greatest * (1 + 64 * kUnitRoundoff * (1 + condition * condition)));
@@ -65,8 +66,8 @@ MotionTree::MotionTree(std::span<const Pose> poses, const Box& model, bool betwe
   find_deltas(model, threads);
 }
 
-/// A node's follows from those below it, which come after it: in one subtree after the other, many
-/// at a time, and then in what is above them.
+/// Computes the delta of every node from those of the nodes below it, which come after it: first in
+/// subtrees, many at a time, and then in the nodes above them.
 void MotionTree::find_deltas(const Box& model, int threads) {
   constexpr std::uint32_t kSubtreePoses = 512;
   std::vector<std::uint32_t> above, subtrees;
@@ -92,7 +93,8 @@ void MotionTree::add(std::uint32_t first, std::uint32_t count) {
   const double half = (*begin + *(begin + count - 1)) / 2;
   const auto at = std::lower_bound(begin, begin + count, half);
   auto mid = static_cast<std::uint32_t>(at - begin);
-  if (!(travelled_[first] < travelled_[first + count - 1])) mid = count / 2;  // a stop
+  // A stop, which has no motion to halve, is divided in the middle.
+  if (!(travelled_[first] < travelled_[first + count - 1])) mid = count / 2;
   mid = std::min(mid, count - 1);
   nodes_.push_back({first, count, first + mid, 0, 0});
   if (count == 1) return;
@@ -115,7 +117,8 @@ double MotionTree::delta_of(std::uint32_t node, const Box& model) const {
   return between_poses_ ? delta * kRoundedUp : delta;
 }
 
-/// From the nodes `levels` below, whose own delta is known: how far their poses are from `mid`.
+/// Bound of the distance from `mid` to any pose of the node, from the nodes `levels` below, whose
+/// delta is known.
 double MotionTree::delta_below(std::uint32_t node, std::uint32_t mid, int levels,
                                const Box& model) const {
   const MotionNode& n = nodes_[node];

@@ -14,8 +14,8 @@ namespace clearway {
 /// et al. 2012), conservative advancement (Mirtich).
 class MotionTree {
  public:
-  /// `model` holds every model point; both must be finite. between_poses: a pose's range includes
-  /// the motion on to the next pose.
+  /// model: a box around every model point; it and the poses must be finite. between_poses: a
+  /// pose's range includes the motion on to the next pose.
   MotionTree(std::span<const Pose> poses, const Box& model, bool between_poses = false,
              int threads = 1);
 
@@ -23,20 +23,21 @@ class MotionTree {
   std::span<const Pose> poses() const { return poses_; }
   const InversePose& inverse_pose(std::uint32_t pose) const { return inverse_poses_[pose]; }
 
-  /// x with transform(pose, x) = e, up to a rounding of at most rounding() metres times `greatest`.
+  /// Pulls e back: returns x with transform(pose, x) = e, up to a rounding of at most rounding()
+  /// metres times `greatest`.
   Vec3 pulled_back(std::uint32_t pose, const Vec3& e) const {
     return inverse_poses_[pose].apply(e);
   }
 
-  /// Valid while the tree and the poses live.
+  /// The tree for look-ups. Valid while the tree and the poses live.
   MotionTreeRef ref() const {
     return {nodes_.data(), inverse_poses_.data(), poses_.data(),
             static_cast<std::uint32_t>(poses_.size())};
   }
 
-  /// What all roundings of a test at a node, predicate and pull-back, amount to at the most in
-  /// metres, for environment points with coordinates of at most `reach`, looked up in a lattice
-  /// that goes `lattice` metres of the model's frame beyond the model (docs/design/numerics.md).
+  /// Bound in metres of all roundings of a test at a node, predicate and pull-back. reach: greatest
+  /// coordinate of environment points; lattice: how far, in metres of the model's frame, the
+  /// lattice of the look-ups extends beyond the model (docs/design/numerics.md).
   double rounding(double reach, double lattice = 0) const;
 
   std::uint64_t allocated_bytes() const;
@@ -49,12 +50,12 @@ class MotionTree {
 
   std::span<const Pose> poses_;
   bool between_poses_;
-  std::vector<double> travelled_;  ///< up to each pose, metres; only while building
+  std::vector<double> travelled_;  ///< motion up to each pose, metres; only while building
   std::vector<MotionNode> nodes_;
   std::vector<InversePose> inverse_poses_;
-  double condition_ = 1;  ///< greatest of all poses
-  double greatest_ = 1;   ///< at least 1 and every pose's greatest stretch
-  double magnitude_ = 0;  ///< of translations and moved model points
+  double condition_ = 1;  ///< greatest condition of all rotations
+  double greatest_ = 1;   ///< upper bound of 1 and of every pose's stretch
+  double magnitude_ = 0;  ///< bound of translations plus moved model points
 };
 
 }  // namespace clearway

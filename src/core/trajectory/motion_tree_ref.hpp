@@ -9,28 +9,28 @@
 
 namespace clearway {
 
-/// A range of consecutive poses around one of them. Preorder: the earlier half is the next node,
-/// and the nodes of a range of n poses are the 2 n - 1 from its own on.
+/// A range of consecutive poses around one of them. Nodes are in preorder: the earlier half is the
+/// next node, and the subtree of a range of n poses is the 2 n - 1 nodes from its own on.
 struct MotionNode {
   std::uint32_t first;
   std::uint32_t count;
-  std::uint32_t mid;    ///< a pose of the range
-  std::uint32_t later;  ///< node of the later half, 0 where count is 1
-  /// No model point is farther at any pose of the range from where it is at mid; between poses, nor
-  /// at the pose after the range, so nowhere on its segments either.
+  std::uint32_t mid;    ///< the middle pose, which is one of the range
+  std::uint32_t later;  ///< node of the later half, 0 if count is 1
+  /// Metres: no model point is farther than this, at any pose of the range, from where it is at
+  /// mid. Between poses that includes the pose after the range, and so the segments up to it.
   double delta;
 };
 
-/// The true inverse of a pose's rotation, never its transpose: poses read from text are not quite
-/// rigid.
+/// A pose for pulling points back. It holds the true inverse of the rotation, never its transpose,
+/// because poses read from text are not quite rigid.
 struct InversePose {
   double inverse[9];      ///< row-major
-  double translation[3];  ///< of the pose itself
-  double least;     ///< at most the least singular value of the rotation; 0 where none is proven
-  double greatest;  ///< at least the greatest
+  double translation[3];  ///< translation of the pose itself
+  double least;     ///< lower bound of the rotation's least singular value; 0 if none is proven
+  double greatest;  ///< upper bound of the rotation's greatest singular value
 
-  /// x with transform(pose, x) = e, up to the rounding that docs/design/numerics.md ("Sweep")
-  /// bounds.
+  /// Pulls e back: returns x with transform(pose, x) = e, up to the rounding that
+  /// docs/design/numerics.md ("Sweep") bounds.
   CLEARWAY_HD Vec3 apply(const Vec3& e) const {
     const double x = e.x - translation[0], y = e.y - translation[1], z = e.z - translation[2];
     return {inverse[0] * x + inverse[1] * y + inverse[2] * z,
@@ -39,21 +39,21 @@ struct InversePose {
   }
 };
 
-/// How smoothly a node's poses move, seen from the model: what pose number i of n pulls back to
-/// lies near the place i / (n - 1) of the MotionParabola.
+/// How smoothly a node's poses move as seen from the model: a point pulled back by pose i of n lies
+/// near place i / (n - 1) of the MotionParabola.
 struct MotionCurve {
-  static constexpr float kEqual = -1;  ///< error: all poses are equal
+  static constexpr float kEqual = -1;  ///< value of `error`: all poses are equal
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
-  float error;  ///< metres, of places that matter
-  float least;  ///< at most the least singular value of any rotation
+  float error;  ///< metres; bound of the distance from the parabola, for points that matter
+  float least;  ///< lower bound of the least singular value of any rotation
 
   CLEARWAY_HD bool is_one_place() const { return error < 0; }
   CLEARWAY_HD bool is_smooth() const { return error < kNone; }
 };
 
-/// Runs through what the first, a middle and the last pose of a node pull a point back to, at the
-/// places 0, `middle_place` and 1.
+/// A parabola through a point pulled back by the first, a middle and the last pose of a node, at
+/// the places 0, `middle_place` and 1.
 struct MotionParabola {
   std::uint32_t first, middle, last;
   double middle_place;
@@ -65,10 +65,11 @@ struct MotionParabola {
         middle_place(static_cast<double>(middle - first) /
                      (node.count > 1 ? static_cast<double>(node.count - 1) : 1.0)) {}
 
-  /// What t (1 - t) is at the middle; 0 where there is none.
+  /// The value of t (1 - t) at the middle pose; 0 if there is none.
   CLEARWAY_HD double height() const { return middle_place * (1 - middle_place); }
 
-  /// The bend of start + t way + t (1 - t) bend, which is at `at_middle` in the middle.
+  /// The bend of start + t way + t (1 - t) bend, so that it passes through `at_middle` at the
+  /// middle.
   CLEARWAY_HD Vec3 bend(const Vec3& start, const Vec3& way, const Vec3& at_middle) const {
     const double top = height();
     Vec3 out{};
@@ -78,7 +79,7 @@ struct MotionParabola {
     return out;
   }
 
-  /// Around such a curve.
+  /// A box around the curve start + t way + t (1 - t) bend.
   CLEARWAY_HD static Box box(const Vec3& start, const Vec3& way, const Vec3& bend) {
     Box box{start, start};
     for (int k = 0; k < 3; ++k) {
@@ -89,21 +90,22 @@ struct MotionParabola {
   }
 };
 
-/// A MotionTree where it lies, on the host or on a device. Does not own it.
+/// View of a MotionTree on the host or on a device. Does not own it.
 struct MotionTreeRef {
-  const MotionNode* nodes;           ///< 2 pose_count - 1, or none
-  const InversePose* inverse_poses;  ///< a pose
+  const MotionNode* nodes;           ///< 2 pose_count - 1 nodes, or none
+  const InversePose* inverse_poses;  ///< one for each pose
   const Pose* poses;
   std::uint32_t pose_count;
-  const MotionCurve* curves = nullptr;  ///< a node, or null where none are needed
+  const MotionCurve* curves = nullptr;  ///< one for each node, or null if none are needed
 
-  /// Replaces both halves of a smooth node by it, again and again; nodes in the order of the
-  /// poses. How many are left.
+  /// Replaces, repeatedly, both halves of a smooth node by the node itself. list: nodes in the
+  /// order of the poses. Returns how many are left.
   CLEARWAY_HD std::uint32_t join_smooth(std::uint32_t* list, std::uint32_t count) const {
     return join(list, count, [&](std::uint32_t node) { return curves[node].is_smooth(); });
   }
 
-  /// The same for nodes of any kind: is_whole(node) says of which.
+  /// Replaces, repeatedly, both halves of a node for which is_whole(node) is true by the node
+  /// itself. list: nodes in the order of the poses. Returns how many are left.
   template <typename IsWhole>
   CLEARWAY_HD std::uint32_t join(std::uint32_t* list, std::uint32_t count, IsWhole is_whole) const {
     std::uint32_t left = 0;
@@ -118,7 +120,7 @@ struct MotionTreeRef {
   }
 
  private:
-  /// Whether they are those of one node, which is then earlier - 1.
+  /// Whether two nodes are the halves of one node, which is then earlier - 1.
   CLEARWAY_HD bool are_halves(std::uint32_t earlier, std::uint32_t later) const {
     return earlier > 0 && nodes[earlier - 1].later == later;
   }

@@ -12,7 +12,8 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// A pose's matrix as rotation times a symmetric stretch, negative definite where it mirrors.
+/// A pose's matrix as a rotation times a symmetric stretch, which is negative definite if the pose
+/// mirrors.
 struct Polar {
   Eigen::Quaterniond rotation;
   Eigen::Matrix3d stretch;
@@ -43,7 +44,7 @@ Eigen::Quaterniond exponential(const Eigen::Vector3d& turn) {
   return q;
 }
 
-/// The rotation vector of at most pi.
+/// The rotation vector of a quaternion, of length at most pi.
 Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
   const double sine = q.vec().norm();
   const double sign = q.w() < 0 ? -1 : 1;
@@ -77,7 +78,8 @@ PoseSpline::PoseSpline(std::span<const Pose> poses, std::span<const double> moti
   }
 }
 
-/// That of the parabola through the knot and its neighbours, at the ends through the next two.
+/// The velocity at a knot: that of the parabola through the knot and its neighbours, or at the ends
+/// through the next two knots.
 PoseSpline::Velocity PoseSpline::at_knot(const std::vector<Leg>& legs, std::size_t knot) const {
   const std::size_t last = legs.size();
   if (last == 0) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
@@ -99,8 +101,8 @@ PoseSpline::Velocity PoseSpline::weighted(const Velocity& a, double weight_a, co
   return {weight_a * a.linear + weight_b * b.linear, weight_a * a.angular + weight_b * b.angular};
 }
 
-/// At most three times the slower of its neighbours, so that no way overshoots by more than its
-/// own length, and a straight one not at all.
+/// Limits a velocity to three times the slower of its neighbours, so that no way overshoots by more
+/// than its own length, and a straight one not at all.
 PoseSpline::Velocity PoseSpline::limited(const Velocity& velocity, const Velocity& before,
                                          const Velocity& after) {
   const auto limit = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

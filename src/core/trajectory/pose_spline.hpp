@@ -10,10 +10,10 @@
 
 namespace clearway {
 
-/// The positions of a PoseCurve alone.
+/// The positions of a PoseCurve, without its rotations.
 class PositionCurve {
  public:
-  /// Metres a unit of the parameter, 0 <= t <= 1.
+  /// Velocity in metres per unit of the parameter, 0 <= t <= 1.
   Eigen::Vector3d velocity(double t) const {
     const double rest = 1 - t;
     return 3 * (rest * rest * moves_[0] + 2 * t * rest * moves_[1] + t * t * moves_[2]);
@@ -25,11 +25,11 @@ class PositionCurve {
   std::array<Eigen::Vector3d, 3> moves_;  ///< metres
 };
 
-/// The way from one pose to the next: a cubic in position, a cumulative cubic in rotation
+/// The curve from one pose to the next: a cubic in position, a cumulative cubic in rotation
 /// (docs/design/trajectory.md).
 class PoseCurve {
  public:
-  /// 0 <= t <= 1; at 0 and 1 the two poses, up to rounding.
+  /// The pose at 0 <= t <= 1; at 0 and 1 the given poses, up to rounding.
   Pose at(double t) const;
 
  private:
@@ -43,28 +43,28 @@ class PoseCurve {
 };
 
 /// A curve through all poses of a trajectory with continuous velocity, in position and rotation.
-/// Each way depends on two poses to either side of it. Stretching (what a pose is beside a
-/// rotation) is interpolated by itself. Sources: Kim, Kim and Shin 1995 (rotation), Lee 1989
+/// Each way depends on two poses to either side of it. Stretching, which is what a pose has besides
+/// a rotation, is interpolated by itself. Sources: Kim, Kim and Shin 1995 (rotation), Lee 1989
 /// (parametrisation), Fritsch and Carlson 1980 (limit of velocities), Shoemake and Duff 1992
 /// (stretching).
 class PoseSpline {
  public:
-  /// motions: how far the model moves from each pose to the next, metres, finite, one fewer than
-  /// poses; 0 where it does not. `poses` outlive the spline and are invertible.
+  /// poses: invertible; they must outlive the spline. motions: how far the model moves from each
+  /// pose to the next, in metres, finite, one fewer than poses; 0 where it does not move.
   PoseSpline(std::span<const Pose> poses, std::span<const double> motions);
 
-  /// From pose i to pose i + 1. Throws InputError where one mirrors the model and the other does
-  /// not.
+  /// The curve from pose i to pose i + 1. Throws InputError if one mirrors the model and the other
+  /// does not.
   PoseCurve between(std::size_t i) const;
-  /// The positions of `between(i)`, also where the poses mirror by turns.
+  /// The positions of `between(i)`, even if only one of the poses mirrors.
   PositionCurve positions(std::size_t i) const;
 
  private:
-  /// Change a unit of the parameter.
+  /// Change per unit of the parameter.
   struct Velocity {
-    Eigen::Vector3d linear, angular;  ///< the latter in the model's frame
+    Eigen::Vector3d linear, angular;  ///< angular: in the model's frame
   };
-  /// A stretch of the parameter between two different poses.
+  /// An interval of the parameter between two different poses.
   struct Leg {
     std::size_t from;
     double span;
@@ -76,8 +76,8 @@ class PoseSpline {
   static Velocity limited(const Velocity& velocity, const Velocity& before, const Velocity& after);
 
   std::span<const Pose> poses_;
-  std::vector<double> spans_;         ///< of the parameter, pose to pose
-  std::vector<Velocity> velocities_;  ///< a pose
+  std::vector<double> spans_;         ///< lengths of the parameter's intervals between poses
+  std::vector<Velocity> velocities_;  ///< one for each pose
 };
 
 }  // namespace clearway

@@ -34,7 +34,7 @@ std::vector<double> motions_of(std::span<const Pose> poses, const Box& model) {
   return motions;
 }
 
-/// How far the model has moved at each of `cells` + 1 even steps of a curve's parameter.
+/// The motion of the model up to each of `cells` + 1 even steps of a curve's parameter, metres.
 std::vector<double> travelled(const PoseCurve& curve, const Box& model, std::size_t cells) {
   std::vector<double> sums{0};
   Pose previous = curve.at(0);
@@ -105,7 +105,7 @@ class Resampler {
                      " rounding alone moves the model by about as much; expected a larger one");
   }
 
-  /// Even steps up to `end`; false where one is longer than it may be.
+  /// Adds even steps up to `end`. Returns false if one of them is longer than allowed.
   bool add_steps(const PoseCurve& curve, const std::vector<double>& sums, std::uint64_t steps,
                  const Pose& end) {
     std::size_t cell = 0;

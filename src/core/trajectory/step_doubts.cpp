@@ -11,8 +11,8 @@
 namespace clearway {
 namespace {
 
-/// The mean of the two in the middle where their number is even, so that at the border between slow
-/// and fast neither of them alone says what is usual.
+/// The median; for an even number of values, the mean of the two in the middle, so that at the
+/// border between slow and fast neither of them alone says what is usual.
 double median_of(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -20,7 +20,7 @@ double median_of(std::vector<double>& values) {
   return (*std::max_element(values.begin(), middle) + *middle) / 2;
 }
 
-/// "poses 100, 250", or the first few of many.
+/// The poses from which the jumps start, such as "poses 100, 250", or the first few of many.
 std::string starts_of(std::span<const Jump> jumps) {
   constexpr std::size_t kMost = 4;
   std::vector<std::size_t> poses;
@@ -33,8 +33,8 @@ std::string starts_of(std::span<const Jump> jumps) {
   return ranges.size() > kMost ? text + " and others" : text;
 }
 
-/// How many poses each row has, where the jumps lead from row to row of a grid: they come after
-/// equal numbers of poses and are equally long. 0: they are no such jumps.
+/// Number of poses in each row, if the jumps lead from row to row of a grid: they come after equal
+/// numbers of poses and are equally long. 0 if they are not such jumps.
 std::size_t row_of_grid(std::span<const Jump> jumps) {
   constexpr double kEqual = 0.01;
   if (jumps.size() < 2) return 0;

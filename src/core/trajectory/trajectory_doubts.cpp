@@ -29,8 +29,8 @@ Message warning(const char* code, std::string text,
   return {Message::Severity::kWarning, code, std::move(text), std::move(numbers)};
 }
 
-/// How far the path turns: the largest angle between its first long chord and any other. A way
-/// back on the same line is no turn.
+/// Largest angle by which the path turns, in radians: that between its first long chord and any
+/// other. Going back on the same line is no turn.
 double turn_of_path(std::span<const Pose> poses, double length) {
   constexpr double kPieces = 20;
   const auto chords = chords_of(poses, length / kPieces);
@@ -47,7 +47,8 @@ std::optional<Message> missing_rotation(std::span<const Pose> poses, double path
                                         RotationSource source, const std::string& name) {
   constexpr double kPathTurn = 20 * kDegree;
   constexpr double kClearPathTurn = 30 * kDegree;
-  constexpr double kRadiansAsDegrees = 6.5 * kDegree;  // of a whole turn, misread
+  // For a whole turn in radians that is read as degrees
+  constexpr double kRadiansAsDegrees = 6.5 * kDegree;
   constexpr double kNoTurn = 1e-9;
   const Pose identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}};
   double from_identity = 0;
@@ -75,13 +76,13 @@ std::optional<Message> missing_rotation(std::span<const Pose> poses, double path
   return std::nullopt;
 }
 
-/// How well the motion keeps one direction of the model: 1 where it always does.
+/// How well the motion keeps to one direction of the model; 1 is perfect.
 struct Alignment {
-  double line = 1;       ///< forwards or backwards; 1/3 where it is all over
-  double direction = 1;  ///< forwards alone; 0 where it is all over
-  double ahead = 0;      ///< how much of that direction is along the model's x axis, either way
+  double line = 1;  ///< alignment with a line, forwards or backwards; 1/3 for random directions
+  double direction = 1;  ///< alignment with a direction, forwards only; 0 for random directions
+  double ahead = 0;      ///< share of that direction along the model's x axis, of either sign
 
-  /// Whether a mistake is almost certain: its repair makes order of disorder.
+  /// Whether a mistake is almost certain, because repairing it makes order of disorder.
   bool repaired_by(const Alignment& other) const {
     constexpr double kOrder = 0.97;
     constexpr double kDisorder = 0.8;
@@ -90,7 +91,7 @@ struct Alignment {
   }
 };
 
-/// rotation_of(pose): the rotation to judge.
+/// The alignment of the motion along `chords`. rotation_at(pose): the rotation to judge.
 template <typename RotationOf>
 Alignment alignment(std::span<const Pose> poses, std::span<const Chord> chords,
                     const RotationOf& rotation_at) {
@@ -118,7 +119,7 @@ std::vector<Chord> pieces_of(std::span<const Pose> poses, double length) {
   return chords_of(poses, length / kPieces);
 }
 
-/// The poses that map from the world to the model instead.
+/// The poses inverted, as a file has them that maps from the world to the model.
 std::vector<Pose> inverse_of(std::span<const Pose> poses) {
   std::vector<Pose> inverse(poses.begin(), poses.end());
   for (Pose& pose : inverse) {
@@ -130,10 +131,10 @@ std::vector<Pose> inverse_of(std::span<const Pose> poses) {
   return inverse;
 }
 
-/// What makes the model turn against its path. A path whose x and y are swapped is the mirror image
-/// of the true one, as are headings that are counted clockwise from north; with these rotations the
-/// model would move ahead on the swapped path. Rotations that are transposed, or counted the other
-/// way, would move it ahead on the path as it is.
+/// Names the probable cause of a model that turns against its path. A path whose x and y are
+/// swapped is the mirror image of the true one, as are headings that are counted clockwise from
+/// north; with these rotations the model would move ahead on the swapped path. Rotations that are
+/// transposed, or counted the other way, would move it ahead on the path as it is.
 std::string cause_of_turns(std::span<const Pose> poses, double length, const Alignment& transposed,
                            RotationSource source) {
   constexpr double kAhead = 0.9;
@@ -154,7 +155,7 @@ std::string cause_of_turns(std::span<const Pose> poses, double length, const Ali
   return columns + ", or " + other;
 }
 
-/// A mistake after whose repair the motion would keep to one direction of the model.
+/// A warning of a mistake whose repair would make the motion keep to one direction of the model.
 std::optional<Message> other_rotation(std::span<const Pose> poses, double length,
                                       RotationSource source, const std::string& name) {
   const auto chords = pieces_of(poses, length);
@@ -167,7 +168,7 @@ std::optional<Message> other_rotation(std::span<const Pose> poses, double length
   const auto inverse = inverse_of(poses);
   const double inverse_length = summarize_trajectory(inverse).length;
   const Alignment inverted = alignment(inverse, pieces_of(inverse, inverse_length), rotation_of);
-  // Inverting swings positions about the world's origin: of poses that are right, the way gets
+  // Inverting swings positions about the world's origin: if the poses are right, the way gets
   // longer, and far from the origin it always keeps to one line.
   if (inverse_length < length && given.repaired_by(inverted)) {
     return warning("poses-inverse",
@@ -187,7 +188,8 @@ std::optional<Message> other_rotation(std::span<const Pose> poses, double length
   return std::nullopt;
 }
 
-/// The rotation of a quaternion that was read as x y z w but is w x y z, or the other way about.
+/// The rotation of a quaternion that was read in the wrong order: as x y z w but is w x y z, or the
+/// reverse.
 Matrix reordered(const Pose& pose, bool w_came_first) {
   const Eigen::Quaterniond q(Eigen::Matrix3d(rotation_of(pose)));
   const Eigen::Quaterniond other = w_came_first ? Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w())
@@ -202,7 +204,8 @@ double worst_tilt(std::span<const Pose> poses, const RotationOf& rotation_at) {
   return std::acos(std::max(-1.0, least));
 }
 
-/// Vehicles stay nearly level. In the other order of their quaternions they tumble.
+/// A warning if the quaternions seem to be in the other order. Vehicles stay nearly level, but with
+/// a wrong order they tumble.
 std::optional<Message> quaternion_order(std::span<const Pose> poses, const std::string& name) {
   constexpr double kTumbles = 15 * kDegree;
   constexpr double kTimesLess = 3;
@@ -221,7 +224,7 @@ std::optional<Message> quaternion_order(std::span<const Pose> poses, const std::
   return std::nullopt;
 }
 
-/// What usually turns a model over, by where its rotations come from.
+/// What usually turns a model over, for each source of its rotations.
 const char* cause_of_upside_down(RotationSource source) {
   switch (source) {
     case RotationSource::kQuaternions:

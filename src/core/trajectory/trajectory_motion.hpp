@@ -7,10 +7,10 @@
 
 namespace clearway {
 
-/// displacement_bound, but 0 for equal poses, whose model points fall together exactly. Metres.
+/// displacement_bound() in metres, but 0 for equal poses, whose model points coincide exactly.
 double motion_bound(const Box& model, const Pose& a, const Pose& b);
 
-/// The greatest motion_bound of two consecutive poses; 0 for fewer than two.
+/// The greatest motion_bound() of two consecutive poses, metres; 0 for fewer than two poses.
 double largest_motion(const Box& model, std::span<const Pose> poses);
 
 }  // namespace clearway

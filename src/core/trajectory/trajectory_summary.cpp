@@ -24,7 +24,8 @@ double skew_of(const Pose& pose) {
   return worst;
 }
 
-/// sums: of the components, weighted. sizes: of their absolute values.
+/// The axis with the greatest components. sums: weighted sums of the components; sizes: weighted
+/// sums of their absolute values.
 BodyAxis axis_of(const Vec3& sums, const Vec3& sizes, double weight) {
   if (!(weight > 0)) return {};
   int axis = 0;
@@ -89,7 +90,8 @@ BodyAxis forward_axis(std::span<const Pose> poses, double length) {
 }  // namespace
 
 double turn_between(const Pose& a, const Pose& b) {
-  // |A - B| is 2 sqrt 2 sin(angle / 2) in the Frobenius norm: exact for small angles too.
+  // |A - B| is 2 sqrt 2 sin(angle / 2) in the Frobenius norm, which is accurate for small angles,
+  // too.
   double square = 0;
   for (int k = 0; k < 9; ++k) {
     const double difference = a.rotation[k] - b.rotation[k];

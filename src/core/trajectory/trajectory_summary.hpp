@@ -11,26 +11,26 @@ namespace clearway {
 
 /// An axis of the model's frame, or its opposite.
 struct BodyAxis {
-  int axis = 0;  ///< 0 x, 1 y, 2 z
+  int axis = 0;  ///< 0 for x, 1 for y, 2 for z
   bool negative = false;
-  double cosine = 0;  ///< mean of the cosines between it and what it is compared with; 0: none
+  double cosine = 0;  ///< mean cosine between the axis and what it is compared with; 0: none
 };
 
-/// What poses have in common. Steps are those of the positions, the model's size does not count.
+/// Summary of a trajectory. Steps are those of the positions, whatever the model's size.
 struct TrajectorySummary {
   std::size_t poses = 0;
-  Box box{};               ///< of the positions; of no poses: zeros
-  double length = 0;       ///< of the path
-  double median_step = 0;  ///< of the steps that move
+  Box box{};               ///< box around the positions; zeros if there are no poses
+  double length = 0;       ///< length of the path
+  double median_step = 0;  ///< median of the steps that are longer than 0
   double largest_step = 0;
-  std::size_t largest_step_pose = 0;  ///< from which it starts
-  std::size_t still_steps = 0;        ///< that move no position
-  double total_turn = 0;              ///< radians, all turns between neighbours
-  double largest_turn = 0;            ///< radians
-  std::size_t largest_turn_pose = 0;  ///< from which it starts
-  double skew = 0;                    ///< the greatest entry of |R^T R - I|
-  BodyAxis up;                        ///< that points most along the world's z, over all poses
-  BodyAxis forward;                   ///< that points most along the motion, by length of way
+  std::size_t largest_step_pose = 0;  ///< pose from which the largest step starts
+  std::size_t still_steps = 0;        ///< number of steps of length 0
+  double total_turn = 0;              ///< sum of the turns between neighbours, radians
+  double largest_turn = 0;            ///< greatest turn between neighbours, radians
+  std::size_t largest_turn_pose = 0;  ///< pose from which the largest turn starts
+  double skew = 0;                    ///< greatest entry of |R^T R - I| over all poses
+  BodyAxis up;                        ///< axis that points most along the world's z, over all poses
+  BodyAxis forward;  ///< axis that points most along the motion, weighted by length
 };
 
 TrajectorySummary summarize_trajectory(std::span<const Pose> poses);
@@ -38,14 +38,14 @@ TrajectorySummary summarize_trajectory(std::span<const Pose> poses);
 /// The angle of the rotation from a to b, radians.
 double turn_between(const Pose& a, const Pose& b);
 
-/// A piece of the way, straight from a pose to a later one.
+/// A piece of the way as a straight line from a pose to a later one.
 struct Chord {
-  Vec3 direction;  ///< unit
+  Vec3 direction;  ///< unit vector
   double length = 0;
-  std::size_t middle;  ///< the pose halfway between
+  std::size_t middle;  ///< the pose halfway between the two
 };
 
-/// Pieces of at least `least` metres, one after the other.
+/// The way as consecutive chords of at least `least` metres.
 std::vector<Chord> chords_of(std::span<const Pose> poses, double least);
 
 }  // namespace clearway

@@ -10,7 +10,8 @@ namespace {
 
 using BodySet = std::bitset<kMostBodies>;
 
-/// For each pose of the path, the bodies that have none there; empty where each has every pose.
+/// For each pose of the path, the bodies that have no pose there; empty if every body has every
+/// pose.
 std::vector<BodySet> missing_at(std::size_t poses, std::span<const Body> bodies) {
   std::vector<BodySet> missing;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -45,7 +46,7 @@ std::vector<UnsearchedStretch> unsearched_stretches(std::span<const Pose> path,
   const std::vector<BodySet> missing = missing_at(path.size(), bodies);
   if (missing.empty()) return stretches;
   const std::vector<double> chainage = chainage_of(path);
-  BodySet before;  // of the way that ends at pose i
+  BodySet before;  // bodies missing on the way that ends at pose i
   for (std::uint32_t i = 0; i + 1 < path.size(); ++i) {
     const BodySet set = missing[i] | missing[i + 1];
     if (set.none()) {

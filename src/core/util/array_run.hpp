@@ -6,12 +6,12 @@
 
 namespace clearway {
 
-/// Where `count` values lie in a run of bytes: `at` bytes from its begin.
+/// The place of `count` values in a run of bytes: `at` bytes from its beginning.
 template <typename Value>
 struct ArrayPlace {
   std::uint64_t at, count;
 
-  /// The values in a run that begins at `run`; no address where there are none.
+  /// The values in a run that begins at `run`; an empty span if there are none.
   std::span<Value> in(std::byte* run) const {
     if (count == 0) return {};
     return {reinterpret_cast<Value*>(run + at), count};
@@ -22,11 +22,11 @@ struct ArrayPlace {
   }
 };
 
-/// Arrays one after the other in one run of bytes, each on kAlignment. It describes the
-/// run before there is memory: what the arrays take and where they lie follow from it.
+/// Arrays one after another in one run of bytes, each aligned to kAlignment. It describes the run
+/// before there is memory: it tells how much memory the arrays take and where they lie.
 class ArrayRun {
  public:
-  /// That of an allocation of CUDA's own: warps read from it in whole lines.
+  /// Alignment of each array, that of CUDA's own allocations: warps read from it in whole lines.
   static constexpr std::uint64_t kAlignment = 256;
 
   template <typename Value>

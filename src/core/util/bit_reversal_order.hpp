@@ -6,8 +6,8 @@
 
 namespace clearway {
 
-/// The numbers 0 .. n - 1 in an order in which the first ones lie far apart: that of their bits
-/// read backwards (van der Corput). n is at most 64.
+/// The numbers 0 .. n - 1, n at most 64, in an order in which the first ones lie far apart: that of
+/// their bits read backwards (van der Corput).
 class BitReversalOrder {
  public:
   static constexpr std::uint32_t kMost = 64;
@@ -16,7 +16,7 @@ class BitReversalOrder {
     while (n_ > 1U << bits_) ++bits_;
   }
 
-  /// Calls visit(number) for each of them until it returns false.
+  /// Calls visit(number) for each number until it returns false.
   template <typename Visit>
   CLEARWAY_HD void for_each(Visit visit) const {
     for (std::uint32_t i = 0; i < 1U << bits_; ++i) {

@@ -8,10 +8,11 @@
 
 namespace clearway {
 
-/// Tells the caller of a long operation how far it is, and whether the caller wants it to stop.
+/// Tells the caller of a long operation how far it is, and tells the operation whether the caller
+/// wants it to stop.
 class CallbackProgress final : public Progress {
  public:
-  /// Both outlive it.
+  /// Tell and stop must outlive this object.
   CallbackProgress(const ProgressCallback& tell, StopFlag stop) : callback_(tell), stop_(stop) {}
 
   void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override {

@@ -5,10 +5,10 @@
 
 #include "core/util/macros.hpp"
 
-/// Bits of a word, and words that the threads of a device share.
+/// Functions for the bits of a word, and for words that the threads of a device share.
 namespace clearway {
 
-/// Or-s bits into a word that other threads of a device or-into at the same time.
+/// Ors bits into a word into which other threads of a device or bits at the same time.
 CLEARWAY_HD inline void or_into(std::uint64_t* word, std::uint64_t bits) {
 #ifdef __CUDA_ARCH__
   atomicOr(reinterpret_cast<unsigned long long*>(word), static_cast<unsigned long long>(bits));
@@ -26,7 +26,7 @@ CLEARWAY_HD inline void lower_to(std::uint32_t* value, std::uint32_t to) {
 #endif
 }
 
-/// Index of the lowest set bit; there is one.
+/// Index of the lowest set bit, of which there must be one.
 CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t bits) {
 #ifdef __CUDA_ARCH__
   return static_cast<std::uint32_t>(__ffsll(static_cast<long long>(bits)) - 1);
@@ -35,7 +35,7 @@ CLEARWAY_HD inline std::uint32_t lowest_bit(std::uint64_t bits) {
 #endif
 }
 
-/// Set bits.
+/// Number of set bits.
 CLEARWAY_HD inline std::uint32_t count_of(std::uint64_t bits) {
 #ifdef __CUDA_ARCH__
   return static_cast<std::uint32_t>(__popcll(bits));

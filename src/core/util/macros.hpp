@@ -19,8 +19,8 @@
 #define CLEARWAY_SIMD_CLONES
 #endif
 
-/// CLEARWAY_IN_CLONE: a member that clones are made of is compiled into each of them, whatever its
-/// size. On its own it would be compiled once, without their vectors.
+/// CLEARWAY_IN_CLONE marks a member function that clones consist of, so that it is compiled into
+/// each of them, whatever its size. On its own it would be compiled once, without their vectors.
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define CLEARWAY_IN_CLONE __attribute__((always_inline)) inline
 #else

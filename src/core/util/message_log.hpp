@@ -10,11 +10,11 @@
 
 namespace clearway {
 
-/// What a long operation tells its caller: notes at once, warnings at once and in the report.
-/// Of one thread.
+/// Passes on what a long operation tells its caller: notes at once, warnings at once and in the
+/// report. For one thread.
 class MessageLog {
  public:
-  /// Both outlive it.
+  /// Tell and warnings must outlive this object.
   MessageLog(const MessageCallback& tell, std::vector<Message>& warnings)
       : callback_(tell), warnings_(warnings) {}
 
@@ -35,10 +35,10 @@ class MessageLog {
   std::vector<Message>& warnings_;
 };
 
-/// For a strict call: throws InputError with the number of warnings and their codes, each code
-/// once, in the order of the warnings; does nothing where there is none. Those that a store repeats
-/// of its conversion ("store-...") do not count: its strictness was decided there. To be called
-/// when all have been told and nothing has been published.
+/// Throws InputError for a strict call that has warnings, with their number and their codes, each
+/// code once, in the order of the warnings; does nothing if there are none. Warnings that a store
+/// repeats from its conversion ("store-...") do not count, because its strictness was decided
+/// there. To be called when all warnings have been told and nothing has been published.
 inline void refuse_warnings(const std::vector<Message>& warnings) {
   std::size_t count = 0;
   std::vector<std::string> codes;

@@ -5,7 +5,7 @@
 
 namespace clearway {
 
-/// Of ascending numbers one text a run: "3", "7-9".
+/// The runs of ascending numbers as texts, such as "3" and "7-9".
 template <typename Number>
 std::vector<std::string> number_ranges(const std::vector<Number>& numbers) {
   std::vector<std::string> ranges;

@@ -12,11 +12,11 @@ namespace clearway {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A stage of `total` units starts; total 0 means unknown.
+  /// Begins a stage of `total` units; total 0 means unknown.
   virtual void begin(std::string_view stage, std::uint64_t total, std::string_view unit) = 0;
   virtual void advance(std::uint64_t units) = 0;
   virtual void end() = 0;
-  /// Whether the operation shall finish what is in flight, begin nothing more and throw
+  /// Whether the operation has to finish what is in flight, begin nothing more and throw
   /// Interrupted.
   virtual bool stop_requested() const { return false; }
 };
@@ -25,7 +25,7 @@ inline void throw_if_stopped(const Progress& progress) {
   if (progress.stop_requested()) throw Interrupted("interrupted");
 }
 
-/// Discards everything.
+/// A Progress that discards everything.
 class NoProgress final : public Progress {
  public:
   void begin(std::string_view, std::uint64_t, std::string_view) override {}

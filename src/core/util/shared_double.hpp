@@ -6,7 +6,8 @@
 
 #include "core/util/macros.hpp"
 
-/// Doubles that threads of a device, or of the host, read and write at the same time, in no order.
+/// Functions for doubles that threads of a device, or of the host, read and write at the same time,
+/// in no particular order.
 namespace clearway {
 
 CLEARWAY_HD inline double load_shared(const double* value) {
@@ -25,10 +26,10 @@ CLEARWAY_HD inline void store_shared(double* value, double to) {
 #endif
 }
 
-/// Lowers a value; neither is negative.
+/// Lowers a value; neither the value nor `to` is negative.
 CLEARWAY_HD inline void lower_shared(double* value, double to) {
 #ifdef __CUDA_ARCH__
-  // Such doubles are in the order of their bits.
+  // Doubles that are not negative have the order of their bits.
   atomicMin(reinterpret_cast<unsigned long long*>(value),
             static_cast<unsigned long long>(__double_as_longlong(to)));
 #else
@@ -39,7 +40,7 @@ CLEARWAY_HD inline void lower_shared(double* value, double to) {
 #endif
 }
 
-/// Lowers a value to one below 0.
+/// Lowers a value to one that is below 0.
 CLEARWAY_HD inline void lower_shared_below_0(double* value, double to) {
 #ifdef __CUDA_ARCH__
   auto* const bits = reinterpret_cast<unsigned long long*>(value);

@@ -6,7 +6,7 @@
 
 namespace clearway {
 
-/// Keeps the first three notes of each code, and says how many more there were. Warnings stay.
+/// Keeps the first three notes of each code, and appends how many more there were. Warnings stay.
 void shorten_notes(std::vector<Message>& messages);
 
 }  // namespace clearway

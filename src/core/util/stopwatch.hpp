@@ -4,12 +4,12 @@
 
 namespace clearway {
 
-/// Wall clock since it was made, or since the last lap.
+/// Wall-clock time since the stopwatch was made, or since the last lap.
 class Stopwatch {
  public:
   double seconds() const { return seconds_until(Clock::now()); }
 
-  /// Also starts the next lap.
+  /// The seconds of this lap; starts the next one.
   double lap() {
     const Clock::time_point now = Clock::now();
     const double seconds = seconds_until(now);

@@ -10,8 +10,8 @@
 #endif
 #endif
 
-// What oneTBB guarantees of the work that it runs, told to the thread sanitizer, which does not see
-// into oneTBB. Nothing in other builds. docs/design/testing.md says how it was tried.
+// Tells the thread sanitizer, which does not see into oneTBB, what oneTBB guarantees about the work
+// that it runs. Does nothing in other builds. docs/design/testing.md says how it was tried.
 
 #ifdef CLEARWAY_THREAD_SANITIZER
 extern "C" {
@@ -22,7 +22,7 @@ void __tsan_release(void* address);
 
 namespace clearway {
 
-/// What was released at an address before happens before what acquires it.
+/// Whatever happened before the release of an address happens before what follows its acquisition.
 #ifdef CLEARWAY_THREAD_SANITIZER
 inline void acquire(const void* address) { __tsan_acquire(const_cast<void*>(address)); }
 inline void release(const void* address) { __tsan_release(const_cast<void*>(address)); }
@@ -31,13 +31,13 @@ inline void acquire(const void*) {}
 inline void release(const void*) {}
 #endif
 
-/// Lives in the caller around one parallel call of oneTBB: every piece of work begins after the
-/// caller's begin(), and has ended, by an exception too, before the caller leaves the scope.
+/// The scope of one parallel call of oneTBB, in the caller. Every piece of work begins after the
+/// caller's begin(), and has ended, possibly by an exception, before the caller leaves the scope.
 class ParallelScope {
  public:
   ParallelScope() = default;
   ~ParallelScope() { acquire(&ended_); }
-  /// Right before the call, when its arguments are there.
+  /// To be called right before the parallel call, when its arguments are complete.
   void begin() const { release(&begun_); }
   ParallelScope(const ParallelScope&) = delete;
   ParallelScope& operator=(const ParallelScope&) = delete;
@@ -48,7 +48,7 @@ class ParallelScope {
   char begun_ = 0, ended_ = 0;
 };
 
-/// A stage of a pipeline whose calls follow each other; outlives them.
+/// A stage of a pipeline whose calls follow one another; it must outlive them.
 struct SerialStage {
   char turn = 0;
 };
@@ -60,7 +60,7 @@ class PieceOfWork {
   PieceOfWork(const ParallelScope& scope, const SerialStage* stage, Body body)
       : scope_(&scope), stage_(stage), body_(std::move(body)) {}
 
-  /// Not looked at itself: it has to be read before it can be known to be written.
+  /// Not instrumented itself, because it must be read before it can be known to be written.
   template <typename... Arguments>
   __attribute__((no_sanitize("thread"))) auto operator()(Arguments&&... arguments) const {
     const Turn turn(scope_, stage_);
@@ -88,12 +88,12 @@ class PieceOfWork {
   Body body_;
 };
 
-/// The body of a loop, or of a stage of a pipeline, as part of the scope.
+/// Makes the body of a loop, or of a stage of a pipeline, part of the scope.
 template <typename Body>
 PieceOfWork<Body> piece_of(const ParallelScope& scope, Body body) {
   return {scope, nullptr, std::move(body)};
 }
-/// The same of a stage whose calls follow each other.
+/// Makes the body of a stage whose calls follow one another part of the scope.
 template <typename Body>
 PieceOfWork<Body> piece_of(const ParallelScope& scope, const SerialStage& stage, Body body) {
   return {scope, &stage, std::move(body)};
@@ -109,7 +109,7 @@ Body piece_of(const ParallelScope&, const SerialStage&, Body body) {
 }
 #endif
 
-/// What a stage of a pipeline gives to the next, which begins after it was given.
+/// A value that a stage of a pipeline passes to the next, which begins after it was passed.
 #ifdef CLEARWAY_THREAD_SANITIZER
 template <typename Value>
 class Handed {

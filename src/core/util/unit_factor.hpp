@@ -4,11 +4,11 @@
 
 namespace clearway {
 
-/// Turns numbers of one unit into another, each rounded once where one unit is a whole number of
-/// the other: 9 millimetres are the double nearest to 0.009.
+/// Converts numbers from one unit to another. Each is rounded only once if one unit is a whole
+/// multiple of the other: 9 millimetres are the double nearest to 0.009.
 class UnitFactor {
  public:
-  /// Both in metres, above 0.
+  /// Lengths of both units in metres, above 0.
   explicit UnitFactor(double from, double to = 1)
       : factor_(from / to), parts_(std::round(to / from)), divides_(1 / parts_ == factor_) {}
 

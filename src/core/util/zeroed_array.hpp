@@ -9,8 +9,8 @@
 
 namespace clearway {
 
-/// Zeros. The system gives their memory where it is first touched, so that an array of which little
-/// is used costs little, and the threads that use it share the work.
+/// An array of zeros. The system provides its memory when it is first touched, so that an array of
+/// which little is used costs little, and the threads that use it share the work.
 template <typename Number>
 class ZeroedArray {
   static_assert(std::is_arithmetic_v<Number>);

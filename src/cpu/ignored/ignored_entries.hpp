@@ -11,16 +11,16 @@
 
 namespace clearway {
 
-/// The ignored points of a search without pages: while it goes on they count as hit at the first
-/// pose, so that nothing looks for them; then they are taken out of the answer.
+/// The ignored points of a search without pages. During the search they count as hit at the first
+/// pose, so that nothing looks for them; afterwards they are removed from the answer.
 class IgnoredEntries {
  public:
-  /// only: the cells that are searched; null: all. All outlive it.
+  /// only: tells the cells that are searched; null for all. All arguments must outlive this object.
   IgnoredEntries(const PackedCloud& cloud, const QueryParameters& query,
                  const std::function<bool(std::uint32_t)>& only, int threads)
       : cloud_(cloud), ignored_(cloud, query), only_(only), threads_(threads) {}
 
-  /// Returns how many there are. Throws InputError for a damaged cell.
+  /// Marks the ignored points and returns their number. Throws InputError for a damaged cell.
   std::uint64_t mark(HitSet& hits);
   void take_back(HitSet& hits) const;
 
@@ -35,7 +35,8 @@ class IgnoredEntries {
   IgnoredPoints ignored_;
   const std::function<bool(std::uint32_t)>& only_;
   int threads_;
-  std::vector<std::uint64_t> words_;  ///< of 64 entries each, those ignored, once marked
+  /// For each 64 entries a word with a bit for each ignored one, once marked
+  std::vector<std::uint64_t> words_;
 };
 
 }  // namespace clearway

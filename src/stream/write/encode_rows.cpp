@@ -6,7 +6,7 @@
 namespace clearway {
 namespace {
 
-/// Visits the rows in short pieces, whose columns stay in a core's cache.
+/// Visits the rows in short pieces, so that their columns stay in a core's cache.
 template <typename Row, typename Visit>
 void for_each_strip(std::span<const Row> rows, Visit visit) {
   constexpr std::size_t kStrip = 1 << 12;
@@ -25,7 +25,8 @@ Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
   return position(quantisation, q[0], q[1], q[2]);
 }
 
-/// Of the points of equal rank the one with the smallest source, as rows ascend by it.
+/// The row of least rank. Of several it is the one with the smallest source index, because rows
+/// ascend by it.
 template <typename Row, typename RankOf>
 const Row& least_row(std::span<const Row> rows, RankOf rank_of) {
   return *std::ranges::min_element(rows, {}, rank_of);

@@ -13,7 +13,7 @@ namespace clearway {
 struct CollisionRow {
   std::uint64_t source;
   std::int32_t q[3];
-  std::uint32_t first_pose;  ///< as BodyNumbers
+  std::uint32_t first_pose;  ///< encoded as BodyNumbers does
   std::uint32_t last_pose;
 };
 
@@ -21,10 +21,10 @@ struct ClearanceRow {
   std::uint64_t source;
   double distance;
   std::int32_t q[3];
-  std::uint32_t pose;  ///< as BodyNumbers
+  std::uint32_t pose;  ///< encoded as BodyNumbers does
 };
 
-/// What encoding rows needs to know beside them.
+/// What the encoding has to know besides the rows.
 struct RowMeaning {
   const Quantisation& quantisation;
   const ResultHeader& header;
@@ -34,11 +34,12 @@ struct RowMeaning {
 using CollisionPiece = WritePiece<EncodedCollisions>;
 using ClearancePiece = WritePiece<EncodedClearances>;
 
-/// Encodes rows that ascend by source, with the first of them at the smallest pose, where there are
-/// first poses. Not for no rows.
+/// Encodes rows, at least one, that ascend by source index. With first poses, the piece names the
+/// first row that has the smallest one.
 std::shared_ptr<CollisionPiece> encode_rows(const ResultWriter& writer, const RowMeaning& meaning,
                                             std::span<const CollisionRow> rows);
-/// The same, with the first of the least distance.
+/// Encodes rows, at least one, that ascend by source index. The piece names the first row that has
+/// the least distance.
 std::shared_ptr<ClearancePiece> encode_rows(const ResultWriter& writer, const RowMeaning& meaning,
                                             std::span<const ClearanceRow> rows);
 

@@ -17,9 +17,9 @@
 
 namespace clearway {
 
-/// Brings the entries of a set into the order of their sources, some parts of these at a time.
-/// Row: what is kept of an entry, with its `source`. All throw InputError for a damaged cell and
-/// Interrupted when the progress asks to stop.
+/// Brings the entries of a set into the order of their source indices, for some parts of these at a
+/// time. Row: what is kept of an entry, with its `source`. All functions throw InputError for a
+/// damaged cell and Interrupted when the progress asks to stop.
 template <typename Row, typename Set>
 class GatherRows {
  public:
@@ -38,16 +38,17 @@ class GatherRows {
     });
   }
 
-  /// Rows of each part.
+  /// Number of rows in each part.
   const std::vector<std::uint64_t>& counts() const { return counts_; }
 
-  /// The rows of these parts, ordered. rows_of(cell) gives what makes a row of (source, entry,
-  /// index in the cell). rows: as many as counts() says.
+  /// Fills `rows` with the rows of parts `first` to `end` - 1, in order. rows_of(cell): returns the
+  /// function that makes a row of (source, entry, index in the cell). rows: must have the length
+  /// that counts() gives. without_copy: see PartOrder.
   template <typename RowsOf>
   void gather(std::size_t first, std::size_t end, std::span<Row> rows, bool without_copy,
               RowsOf rows_of) {
-    threads_.clear();                              // other threads may come than before
-    std::vector<std::uint64_t> next(end - first);  // place in each part
+    threads_.clear();                              // other threads than before may take part
+    std::vector<std::uint64_t> next(end - first);  // next free place of each part
     for (std::size_t part = first, at = 0; part < end; at += counts_[part++]) {
       next[part - first] = at;
     }
@@ -58,7 +59,9 @@ class GatherRows {
  private:
   using Range = tbb::blocked_range<std::size_t>;
 
-  /// By std::function, as the thread sanitizer knows no types with names of thousands of letters.
+  /// Calls visit(cell, rows) for each cell that has rows in parts `first` to `end` - 1. Takes a
+  /// std::function, because the thread sanitizer cannot handle types with names of thousands of
+  /// letters.
   void for_each_cell(std::size_t first, std::size_t end,
                      const std::function<void(std::uint32_t, const CellRows&)>& visit) {
     const ParallelScope scope;
@@ -93,7 +96,7 @@ class GatherRows {
     });
   }
 
-  /// ends: of each part's rows.
+  /// Orders the rows of each part. ends: ends of the parts in `rows`.
   void order(std::size_t first, std::size_t end, const std::vector<std::uint64_t>& ends,
              std::span<Row> rows, bool without_copy) {
     tbb::enumerable_thread_specific<PartOrder<Row>> orders(without_copy);

@@ -11,11 +11,11 @@
 
 namespace clearway {
 
-/// Orders the rows of a part by source. Each thread has its own.
+/// Orders the rows of a part by source index. Each thread has its own PartOrder.
 template <typename Row>
 class PartOrder {
  public:
-  /// without_copy: slower, and takes no memory.
+  /// without_copy: orders more slowly, but takes no memory.
   explicit PartOrder(bool without_copy) : without_copy_(without_copy) {}
 
   static std::uint64_t most_bytes() { return SourceParts::kMostRows * sizeof(Row); }
@@ -26,12 +26,12 @@ class PartOrder {
   }
 
  private:
-  /// Fewer are sorted faster than a word of the part's bits after the other is looked at.
+  /// Fewer rows are sorted faster than all words of the part's bits are visited.
   static constexpr std::size_t kFew = 256;
   static constexpr std::size_t kWords = SourceParts::kMostRows / 64;
 
-  /// A row's place is the number of rows with a smaller source. False, and nothing done, where two
-  /// have the same one.
+  /// Puts each row at the number of rows with a smaller source index. Returns false, with nothing
+  /// done, if two rows have the same one.
   bool by_rank(std::span<Row> rows) {
     std::array<std::uint64_t, kWords> bits{};
     for (const Row& row : rows) {

@@ -12,7 +12,7 @@
 
 namespace clearway {
 
-/// The cells that have entries of a set, and how many entries these are in all.
+/// The cells that have entries of a set, and the number of these entries in all cells.
 struct SetCells {
   std::vector<std::uint32_t> cells;
   std::uint64_t entries = 0;

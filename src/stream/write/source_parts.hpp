@@ -10,8 +10,8 @@
 
 namespace clearway {
 
-/// The source indices in parts of 2^16: as no two points have the same one, a part has no more
-/// rows.
+/// The source indices in parts of 2^16. Because no two points have the same one, a part has at most
+/// that many rows.
 class SourceParts {
  public:
   static constexpr unsigned kBits = 16;
@@ -27,7 +27,7 @@ class SourceParts {
   std::size_t parts_;
 };
 
-/// One thread's view of a cell's entries in a set: those in some parts of the sources.
+/// One thread's view of a cell's entries in a set: those whose source indices are in some parts.
 class CellRows {
  public:
   struct Row {
@@ -37,13 +37,13 @@ class CellRows {
 
   explicit CellRows(const SourceParts& parts) : counts_(parts.count()) {}
 
-  /// Bytes for each thread.
+  /// Memory of each thread, bytes.
   static std::uint64_t most_bytes(const StoreReader& store) {
     return SourceParts(store).count() * (sizeof(std::uint32_t) + sizeof(std::uint64_t)) +
            std::uint64_t{store.cell_entries()} * (sizeof(Row) + sizeof(std::size_t));
   }
 
-  /// Takes the place of the cell before. Throws InputError for a damaged cell.
+  /// Replaces the rows by those of a cell. Throws InputError for a damaged cell.
   template <typename Set>
   void take(const StoreReader& store, const Set& set, std::uint32_t cell, std::size_t first_part,
             std::size_t end_part) {
@@ -66,7 +66,7 @@ class CellRows {
   }
 
   const std::vector<Row>& rows() const { return rows_; }
-  /// The parts that have rows, in no order.
+  /// The parts that have rows, in no particular order.
   const std::vector<std::size_t>& parts() const { return parts_; }
   std::uint32_t rows_of(std::size_t part) const { return counts_[part]; }
 

@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-/// Written in pieces of this many poses.
+/// Number of poses that are written at a time.
 constexpr std::uint64_t kPoses = 1 << 14;
 
 Vec3 position_of(const StoreReader& store, std::uint64_t entry) {

@@ -16,7 +16,7 @@
 
 namespace clearway {
 
-/// Encoded rows, and of their points the one that matters most, where that is asked for.
+/// Encoded rows and, if asked for, the place of the row that matters most.
 template <typename Encoded>
 struct WritePiece {
   explicit WritePiece(Encoded encoded) : rows(std::move(encoded)) {}
@@ -27,8 +27,8 @@ struct WritePiece {
 };
 
 /// Encodes rows, kEncodedRows at a time, on many threads, and hashes and writes them in order.
-/// at_once: how many pieces are in memory at the most. encode(rows) gives a shared pointer to a
-/// piece of sealed rows; done(piece) is called for each in order. Throws as ResultWriter does, and
+/// at_once: greatest number of pieces in memory. encode(rows): returns a shared pointer to a piece
+/// of sealed rows; done(piece): called for each piece in order. Throws as ResultWriter does, and
 /// Interrupted when the progress asks to stop.
 template <typename Encoded, typename Row, typename Encode, typename Done>
 void write_rows(ResultWriter& writer, std::span<const Row> rows, std::size_t at_once,

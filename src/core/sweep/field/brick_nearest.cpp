@@ -9,7 +9,8 @@ void BrickNearest::find(const Vec3& corner, double voxel, float* squared, std::u
   find_in({{0, 0, 0}, {kLast, kLast, kLast}}, {}, 0);
 }
 
-/// candidates: among which all nearest points of the part are, or none, where they are not known.
+/// Finds the nearest points of all nodes of a part. candidates: points that hold all nearest points
+/// of the part; empty if such points are not known.
 void BrickNearest::find_in(const Part& part, std::span<const Candidate> candidates,
                            std::uint32_t level) {
   const Place place = lattice_.place_of(part);
@@ -27,7 +28,8 @@ void BrickNearest::find_in(const Part& part, std::span<const Candidate> candidat
   }
 }
 
-/// From the tree; false where they are too many.
+/// Gathers from the tree the points that may be nearest to a place. Returns false if they are too
+/// many.
 bool BrickNearest::gather(const Place& place, std::span<const Candidate>& out) {
   near_ = tree_.nearest(place.centre, near_).element;
   const BrickRival rival(place, tree_.element(near_));

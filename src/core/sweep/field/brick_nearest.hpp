@@ -10,17 +10,17 @@
 
 namespace clearway {
 
-/// Finds the nearest model points of all nodes of a brick together. Model points that are the
-/// nearest of no position within a part of the brick are left out for all of its nodes at once.
-/// Allocates nothing. Large: some 100 kB.
+/// Finds the nearest model points of all nodes of a brick together. Model points that are not the
+/// nearest of any position within a part of the brick are left out for all of its nodes at once.
+/// Allocates nothing, but is itself some 100 kB large.
 class BrickNearest {
  public:
-  /// The tree is not empty and outlives it.
+  /// tree: not empty; it must outlive this object.
   explicit BrickNearest(const ModelTree& tree) : tree_(tree) {}
 
-  /// corner: the brick's first node; voxel: from a node to the next, metres. For each node
-  /// [z][y][x] the squared distance, rounded down to float, and a nearest point
-  /// (ModelFieldRef::kBrickNodes of both).
+  /// Finds for each node [z][y][x] the squared distance, rounded down to float, and a nearest point
+  /// (ModelFieldRef::kBrickNodes of both). corner: the brick's first node; voxel: metres from a
+  /// node to the next.
   void find(const Vec3& corner, double voxel, float* squared, std::uint32_t* nearest);
 
  private:
@@ -33,7 +33,7 @@ class BrickNearest {
   };
 
   static constexpr std::uint32_t kMostGathered = 1024;
-  static constexpr std::uint32_t kLevels = 3;  ///< of parts: 9, 5 and 3 nodes along an axis
+  static constexpr std::uint32_t kLevels = 3;  ///< levels of parts: 9, 5 and 3 nodes along an axis
 
   void find_in(const Part& part, std::span<const Candidate> candidates, std::uint32_t level);
   bool gather(const Place& place, std::span<const Candidate>& out);
@@ -45,7 +45,7 @@ class BrickNearest {
   const ModelTree& tree_;
   BrickLattice lattice_{};
   BrickNodes nodes_;
-  std::uint32_t near_ = 0;  ///< a point near the last place
+  std::uint32_t near_ = 0;  ///< a point near the last place, from which searches begin
   std::array<std::array<Candidate, kMostGathered>, kLevels> kept_;
 };
 

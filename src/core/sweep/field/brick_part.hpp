@@ -15,7 +15,7 @@ struct BrickPlace {
   Vec3 centre, half;
 };
 
-/// Nodes first[k] to last[k] of each axis of a brick.
+/// A part of a brick: nodes first[k] to last[k], both included, along each axis.
 struct BrickPart {
   std::uint32_t first[3], last[3];
 
@@ -42,7 +42,7 @@ struct BrickPart {
   }
 };
 
-/// Where a brick lies. corner: its first node; voxel: from a node to the next, metres.
+/// Where a brick lies. corner: its first node; voxel: metres from a node to the next.
 struct BrickLattice {
   Vec3 corner;
   double voxel;
@@ -59,17 +59,17 @@ struct BrickLattice {
   }
 };
 
-/// A place of the model near some positions, against which others are tested. A place p is nearer
-/// than `near` to some position x within `half` of `centre` only if
+/// A place of the model near some positions, against which other places are tested. A place p is
+/// nearer than `near` to some position x within `half` of `centre` only if
 ///     |centre - p|^2 - |centre - near|^2 < 2 sum half_k |p_k - near_k|,
-/// for |x - p|^2 - |x - near|^2 is linear in x.
+/// because |x - p|^2 - |x - near|^2 is linear in x.
 struct BrickRival {
-  /// Widens the test, far beyond what its roundings amount to: a field's voxel is at least 1e-7 of
-  /// the model's coordinates.
+  /// Share by which the test is widened, far more than its roundings amount to: a field's voxel is
+  /// at least 1e-7 of the model's coordinates.
   static constexpr double kSlack = 1e-6;
 
   Vec3 centre, half, near;
-  double limit;  ///< |centre - near|^2 and the slack
+  double limit;  ///< |centre - near|^2 plus the slack
 
   BrickRival(const BrickPlace& place, const Vec3& near_place)
       : centre(place.centre),
@@ -82,11 +82,11 @@ struct BrickRival {
   bool leaves(const Vec3& p) const {
     const double gain = half.x * std::abs(p.x - near.x) + half.y * std::abs(p.y - near.y) +
                         half.z * std::abs(p.z - near.z);
-    return !(squared_distance(centre, p) - 2 * gain > limit);  // also where it is no number
+    return !(squared_distance(centre, p) - 2 * gain > limit);  // true for NaN, too
   }
 
-  /// Whether it may leave a place of the box. What leaves() adds up is least, along each axis, at
-  /// the place nearest to centre + half above near, and to centre - half below it.
+  /// Whether leaves() may be true for some place of the box. What leaves() adds up is least, along
+  /// each axis, at the place nearest to centre + half above near, and to centre - half below it.
   bool leaves_any(const Box& box) const {
     double least = 0;
     for (int k = 0; k < 3; ++k) {
@@ -101,14 +101,14 @@ struct BrickRival {
   }
 };
 
-/// Not above the true square: one rounding to float and a few in double are taken off.
+/// A float not above the true square: one rounding to float and a few in double are taken off.
 inline float rounded_down(double squared) {
   return std::nextafterf(static_cast<float>(squared * (1 - 1e-12)), 0.0F);
 }
 
-/// What is found for the nodes of a brick: ModelFieldRef::kBrickNodes of both, [z][y][x].
+/// Results for the nodes of a brick: ModelFieldRef::kBrickNodes values in each array, [z][y][x].
 struct BrickNodes {
-  float* squared = nullptr;  ///< distances, rounded down
+  float* squared = nullptr;  ///< squared distances, rounded down
   std::uint32_t* nearest = nullptr;
 
   void keep(std::uint32_t x, std::uint32_t y, std::uint32_t z, double squared_distance,

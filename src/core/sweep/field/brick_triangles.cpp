@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kLanes = TrianglePacket::kMost;
 
-/// Of some packets, the lane that is nearest to x.
+/// The lane of some packets whose triangle is nearest to a position.
 struct NearestLane {
   double squared;
   std::uint32_t packet, lane;
@@ -39,7 +39,7 @@ NearestLane nearest_lane(const TrianglePacket* packets, std::uint32_t count, con
   return {least[best], static_cast<std::uint32_t>(of[best]), best};
 }
 
-/// What the rival leaves of the boxes of a packet's triangles: a bit a lane.
+/// The triangles of a packet whose boxes the rival leaves, as one bit for each lane.
 CLEARWAY_SIMD_CLONES
 std::uint32_t left_of(const TrianglePacket& packet, const BrickRival& rival) {
   double sum[kLanes] = {};
@@ -78,7 +78,8 @@ void BrickTriangles::find(const Vec3& corner, double voxel, float* squared,
   find_in({{0, 0, 0}, {kLast, kLast, kLast}}, nullptr, 0);
 }
 
-/// among: where all nearest triangles of the part are, or null, where they are not known.
+/// Finds the nearest triangles of all nodes of a part. among: triangles that hold all nearest
+/// triangles of the part; null if such triangles are not known.
 void BrickTriangles::find_in(const BrickPart& part, const Candidates* among, std::uint32_t level) {
   const BrickPlace place = lattice_.place_of(part);
   Candidates& candidates = kept_[level];
@@ -95,7 +96,7 @@ void BrickTriangles::find_in(const BrickPart& part, const Candidates* among, std
   for (int octant = 0; octant < 8; ++octant) find_in(part.octant(octant), known, level + 1);
 }
 
-/// From the tree; none where they are too many.
+/// Gathers from the tree the triangles that may be nearest to a place; none if they are too many.
 void BrickTriangles::gather(const BrickPlace& place, Candidates& out) {
   near_ = tree_.nearest(place.centre, near_).element;
   TrianglePacket one;

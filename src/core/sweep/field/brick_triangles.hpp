@@ -10,31 +10,31 @@
 
 namespace clearway {
 
-/// Finds the nearest triangles of all nodes of a brick together, as BrickNearest does points.
-/// Allocates nothing. Large: some 200 kB.
+/// Finds the nearest triangles of all nodes of a brick together, as BrickNearest does with points.
+/// Allocates nothing, but is itself some 200 kB large.
 class BrickTriangles {
  public:
-  /// The tree is not empty and outlives it.
+  /// tree: not empty; it must outlive this object.
   explicit BrickTriangles(const TriangleTree& tree) : tree_(tree) {}
 
-  /// corner: the brick's first node; voxel: from a node to the next, metres. For each node
-  /// [z][y][x] the squared distance, rounded down to float, and a nearest triangle
-  /// (ModelFieldRef::kBrickNodes of both).
+  /// Finds for each node [z][y][x] the squared distance, rounded down to float, and a nearest
+  /// triangle (ModelFieldRef::kBrickNodes of both). corner: the brick's first node; voxel: metres
+  /// from a node to the next.
   void find(const Vec3& corner, double voxel, float* squared, std::uint32_t* nearest);
 
  private:
   static constexpr std::uint32_t kMostPackets = 64;
-  static constexpr std::uint32_t kLevels = 3;  ///< of parts: 9, 5 and 3 nodes along an axis
+  static constexpr std::uint32_t kLevels = 3;  ///< levels of parts: 9, 5 and 3 nodes along an axis
 
-  /// Candidates for a part, in full packets but for the last; none where there are too many.
+  /// Candidate triangles of a part in packets, all full but the last; none if there are too many.
   struct Candidates {
     std::array<TrianglePacket, kMostPackets> packets;
-    std::uint32_t count = 0;  ///< of triangles
+    std::uint32_t count = 0;  ///< number of triangles
 
     std::uint32_t packet_count() const {
       return (count + TrianglePacket::kMost - 1) / TrianglePacket::kMost;
     }
-    /// Room for one more triangle; null where there is none.
+    /// The packet with room for one more triangle; null if there is no room.
     TrianglePacket* room() {
       return count == kMostPackets * TrianglePacket::kMost
                  ? nullptr
@@ -52,7 +52,7 @@ class BrickTriangles {
   const TriangleTree& tree_;
   BrickLattice lattice_{};
   BrickNodes nodes_;
-  std::uint32_t near_ = 0;  ///< a triangle near the last place
+  std::uint32_t near_ = 0;  ///< a triangle near the last place, from which searches begin
   std::array<Candidates, kLevels> kept_;
 };
 

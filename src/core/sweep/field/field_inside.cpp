@@ -4,7 +4,8 @@
 
 namespace clearway {
 
-/// Two cells side by side, to both of which no surface is near, are both inside or both outside.
+/// Two neighbouring cells without a nearby surface are both inside or both outside, so one test
+/// serves a whole run of them.
 void FieldInside::lay_out(const std::uint32_t (&size)[3], const Vec3& origin, double step,
                           std::span<const std::uint32_t> brick_of, std::uint32_t bricks) {
   const SolidPartsRef solids = solids_.ref();
@@ -30,7 +31,7 @@ void FieldInside::lay_out(const std::uint32_t (&size)[3], const Vec3& origin, do
   nodes_ = std::make_unique_for_overwrite<std::uint32_t[]>(std::size_t{bricks} * kBrickWords);
 }
 
-/// A node that is farther from the surface than its neighbour is from it says what that one is.
+/// If a neighbour is farther from the surface than from a node, both are inside or both outside.
 void FieldInside::make_brick(std::uint32_t brick, const Vec3& corner, double voxel,
                              const float* squared) {
   constexpr std::uint32_t kRow = ModelFieldRef::kRow;

@@ -11,22 +11,22 @@
 
 namespace clearway {
 
-/// Which nodes and coarse cells of a ModelField lie inside solids (docs/design/solids.md).
+/// Knows which nodes and coarse cells of a ModelField lie inside solids (docs/design/solids.md).
 class FieldInside {
  public:
   static constexpr std::uint32_t kBrickWords =
       FieldInsideRef::words_for(ModelFieldRef::kBrickNodes);
   static constexpr std::uint64_t kBrickBytes = kBrickWords * sizeof(std::uint32_t);
 
-  /// Outlives it.
+  /// solids: must outlive this object.
   explicit FieldInside(const SolidParts& solids) : solids_(solids) {}
 
-  /// Makes room for bricks. size, origin, step: of the coarse nodes; brick_of: kNoBrick for the
-  /// cells that no surface is near.
+  /// Makes room for bricks and finds the cells that are inside. size, origin, step: those of the
+  /// coarse nodes; brick_of: kNoBrick for cells without a nearby surface.
   void lay_out(const std::uint32_t (&size)[3], const Vec3& origin, double step,
                std::span<const std::uint32_t> brick_of, std::uint32_t bricks);
 
-  /// corner, voxel, squared: as of BrickNearest::find.
+  /// Finds the nodes of a brick that are inside. corner, voxel, squared: as for BrickNearest::find.
   void make_brick(std::uint32_t brick, const Vec3& corner, double voxel, const float* squared);
 
   FieldInsideRef ref() const { return {solids_.ref(), cells_.data(), nodes_.get()}; }

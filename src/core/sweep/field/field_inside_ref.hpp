@@ -6,13 +6,14 @@
 
 namespace clearway {
 
-/// What a field knows of solids, where it lies, on the host or on a device. Does not own it.
+/// View of a FieldInside on the host or on a device. Does not own it.
 struct FieldInsideRef {
   SolidPartsRef solids;
-  const std::uint8_t* cells = nullptr;   ///< 1 for a coarse cell without a brick that is inside
-  const std::uint32_t* nodes = nullptr;  ///< a bit for a node, brick after brick
+  const std::uint8_t* cells = nullptr;  ///< 1 for each coarse cell that has no brick and is inside
+  /// One bit for each node, 1 if it is inside; brick after brick
+  const std::uint32_t* nodes = nullptr;
 
-  /// Words of the bits of a brick.
+  /// Number of words that hold one bit for each node of a brick.
   CLEARWAY_HD static constexpr std::uint32_t words_for(std::uint32_t brick_nodes) {
     return (brick_nodes + 31) / 32;
   }

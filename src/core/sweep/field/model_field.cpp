@@ -13,23 +13,25 @@
 namespace clearway {
 namespace {
 
-/// The coarse lattice reaches this many of its steps beyond the model.
+/// Margin of the coarse lattice around the model, in its own steps.
 constexpr double kMarginSteps = 3;
-/// A voxel is no smaller than this many spacings of the model's points, between half the radius and
+/// Least voxel in spacings of the model's points; the result is kept between half the radius and
 /// twice the radius.
 constexpr double kVoxelSpacings = 1.5;
 constexpr std::uint64_t kCoarseNodeBytes = 8;
-/// A node takes a search for the nearest triangle, of some microseconds: no more coarse ones.
+/// Greatest number of coarse nodes for a surface, because each takes a search for the nearest
+/// triangle, of some microseconds.
 constexpr double kMostSurfaceNodes = 1 << 17;
-/// A surface has no spacing to go by: this many voxels, or more where they are close to the radius,
-/// cost about as much as the exact tests that finer ones would spare (measured).
+/// Number of voxels for a surface, which has no spacing to go by; more if their size is close to
+/// the radius. This many cost about as much as the exact tests that finer voxels would save
+/// (measured).
 constexpr double kSurfaceVoxels = 1 << 19;
-/// A lattice of up to this many nodes costs next to nothing, so its voxel is halved down to what
-/// the model's points are worth.
+/// Number of nodes up to which a lattice costs next to nothing, so that its voxel is halved down to
+/// what the spacing of the model's points justifies.
 constexpr double kCheapNodes = 1 << 17;
 
-/// For a reach the coarse lattice is wider, up to this many nodes. Coarse bounds are close from
-/// kCloseSteps coarse steps on: at a distance d they miss at most 3/8 step^2 / d.
+/// Greatest number of nodes up to which the coarse lattice is widened for a reach. Coarse bounds
+/// are close from kCloseSteps coarse steps on: at a distance d they miss at most 3/8 step^2 / d.
 constexpr double kMostWideNodes = 1 << 18;
 constexpr double kCloseSteps = 2;
 
@@ -39,7 +41,8 @@ ModelField::ModelField(const ModelTree& tree, double radius, const ModelFieldOpt
                        int threads)
     : ModelField(&tree, tree.box(), tree.spacing(), radius, options, threads) {}
 
-/// A surface has no spacing between points that would make a finer field useless.
+/// The spacing is 0, because a surface has no spacing between points that would make a finer field
+/// useless.
 ModelField::ModelField(const TriangleTree& tree, double radius, const ModelFieldOptions& options,
                        int threads)
     : ModelField(&tree, tree.box(), 0, radius, options, threads) {}
@@ -81,7 +84,7 @@ void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOpt
     chosen /= 2;
   }
   const double wanted = chosen / options.fineness;
-  // A field much finer than the model's points, or than their rounding, serves nobody.
+  // A field much finer than the model's points, or than their rounding, is of no use.
   const double least = 1e-7 * (length(extent) + length(box.hi) + length(box.lo)) + 1e-100;
   voxel_ = std::max(options.voxel > 0 ? options.voxel : wanted, least);
   const auto coarse_bytes = [&] {
@@ -96,7 +99,7 @@ void ModelField::choose_voxel(double spacing, double radius, const ModelFieldOpt
   while (coarse_bytes() > most) voxel_ *= 2;
 }
 
-/// How far from the model bricks are needed.
+/// The distance from the model up to which bricks are needed, metres.
 double ModelField::band(double radius, double reach) const {
   return std::max(radius, std::min(reach, kCloseSteps * coarse_)) + 2 * voxel_;
 }
@@ -153,7 +156,8 @@ void ModelField::fill_coarse_from(const ModelTreeOf<Element>& tree, bool with_ne
   }
 }
 
-/// Numbers the coarse cells in which a distance of at most `band` can occur.
+/// Numbers the coarse cells in which a distance of at most `band` can occur, and returns how many
+/// there are.
 std::uint32_t ModelField::mark_bricks(double band, int threads) {
   brick_of_.assign(coarse_squared_.size(), kNoBrick);
   std::visit([&](const auto* tree) { mark_bricks_from(*tree, band, threads); }, tree_);
@@ -209,7 +213,8 @@ void ModelField::make_brick(std::size_t cell) const {
   state.store(brick, std::memory_order_release);
 }
 
-/// The first that asks makes it. Others wait: what they find must not depend on who was first.
+/// Returns the brick of a cell, made by the thread that asks first. Other threads wait, because
+/// what they find must not depend on who was first.
 std::uint32_t ModelField::made_brick(std::size_t cell) const {
   const std::atomic_ref state(brick_of_[cell]);
   std::uint32_t seen = state.load(std::memory_order_acquire);
@@ -227,7 +232,8 @@ std::uint32_t make_brick_of(const ModelField& field, std::size_t cell) {
   return field.made_brick(cell);
 }
 
-/// Of a node's position and of the root of its square (docs/design/numerics.md, "Model field").
+/// Bound of the error of a node's position and of the root of its square, metres
+/// (docs/design/numerics.md, "Model field").
 double ModelField::node_error() const {
   const Vec3 extent = model_.size();
   const double of_place = 8 * (length(model_.hi) + length(model_.lo) + margin_);

@@ -13,27 +13,33 @@
 namespace clearway {
 
 struct ModelFieldOptions {
-  double voxel = 0;     ///< metres; 0: chosen from the radius. Doubled until it fits `most_bytes`
-  double fineness = 1;  ///< of the voxel that is chosen: 2 makes it half as large
-  bool cheaply_finer = false;  ///< a smaller voxel where it costs next to nothing
-  double reach = 0;  ///< metres: good bounds and near points out to here; 0: to the radius only
+  /// Step of the fine lattice, metres; 0: chosen from the radius. Doubled until the field fits
+  /// `most_bytes`
+  double voxel = 0;
+  double fineness = 1;         ///< divisor of the voxel that is chosen: 2 makes it half as large
+  bool cheaply_finer = false;  ///< whether to take a smaller voxel if it costs next to nothing
+  double reach = 0;  ///< metres up to which bounds are good and near points known; 0: the radius
   std::uint64_t most_bytes = std::uint64_t{64} << 20;
-  bool by_need = false;  ///< bricks are made when they are first asked for; on the host only
-  const SolidParts* solids = nullptr;  ///< of the surface, if any; outlives the field
+  /// Whether bricks are made when they are first asked for; on the host only
+  bool by_need = false;
+  /// Solids of the surface, or null; they must outlive the field
+  const SolidParts* solids = nullptr;
 };
 
 /// Bounds of d_M, the distance from any position in the model's frame to the nearest point of the
 /// model or of its surface.
-/// Lattice nodes hold exact squared distances, rounded down to float: a coarse lattice around the
-/// whole model, and bricks of a fine one (kBrick times finer), with the nearest element too,
-/// wherever a distance within the band can occur. No memory for empty space but the coarse lattice.
-/// With a reach, coarse nodes keep their nearest element too, and every position has one near it.
-/// Between nodes: docs/design/numerics.md, "Model field". Source of the idea: the inverted
+/// Lattice nodes hold exact squared distances, rounded down to float. There is a coarse lattice
+/// around the whole model, and bricks of a fine one (kBrick times finer), which also hold the
+/// nearest element, wherever a distance within the band can occur. Empty space takes no memory
+/// beyond the coarse lattice. With a reach, coarse nodes hold their nearest element too, so that
+/// every position has one near it.
+/// Bounds between nodes: docs/design/numerics.md, "Model field". Source of the idea: the inverted
 /// trajectory with a distance field of the tool (Sullivan et al. 2012).
 class ModelField {
  public:
-  /// Exact for lattice nodes by nearest-neighbour search in `tree`, which must outlive the field.
-  /// radius: the band around the model in which the descent ends. Uses OpenMP with `threads`.
+  /// Makes the field. Its lattice nodes are exact, by nearest-neighbour search in `tree`, which
+  /// must outlive the field. radius: the band around the model in which the descent ends, metres.
+  /// Uses OpenMP with `threads`.
   ModelField(const ModelTree& tree, double radius, const ModelFieldOptions& options, int threads);
   ModelField(const TriangleTree& tree, double radius, const ModelFieldOptions& options,
              int threads);
@@ -41,23 +47,24 @@ class ModelField {
   using Bounds = ModelFieldRef::Bounds;
   static constexpr std::uint32_t kNone = ModelFieldRef::kNone;
 
-  /// Valid while the field lives and stays where it is.
+  /// The field for look-ups. Valid while the field lives and is not moved.
   ModelFieldRef ref() const;
-  /// The same, but no look-up makes a brick: where there is none yet, bounds are coarse.
+  /// The field for look-ups that make no bricks: where there is none yet, bounds are coarse.
   ModelFieldRef ref_as_made() const;
   Bounds bounds(const Vec3& x) const { return ref().bounds(x); }
 
   double voxel() const { return voxel_; }
-  /// How far the lattice goes beyond the model at the most, metres.
+  /// Greatest distance that the lattice extends beyond the model, metres.
   double margin() const { return margin_; }
-  /// Of the question what is inside, metres of the model's frame; 0 without solids.
+  /// Rounding of the question whether a position is inside a solid, in metres of the model's frame;
+  /// 0 without solids.
   double inside_rounding() const { return inside_ ? inside_->rounding() : 0; }
-  /// Those not yet made included.
+  /// Number of bricks, including those not yet made.
   std::uint64_t bricks() const { return bricks_; }
-  /// Of all bricks, made or not.
+  /// Memory of the whole field in bytes, which counts all bricks, made or not.
   std::uint64_t allocated_bytes() const;
 
-  /// The number of the brick of that coarse cell, which is made now unless it was. Thread safe.
+  /// The number of the brick of a coarse cell; it is made now if it was not before. Thread safe.
   std::uint32_t made_brick(std::size_t cell) const;
 
  private:
@@ -66,7 +73,7 @@ class ModelField {
   static constexpr std::uint64_t kBrickBytes =
       kBrickNodes * (sizeof(float) + sizeof(std::uint32_t));
   static constexpr std::uint32_t kNoBrick = ModelFieldRef::kNoBrick;
-  // Of a brick in brick_of_ that is not there yet, beside its number.
+  // States of a brick that is not made yet; they share its word in brick_of_ with its number.
   static constexpr std::uint32_t kToBeMade = ModelFieldRef::kToBeMade;
   static constexpr std::uint32_t kBeingMade = kToBeMade >> 1;
   static constexpr std::uint32_t kBrickNumber = kBeingMade - 1;
@@ -96,17 +103,18 @@ class ModelField {
   const Tree tree_;
   const Box model_;
   const bool by_need_;
-  double voxel_ = 0;   // fine
-  double coarse_ = 0;  // kBrick * voxel_
+  double voxel_ = 0;   // step of the fine lattice, metres
+  double coarse_ = 0;  // step of the coarse lattice: kBrick * voxel_
   double margin_ = 0;
-  Vec3 origin_{};                                // of the coarse lattice
-  std::uint32_t size_[3]{};                      // coarse nodes along each axis
-  std::vector<float> coarse_squared_;            // [z][y][x]
-  std::vector<std::uint32_t> coarse_nearest_;    // likewise, with a reach
-  mutable std::vector<std::uint32_t> brick_of_;  // per coarse cell, [z][y][x]
+  Vec3 origin_{};                      // first node of the coarse lattice
+  std::uint32_t size_[3]{};            // number of coarse nodes along each axis
+  std::vector<float> coarse_squared_;  // squared distances of coarse nodes [z][y][x]
+  // Nearest elements of coarse nodes [z][y][x]; empty without a reach
+  std::vector<std::uint32_t> coarse_nearest_;
+  mutable std::vector<std::uint32_t> brick_of_;  // brick of each coarse cell, [z][y][x]
   std::uint32_t bricks_ = 0;
-  std::unique_ptr<float[]> distances_;        // squared, per brick [z][y][x]
-  std::unique_ptr<std::uint32_t[]> nearest_;  // likewise
+  std::unique_ptr<float[]> distances_;        // squared distances of bricks, each [z][y][x]
+  std::unique_ptr<std::uint32_t[]> nearest_;  // nearest elements of bricks, each [z][y][x]
   mutable std::optional<FieldInside> inside_;
 };
 

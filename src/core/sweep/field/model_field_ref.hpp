@@ -10,46 +10,48 @@ namespace clearway {
 
 class ModelField;
 
-/// A ModelField where it lies, on the host or on a device. Does not own it. Lattice nodes hold
-/// squared distances, rounded down.
+/// View of a ModelField on the host or on a device. Does not own it. Lattice nodes hold squared
+/// distances, rounded down.
 struct ModelFieldRef {
-  static constexpr std::uint32_t kBrick = 8;  ///< fine voxels along a coarse one
+  static constexpr std::uint32_t kBrick = 8;  ///< fine voxels along the side of a coarse cell
   static constexpr std::uint32_t kRow = kBrick + 1;
   static constexpr std::uint32_t kBrickNodes = kRow * kRow * kRow;
   static constexpr std::uint32_t kNoBrick = 0xffffffff;
-  static constexpr std::uint32_t kToBeMade = 0x80000000;  ///< a bit of a brick that is not there
+  /// Bit of a brick's number that is set while the brick is not made
+  static constexpr std::uint32_t kToBeMade = 0x80000000;
   static constexpr std::uint32_t kNone = 0xffffffff;
-  /// No place of a voxel is farther from its nearest node than the root of this, in voxels.
+  /// Bound of the squared distance from a place of a voxel to its nearest node, in squared voxels.
   static constexpr double kNearNode = 0.76;
 
   struct Bounds {
-    double squared_lower;  ///< <= d_M^2 up to the lattice's rounding slack (taken off)
-    std::uint32_t near;    ///< a model element near x, or kNone; never kNone with a reach
+    double squared_lower;  ///< at most d_M^2; the lattice's rounding slack is taken off
+    std::uint32_t near;    ///< a model element near x, or kNone; with a reach never kNone
   };
 
-  Box model;              ///< of the whole model
+  Box model;              ///< box of the whole model
   double coarse;          ///< step of the coarse lattice, metres
-  double voxel;           ///< of the fine one: coarse / kBrick
+  double voxel;           ///< step of the fine lattice, metres: coarse / kBrick
   double per_metre;       ///< 1 / coarse
-  double coarse_slack;    ///< what concave_bound() takes off, as a share
-  double fine_slack;      ///< likewise
-  Vec3 origin;            ///< of the coarse lattice
-  std::uint32_t size[3];  ///< coarse nodes along each axis
+  double coarse_slack;    ///< share that concave_bound() takes off in the coarse lattice
+  double fine_slack;      ///< share that concave_bound() takes off in the fine lattice
+  Vec3 origin;            ///< first node of the coarse lattice
+  std::uint32_t size[3];  ///< number of coarse nodes along each axis
   std::uint32_t bricks;
-  const float* coarse_squared;          ///< [z][y][x]
-  const std::uint32_t* coarse_nearest;  ///< likewise, or null
-  const std::uint32_t* brick_of;        ///< per coarse cell, [z][y][x]
-  const float* distances;               ///< per brick [z][y][x]
-  const std::uint32_t* nearest;         ///< likewise, the nearest model element
-  const ModelField* by_need;            ///< makes bricks that are asked for, on the host; or null
-  FieldInsideRef inside;                ///< of a model with solids
+  const float* coarse_squared;          ///< squared distances of coarse nodes [z][y][x]
+  const std::uint32_t* coarse_nearest;  ///< nearest elements of coarse nodes [z][y][x], or null
+  const std::uint32_t* brick_of;        ///< brick of each coarse cell, [z][y][x]
+  const float* distances;               ///< squared distances of bricks, each [z][y][x]
+  const std::uint32_t* nearest;         ///< nearest elements of bricks, each [z][y][x]
+  /// Makes bricks that are asked for, on the host; null: no look-up makes any
+  const ModelField* by_need;
+  FieldInsideRef inside;  ///< empty for a model without solids
 
   CLEARWAY_HD std::size_t coarse_nodes() const { return std::size_t{size[0]} * size[1] * size[2]; }
 
   CLEARWAY_HD Bounds bounds(const Vec3& x) const;
 
-  /// Whether a solid contains x, which bounds() proves to be farther from the surface than the
-  /// roundings of this question (docs/design/numerics.md, "Solids"). squared_lower: by bounds().
+  /// Whether a solid contains x, if bounds() proves x to be farther from the surface than the
+  /// roundings of this question (docs/design/numerics.md, "Solids"). squared_lower: from bounds().
   CLEARWAY_HD bool contains(const Vec3& x, double squared_lower) const;
 
  private:
@@ -62,7 +64,7 @@ struct ModelFieldRef {
 
 namespace field_detail {
 
-/// sum w_k f_k over the corners of a cell, given in the order x, then y, then z.
+/// Trilinear interpolation: sum w_k f_k over the corners of a cell, in the order x, then y, then z.
 CLEARWAY_HD inline double interpolated(const double (&f)[3], const double (&corner)[8]) {
   double along_x[4];
   for (int i = 0; i < 4; ++i) {
@@ -73,7 +75,8 @@ CLEARWAY_HD inline double interpolated(const double (&f)[3], const double (&corn
   return (1 - f[2]) * low + f[2] * high;
 }
 
-/// The corners of the cell whose first one is `first`.
+/// Loads the eight corners of a cell. first: its first corner; row, layer: steps to the next y and
+/// z.
 CLEARWAY_HD inline void load_corners(const float* first, std::size_t row, std::size_t layer,
                                      double (&corner)[8]) {
   for (int i = 0; i < 4; ++i) {
@@ -83,9 +86,9 @@ CLEARWAY_HD inline void load_corners(const float* first, std::size_t row, std::s
   }
 }
 
-/// d_M^2(x) - |x|^2 is a minimum of linear functions of x, hence concave: the interpolation of d^2
-/// exceeds d^2 by at most step^2 sum f (1 - f). The last term covers the rounding of all of it, and
-/// the errors of the nodes.
+/// Lower bound of d_M^2 from an interpolated value. d_M^2(x) - |x|^2 is a minimum of linear
+/// functions of x, hence concave, so the interpolation of d^2 exceeds d^2 by at most step^2 sum f
+/// (1 - f). The last term covers the rounding of this computation and the errors of the nodes.
 CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3], double step,
                                         double slack) {
   const double bend = f[0] * (1 - f[0]) + f[1] * (1 - f[1]) + f[2] * (1 - f[2]);
@@ -96,7 +99,8 @@ CLEARWAY_HD inline double concave_bound(double mean, const double (&f)[3], doubl
 
 }  // namespace field_detail
 
-/// place: in coarse steps from the origin, anywhere.
+/// The nearest element of the coarse node that is nearest to `place`, which is given in coarse
+/// steps from the origin and may lie anywhere.
 CLEARWAY_HD inline std::uint32_t ModelFieldRef::near_coarse_node(const double (&place)[3]) const {
   if (coarse_nearest == nullptr) return kNone;
   std::size_t at = 0;
@@ -109,7 +113,7 @@ CLEARWAY_HD inline std::uint32_t ModelFieldRef::near_coarse_node(const double (&
   return coarse_nearest[at];
 }
 
-/// ModelField::made_brick.
+/// Calls ModelField::made_brick().
 std::uint32_t make_brick_of(const ModelField& field, std::size_t cell);
 
 CLEARWAY_HD inline std::uint32_t ModelFieldRef::brick_at(std::size_t cell) const {
@@ -167,7 +171,8 @@ CLEARWAY_HD inline std::uint32_t ModelFieldRef::made_brick_at(std::size_t cell) 
 #endif
 }
 
-/// Where the node nearest to x is nearer than the surface, no wall is between them.
+/// If the node nearest to x is nearer than the surface, no wall lies between them, so the node's
+/// answer holds for x.
 CLEARWAY_HD inline bool ModelFieldRef::contains(const Vec3& x, double squared_lower) const {
   if (!inside.solids.lattice.has_in_box(x)) return false;
   const double whole[3] = {(x.x - origin.x) * per_metre, (x.y - origin.y) * per_metre,

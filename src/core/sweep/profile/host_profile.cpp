@@ -98,7 +98,7 @@ template <typename Element>
 std::uint64_t HostProfileOf<Element>::most_facts(const PackedCloud& cloud, std::uint64_t poses,
                                                  std::uint64_t cells, std::uint64_t poses_of_cell) {
   const std::uint64_t of_cell =
-      Search::parts_of_cell(cloud.blocks_per_cell()) * poses_of_cell;  // one a pose and part
+      Search::parts_of_cell(cloud.blocks_per_cell()) * poses_of_cell;  // one for each pose and part
   return std::min(cells * of_cell, poses + of_cell);
 }
 

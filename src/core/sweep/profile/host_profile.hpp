@@ -9,7 +9,7 @@
 
 namespace clearway {
 
-/// The values that ProfileBests refers to, as they are at the begin of a search.
+/// Owner of the values that ProfileBests refers to, with their values at the beginning of a search.
 class ProfileBestValues {
  public:
   template <typename Element>
@@ -27,7 +27,7 @@ class ProfileBestValues {
   std::vector<double> of_pose_, of_node_;
 };
 
-/// Of points with the same d2 keeps the one with the smallest source.
+/// Policy for ties: of points with the same d2 it keeps the one with the smallest source index.
 class SmallestSource {
  public:
   SmallestSource(const PackedCloud& cloud, std::vector<ProfileFact>& found)
@@ -49,35 +49,38 @@ class SmallestSource {
   std::uint64_t source_ = ~std::uint64_t{0};
 };
 
-/// The profile's search on the host, with the lanes of a warp as a loop.
+/// The profile's search on the host; the lanes of a warp are a loop.
 template <typename Element>
 class HostProfileOf {
  public:
-  /// All outlive it.
+  /// cloud and sweep must outlive this object.
   HostProfileOf(const PackedCloud& cloud, const SweepRefOf<Element>& sweep)
       : cloud_(cloud), sweep_(sweep) {}
 
-  /// Appends to `found` what the cells of a page have that no other point known is better than.
+  /// Appends to `found` the points of a page that are at least as near as any known point of their
+  /// pose.
   void search(const PageRef& page, const ProfileBests& bests, std::vector<ProfileFact>& found);
 
-  /// Finds the point with the smallest source among those of the fact's cell with the same d2.
+  /// Replaces a fact's point by the one with the smallest source index among the points of its cell
+  /// that have the same d2.
   void resolve(const PageRef& page, double limit, ProfileFact& fact);
 
-  /// Of what a device listed of a page keeps the best and resolves ties. A point that is far from
-  /// the best may be replaced by none.
+  /// Completes the facts that a device listed for a page: keeps the best ones of each pose and
+  /// resolves ties.
   void complete(const PageRef& page, std::vector<ProfileFact>& facts);
 
   SweepStatistics take_statistics();
 
-  /// Of a page of so many cells, none of whose nodes have more than `poses_of_cell` poses.
+  /// Greatest number of facts for a page of `cells` cells, if the nodes of a cell have at most
+  /// `poses_of_cell` poses.
   static std::uint64_t most_facts(const PackedCloud& cloud, std::uint64_t poses,
                                   std::uint64_t cells, std::uint64_t poses_of_cell);
 
  private:
   using Search = ProfileSearch<HostWarp, SmallestSource, Element>;
 
-  /// Of each pose those facts that no other betters; one_each: of several the one with the smallest
-  /// source.
+  /// Keeps, for each pose, the facts that no other fact betters. one_each: keeps only the fact with
+  /// the smallest source index.
   void keep_least(const PageRef& page, bool one_each, std::vector<ProfileFact>& facts) const;
 
   const PackedCloud& cloud_;

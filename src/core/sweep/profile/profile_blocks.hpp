@@ -9,15 +9,16 @@
 
 namespace clearway {
 
-/// Which blocks of a cell may hold the nearest point of poses: a bit a block, 32 blocks a word, a
-/// word a lane of one warp, on as many levels as a descent of the motion tree has.
+/// The blocks of a cell that may hold the nearest point of poses, for one warp: one bit for each
+/// block, 32 blocks in a word, one word for each lane, on as many levels as a descent of the motion
+/// tree has.
 template <typename Warp, typename Element>
 class ProfileBlocks {
  public:
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  /// Blocks of a cell that are searched together; larger cells are searched in parts.
+  /// Number of blocks of a cell that are searched together; larger cells are searched in parts.
   static constexpr std::uint32_t kPartBlocks = kWarpLanes * kWarpLanes;
   static constexpr std::uint32_t kLevels = 14;
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -27,7 +28,7 @@ class ProfileBlocks {
     double rho;
   };
 
-  /// What the lanes share.
+  /// The memory that the lanes share.
   struct Shared {
     Sphere words[kWarpLanes];
     std::uint32_t open[kLevels][kWarpLanes];
@@ -42,7 +43,8 @@ class ProfileBlocks {
         shared_(shared),
         statistics_(statistics) {}
 
-  /// From here on those of a part of a cell, all open at level 0. Whether there are any.
+  /// Begins a part of a cell, with all blocks that have points open at level 0. Returns whether the
+  /// part has any block.
   CLEARWAY_HD bool enter(std::uint32_t cell, std::uint32_t part) {
     cell_ = &page_.cell(cell);
     index_ = cell;
@@ -64,15 +66,17 @@ class ProfileBlocks {
     return true;
   }
 
-  /// Looks at the blocks open at a level, all at once at `pose`: those that may matter to poses
-  /// from which no model point is farther than delta are open at the next level. reach: a distance
-  /// beyond which nothing matters to these poses. Whether any block is left.
+  /// Looks at the blocks open at a level, all at once at `pose`. Those that may matter to poses at
+  /// which no model point is farther than delta from where it is at `pose` become open at the next
+  /// level. reach: a distance beyond which nothing matters to these poses. Returns whether any
+  /// block is left.
   CLEARWAY_HD bool look(double delta, std::uint32_t pose, std::uint32_t level, double reach) {
     inside_ = false;
     return look_at_open(delta, pose, level, reach);
   }
 
-  /// The same with those open at the next level that may hold points inside solids.
+  /// Looks at the blocks open at a level as look() does, but opens those that may hold points
+  /// inside solids.
   CLEARWAY_HD bool look_inside(double delta, std::uint32_t pose, std::uint32_t level) {
     inside_ = true;
     return look_at_open(delta, pose, level, sweep_.rounding);
@@ -80,28 +84,28 @@ class ProfileBlocks {
 
   CLEARWAY_HD Sphere sphere(std::uint32_t block) const { return sphere_of(block, 1); }
 
-  // After a look:
+  // Results of the last look:
 
-  /// As it was given, or what the blocks themselves keep the poses below, if that is less.
+  /// The reach that was given, or a smaller one if the blocks themselves prove it for these poses.
   CLEARWAY_HD double reach() const { return reach_; }
   CLEARWAY_HD void lower_reach(double reach) {
     if (reach < reach_) reach_ = reach;
   }
 
-  /// Whether anything within rho of where the field has this bound may matter.
+  /// Whether anything within rho of a place with this bound of the field may matter.
   CLEARWAY_HD bool matters(double rho, double squared_lower) const {
     return !farther(sweep_.motion.inverse_poses[pose_].least, squared_lower, reach_ + delta_ + rho);
   }
 
-  /// The block that seems to be the nearest, or kNone.
+  /// The block that seems to be nearest, or kNone.
   CLEARWAY_HD std::uint32_t nearest() const { return nearest_; }
 
   CLEARWAY_HD std::uint32_t word_count() const {
     return static_cast<std::uint32_t>(divide_up(count_, kWarpLanes));
   }
 
-  /// Of the blocks of a word that are open at a level, those that still matter with the reach as it
-  /// is now.
+  /// The blocks of a word that are open at a level and still matter with the present reach. except:
+  /// a block to be left out, or kNone.
   CLEARWAY_HD std::uint32_t still_open(std::uint32_t word, std::uint32_t level,
                                        std::uint32_t except) {
     std::uint32_t open = shared_.open[level][word];
@@ -116,8 +120,8 @@ class ProfileBlocks {
   }
 
  private:
-  /// Of the `count` blocks from `first` on those that have points to search, as bits. The box of
-  /// another one says nothing of how near a point is.
+  /// The blocks that have points to search, as bits, of the `count` blocks from `first` on. The box
+  /// of any other block says nothing of how near a point is.
   CLEARWAY_HD std::uint32_t with_points(std::uint32_t first, std::uint32_t count) const {
     if (!page_.shape.masked) return count >= kWarpLanes ? ~0U : (1U << count) - 1;
     std::uint32_t blocks = 0;
@@ -192,9 +196,10 @@ class ProfileBlocks {
     return keep != 0;
   }
 
-  /// The field's bound at the centre. upper: a distance that no point of the sphere exceeds at any
-  /// of the poses, give or take the rounding of a test. Asked for what is inside: 0 in place of the
-  /// bound where all of the sphere is, and no upper.
+  /// The field's bound at the centre of a sphere. upper: becomes a distance that no point of the
+  /// sphere exceeds at any of the poses, up to the rounding of a test. When looking for points
+  /// inside solids, returns 0 instead of the bound if the whole sphere is inside, and leaves
+  /// `upper` alone.
   CLEARWAY_HD double look_at(const Sphere& sphere, std::uint32_t lane, double& upper) {
     ++statistics_[lane].node_tests;
     const Vec3 x = sweep_.motion.inverse_poses[pose_].apply(sphere.centre);
@@ -221,13 +226,13 @@ class ProfileBlocks {
 
   const PageCell* cell_ = nullptr;
   const BlockBox* first_ = nullptr;
-  std::uint32_t index_ = 0;        ///< of the cell, in the page
-  std::uint32_t first_block_ = 0;  ///< of the part, in the cell
+  std::uint32_t index_ = 0;        ///< index of the cell in the page
+  std::uint32_t first_block_ = 0;  ///< first block of the part, in the cell
   std::uint32_t count_ = 0;
   double delta_ = 0;
   std::uint32_t pose_ = 0;
   double reach_ = 0;
-  bool inside_ = false;  ///< is asked for
+  bool inside_ = false;  ///< whether points inside solids are looked for
   std::uint32_t nearest_ = kNone;
   double nearest_squared_ = kInfinity;
 };

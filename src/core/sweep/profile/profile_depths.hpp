@@ -9,10 +9,11 @@
 
 namespace clearway {
 
-/// Of a profile the points of a cell that lie deepest inside solids, by one warp: a descent of the
-/// motion tree as that of ProfileSearch, whose blocks and ties it uses. Blocks go along that may
-/// hold points inside. Points are given up only where a bound proves every computed depth to be
-/// below the best of the pose, so that ties stay (docs/design/numerics.md, "Solids").
+/// Finds by one warp, for the poses of motion nodes, the points of a cell that lie deepest inside
+/// solids. It descends the motion tree as ProfileSearch does, whose blocks and ties it uses, and
+/// carries along the blocks that may hold points inside. Points are given up only if a bound proves
+/// every computed depth to be below the best of the pose, so that ties stay
+/// (docs/design/numerics.md, "Solids"). The search works on v, the negative of a squared depth.
 template <typename Warp, typename Ties, typename Element>
 class ProfileDepths {
  public:
@@ -20,7 +21,7 @@ class ProfileDepths {
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  /// All outlive it.
+  /// All arguments must outlive this object.
   CLEARWAY_HD ProfileDepths(const SweepRefOf<Element>& sweep, const PageRef& page,
                             const Quantisation& quantisation, const ProfileBests& bests,
                             Blocks& blocks, Ties& ties, PerLane<SweepStatistics>& statistics)
@@ -32,8 +33,8 @@ class ProfileDepths {
         ties_(ties),
         statistics_(statistics) {}
 
-  /// As ProfileSearch was entered. cell: in the page. first_point: of the part, in its cell;
-  /// first_slot: in the page.
+  /// Begins a part of a cell, which ProfileSearch has entered. cell: its index in the page;
+  /// first_point: the part's first point in the cell; first_slot: that point's slot in the page.
   CLEARWAY_HD void enter(std::uint32_t cell, std::uint32_t first_point, std::uint32_t first_slot) {
     cell_ = &page_.cell(cell);
     index_ = cell;
@@ -41,11 +42,11 @@ class ProfileDepths {
     first_slot_ = first_slot;
   }
 
-  /// All poses of a motion node: notes what is deepest.
+  /// Searches all poses of a motion node and notes the deepest points.
   CLEARWAY_HD void search(std::uint32_t top) {
     const MotionNode* nodes = sweep_.motion.nodes;
-    std::uint32_t later[Blocks::kLevels];  // halves still to be searched, by level
-    std::uint32_t level = 0, open = 0;     // open: a bit a level
+    std::uint32_t later[Blocks::kLevels];  // halves still to be searched, for each level
+    std::uint32_t level = 0, open = 0;     // open: one bit for each level that has such a half
     last_pose_ = kSweepNever;
     for (std::uint32_t at = top;;) {
       if (descends(nodes[at], level)) {
@@ -62,8 +63,9 @@ class ProfileDepths {
     }
   }
 
-  /// One pose, where v above `bound` do not matter, and those equal to it do. The least v found,
-  /// below 0, goes to the ties; otherwise infinity is returned.
+  /// Searches one pose, for which values v above `bound` do not matter, but those equal to it do.
+  /// Passes the least v found, which is below 0, to the ties and returns it; returns infinity if
+  /// there is none.
   CLEARWAY_HD double search_pose(std::uint32_t pose, std::uint32_t level, double bound) {
     bound_ = bound;
     found_ = kInfinity;
@@ -78,10 +80,11 @@ class ProfileDepths {
   }
 
  private:
-  /// Below, poses are looked at one by one.
+  /// Levels of the descent; below them, poses are looked at one by one.
   static constexpr std::uint32_t kPathLevels = Blocks::kLevels - 2;
 
-  /// Whether the halves of a node are to be searched.
+  /// Whether the halves of a node are to be searched. Searches the poses itself where they are not
+  /// divided further.
   CLEARWAY_HD bool descends(const MotionNode& node, std::uint32_t level) {
     if (node.count == 1) {
       search_single(node.mid, level);
@@ -107,7 +110,8 @@ class ProfileDepths {
     });
   }
 
-  /// No point of a block is deeper than its centre by more than rho.
+  /// Searches the points of a block, unless none can matter: no point of it is deeper than its
+  /// centre by more than rho.
   CLEARWAY_HD void search_block(std::uint32_t pose, std::uint32_t block) {
     if (bound_ < 0) {
       const typename Blocks::Sphere sphere = blocks_.sphere(block);
@@ -124,7 +128,7 @@ class ProfileDepths {
     }
   }
 
-  /// 32 points of a block, a lane a point.
+  /// Searches 32 points of a block, one by each lane.
   CLEARWAY_HD void search_points(std::uint32_t pose, std::uint32_t begin) {
     PerLane<double> least;
     Warp::each([&](std::uint32_t lane) {
@@ -134,7 +138,7 @@ class ProfileDepths {
       const Vec3 e = page_.position(quantisation_, *cell_, index);
       ++statistics_[lane].point_tests;
       if (!may_be_inside(pose, e)) return;
-      // What is less deep than the bound need not be exact: it stays above the bound.
+      // A depth below the bound need not be exact, because its value stays above the bound.
       std::uint32_t near = near_;
       const double squared = DepthAtPose<Element>(sweep_, e, statistics_[lane])
                                  .squared(pose, bound_ < 0 ? -bound_ : 0, near);
@@ -168,15 +172,15 @@ class ProfileDepths {
   PerLane<SweepStatistics>& statistics_;
 
   const PageCell* cell_ = nullptr;
-  std::uint32_t index_ = 0;  ///< of it, in the page
+  std::uint32_t index_ = 0;  ///< index of the cell in the page
   std::uint32_t first_point_ = 0, first_slot_ = 0;
-  std::uint32_t near_ = 0;                 ///< triangle of the solids to begin with
-  double bound_ = 0;                       ///< v above it do not matter at this pose
+  std::uint32_t near_ = 0;                 ///< triangle of the solids from which searches begin
+  double bound_ = 0;                       ///< values v above it do not matter at this pose
   double found_ = kInfinity;               ///< the least v found at the last pose
-  std::uint32_t last_pose_ = kSweepNever;  ///< that was searched
+  std::uint32_t last_pose_ = kSweepNever;  ///< last pose that was searched
 };
 
-/// In its place where a model has no solids.
+/// Takes the place of ProfileDepths for a model without solids.
 struct NoDepths {
   template <typename... Given>
   CLEARWAY_HD explicit NoDepths(Given&&...) {}

@@ -6,8 +6,8 @@
 
 namespace clearway {
 
-/// The profile of a page on a device, divided into tasks of about the same size, by one warp: one
-/// of a few parts of a planned motion node, against a part of its cell.
+/// Searches the profile of a page on a device, by one warp, in tasks of about the same size: a task
+/// is one of kNodeParts parts of a planned motion node against a part of its cell.
 template <typename Warp, typename Element = Vec3>
 class ProfileTask {
  public:
@@ -35,7 +35,7 @@ class ProfileTask {
     const auto listed = static_cast<std::uint32_t>(task / kNodeParts / cell_parts);
     const std::uint32_t cell = cell_of_node(listed);
     const PageCell& searched = page_.cell(cell);
-    if (listed - searched.first_node >= searched.node_count) return;  // of another body
+    if (listed - searched.first_node >= searched.node_count) return;  // planned for another body
     const std::uint32_t planned = page_.nodes(searched)[listed - searched.first_node];
     std::uint32_t node = 0;
     if (part_of_node(planned, node_part, node) && search_.enter(cell, part)) search_.search(node);
@@ -45,7 +45,7 @@ class ProfileTask {
   static constexpr std::uint32_t kNodeLevels = 3;
   static constexpr std::uint32_t kNodeParts = 1U << kNodeLevels;
 
-  /// The cell whose planned nodes hold that of the page's list, if any does.
+  /// The cell among whose planned nodes an entry of the page's node list is, if it is in any.
   CLEARWAY_HD std::uint32_t cell_of_node(std::uint32_t listed) const {
     std::uint32_t begin = 0, end = page_.shape.cells;
     while (end - begin > 1) {
@@ -55,7 +55,8 @@ class ProfileTask {
     return begin;
   }
 
-  /// The node kNodeLevels below, or the single pose above it where that is the first such part.
+  /// Finds the descendant kNodeLevels below a planned node that is this part. A single pose above
+  /// that level belongs to its first part only. Returns whether the part exists.
   CLEARWAY_HD bool part_of_node(std::uint32_t planned, std::uint32_t part,
                                 std::uint32_t& node) const {
     node = planned;

@@ -15,7 +15,8 @@ struct ProfileReaches {
   const ProfileBests& bests;
   double rounding;
 
-  /// A pose at which no model point is nearer than this has only d2 above `squared`.
+  /// A distance for a squared distance: a pose at which no model point is nearer than this has only
+  /// d2 above `squared`.
   CLEARWAY_HD double of(double squared) const { return std::sqrt(squared) * kRoundedUp + rounding; }
 
   CLEARWAY_HD double of_node(std::uint32_t index) const {
@@ -24,12 +25,12 @@ struct ProfileReaches {
                            : load_shared(bests.of_node + index);
   }
 
-  /// By one lane.
+  /// Lowers the reach of a motion node. To be called by one lane.
   CLEARWAY_HD void note(std::uint32_t index, double reach) const {
     if (reach < load_shared(bests.of_node + index)) store_shared(bests.of_node + index, reach);
   }
 
-  /// The larger reach of the halves is one of the node. By one lane.
+  /// Lowers the reach of a node to the larger reach of its halves. To be called by one lane.
   CLEARWAY_HD void note_halves(std::uint32_t index) const {
     note(index, greater_of(of_node(index + 1), of_node(motion.nodes[index].later)));
   }

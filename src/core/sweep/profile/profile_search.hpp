@@ -10,11 +10,11 @@
 
 namespace clearway {
 
-/// The points of a cell that are nearest to the model at the poses of motion nodes, by one warp: a
-/// descent of the motion tree that carries along which blocks are still open. Blocks and points
-/// are given up only where a bound proves every computed d2 to be above the best of each pose, so
-/// that ties stay (docs/design/numerics.md, "Profile"). With solids what is inside comes first.
-/// Ties: what becomes of points with the same d2 (UnresolvedTies, or SmallestSource).
+/// Finds by one warp the points of a cell that are nearest to the model at the poses of motion
+/// nodes. It descends the motion tree and carries along which blocks are still open. Blocks and
+/// points are given up only if a bound proves every computed d2 to be above the best of each pose,
+/// so that ties stay (docs/design/numerics.md, "Profile"). With solids, points inside are searched
+/// first. Ties: policy for points with the same d2 (UnresolvedTies or SmallestSource).
 template <typename Warp, typename Ties, typename Element>
 class ProfileSearch {
  public:
@@ -22,11 +22,11 @@ class ProfileSearch {
   template <typename Value>
   using PerLane = typename Warp::template PerLane<Value>;
 
-  /// What the lanes share.
+  /// The memory that the lanes share.
   struct Shared {
     typename Blocks::Shared blocks;
-    Vec3 point;       ///< the last one found
-    Element element;  ///< likewise
+    Vec3 point;       ///< the last point found
+    Element element;  ///< the model's element nearest to `point`
   };
 
   CLEARWAY_HD ProfileSearch(const SweepRefOf<Element>& sweep, const PageRef& page,
@@ -49,7 +49,7 @@ class ProfileSearch {
     return static_cast<std::uint32_t>(divide_up(blocks_per_cell, Blocks::kPartBlocks));
   }
 
-  /// From here on a part of a cell of the page is searched. Whether it has points.
+  /// Begins a part of a cell of the page. Returns whether the part has points.
   CLEARWAY_HD bool enter(std::uint32_t cell, std::uint32_t part) {
     cell_ = &page_.cell(cell);
     index_ = cell;
@@ -62,7 +62,7 @@ class ProfileSearch {
     return blocks_.enter(cell, part);
   }
 
-  /// All poses of a motion node.
+  /// Searches all poses of a motion node.
   CLEARWAY_HD void search(std::uint32_t top) {
     if constexpr (kIsSolid<Element>) {
       depths_.search(top);
@@ -70,7 +70,8 @@ class ProfileSearch {
     }
     const MotionNode* nodes = sweep_.motion.nodes;
     std::uint32_t path[kPathLevels];
-    std::uint32_t level = 0, is_later = 0;  // is_later: a bit a level
+    // is_later: one bit for each level, set in the later half
+    std::uint32_t level = 0, is_later = 0;
     path[0] = top;
     for (;;) {
       if (descends(path[level], level)) {
@@ -91,7 +92,7 @@ class ProfileSearch {
     }
   }
 
-  /// One pose, where d2 above `bound` do not matter, and those equal to it do.
+  /// Searches one pose, for which d2 above `bound` do not matter, but those equal to it do.
   CLEARWAY_HD void search_pose(std::uint32_t pose, double bound) {
     bound_ = bound;
     found_ = kInfinity;
@@ -105,10 +106,11 @@ class ProfileSearch {
   }
 
  private:
-  /// Below, poses are looked at one by one.
+  /// Levels of the descent; below them, poses are looked at one by one.
   static constexpr std::uint32_t kPathLevels = Blocks::kLevels - 2;
 
-  /// Looks at a node, searches what can be searched, and says whether its halves are to be.
+  /// Looks at a node, searches it if it is not divided further, and returns whether its halves are
+  /// to be searched.
   CLEARWAY_HD bool descends(std::uint32_t index, std::uint32_t level) {
     const MotionNode& node = sweep_.motion.nodes[index];
     if (node.count == 1) {
@@ -128,7 +130,7 @@ class ProfileSearch {
     return false;
   }
 
-  /// A single pose, whose open blocks are those of the level.
+  /// Searches a single pose, whose open blocks are those of the level.
   CLEARWAY_HD void search_single(std::uint32_t pose, std::uint32_t level) {
     bound_ = Warp::once([&] { return load_shared(bests_.of_pose + pose); });
     if (kIsSolid<Element> && bound_ < 0) {
@@ -137,7 +139,7 @@ class ProfileSearch {
     }
     if (last_pose_ != kSweepNever && last_pose_ + 1 == pose &&
         sweep_.motion.poses[pose] == sweep_.motion.poses[last_pose_]) {
-      last_pose_ = pose;  // a stop: what was found is the same
+      last_pose_ = pose;  // the pose repeats the last one, so what was found is the same
       if (was_found_ && found_ <= bound_) keep(pose);
       return;
     }
@@ -158,7 +160,7 @@ class ProfileSearch {
     });
   }
 
-  /// The blocks that are open at a level, the nearest first.
+  /// Searches the blocks that are open at a level, the nearest first.
   CLEARWAY_HD void search_blocks(std::uint32_t pose, std::uint32_t level) {
     found_ = kInfinity;
     const std::uint32_t first = blocks_.nearest();
@@ -178,7 +180,8 @@ class ProfileSearch {
     }
   }
 
-  /// 32 points of a block, a lane a point: first what the field names as near, then what is open.
+  /// Searches 32 points of a block, one by each lane: first against the element that the field
+  /// names as near, then, if still open, against the model's tree.
   CLEARWAY_HD void search_points(std::uint32_t pose, std::uint32_t begin) {
     PerLane<Vec3> e;
     PerLane<Element> m;
@@ -229,7 +232,7 @@ class ProfileSearch {
     return true;
   }
 
-  /// Offers every model point that may have a d2 of at most the best.
+  /// Tests a point against every model element that may have a d2 of at most the best.
   CLEARWAY_HD void search_point(std::uint32_t pose, const Vec3& e, double& least,
                                 Element& near) const {
     const InversePose& back = sweep_.motion.inverse_poses[pose];
@@ -247,13 +250,14 @@ class ProfileSearch {
         });
   }
 
-  /// Model points beyond it, seen from the point pulled back, have only d2 above what is known.
+  /// Square of a distance from the point pulled back: model points beyond it have only d2 above the
+  /// best that is known.
   CLEARWAY_HD double squared_ball(const InversePose& back, double least) const {
     const double ball = reaches_.of(least < bound_ ? least : bound_) / back.least * kRoundedUp;
     return ball * ball * kRoundedUp;
   }
 
-  /// The least of the lanes' d2, where nothing known is better.
+  /// Takes the least d2 of the lanes, unless a known one is better.
   CLEARWAY_HD void take(std::uint32_t begin, PerLane<double>& least, PerLane<Vec3>& e,
                         PerLane<Element>& m) {
     const double squared = Warp::least(least);
@@ -285,12 +289,13 @@ class ProfileSearch {
   Blocks blocks_;
 
   const PageCell* cell_ = nullptr;
-  std::uint32_t index_ = 0;                ///< of it, in the page
-  std::uint32_t first_point_ = 0;          ///< of the part, in its cell
-  std::uint32_t first_slot_ = 0;           ///< likewise, in the page
-  double bound_ = 0;                       ///< d2 above it do not matter at this pose
-  double found_ = kInfinity;               ///< the least d2 found at the last pose
-  std::uint32_t last_pose_ = kSweepNever;  ///< that was searched, with what was found
+  std::uint32_t index_ = 0;        ///< index of the cell in the page
+  std::uint32_t first_point_ = 0;  ///< first point of the part, in its cell
+  std::uint32_t first_slot_ = 0;   ///< slot of the first point, in the page
+  double bound_ = 0;               ///< values of d2 above it do not matter at this pose
+  double found_ = kInfinity;       ///< the least d2 found at the last pose
+  /// Last pose that was searched, if what it found is still known
+  std::uint32_t last_pose_ = kSweepNever;
   bool was_found_ = false;
   bool has_guess_ = false;
   std::conditional_t<kIsSolid<Element>, ProfileDepths<Warp, Ties, Element>, NoDepths> depths_;

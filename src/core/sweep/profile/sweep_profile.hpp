@@ -9,22 +9,24 @@
 
 namespace clearway {
 
-/// What is known of every pose so far, where all who search share it: on the host, or on one
-/// device. A value that is out of date is larger, which only costs time.
+/// Least values known of every pose so far, shared by all who search on the host or on one device.
+/// A value that is out of date is larger, which only costs time.
 struct ProfileBests {
-  double limit;     ///< the square of the distance asked for
-  double* of_pose;  ///< least d2 found, at first `limit`
-  double* of_node;  ///< a distance beyond which nothing matters to any pose of a motion node
+  double limit;     ///< square of the distance asked for
+  double* of_pose;  ///< least d2 found for each pose, initially `limit`
+  double* of_node;  ///< for each motion node, a distance beyond which nothing matters to its poses
 };
 
-/// Of a page under search on a device: where found points go. What finds no room is counted.
+/// Where the points found go, for a page under search on a device. Points that find no room are
+/// counted.
 struct ProfileList {
   ProfileFact* facts;
   ProfileCounts* counts;
   std::uint32_t capacity;
 };
 
-/// Of several points with the same d2 takes any, and says so: no source is at hand.
+/// Policy for ties on a device, where no source index is at hand: takes any of several points with
+/// the same d2, and marks the fact as tied.
 class UnresolvedTies {
  public:
   CLEARWAY_HD explicit UnresolvedTies(const ProfileList& list) : list_(list) {}
@@ -32,13 +34,13 @@ class UnresolvedTies {
   CLEARWAY_HD void enter_cell(std::uint32_t, const PageCell&) {}
   CLEARWAY_HD void restart() { points_ = 0; }
 
-  /// Points `first` + i of a page, for each bit i, that have the least d2 found so far.
+  /// Adds points with the least d2 found so far: point `first` + i of the page for each bit i.
   CLEARWAY_HD void add(std::uint32_t first, std::uint32_t bits) {
     if (points_ == 0) point_ = first + lowest_bit(bits);
     points_ += count_of(bits);
   }
 
-  /// By one lane.
+  /// Lists the point found for a pose. To be called by one lane.
   CLEARWAY_HD void keep([[maybe_unused]] std::uint32_t pose,
                         [[maybe_unused]] double squared) const {
 #ifdef __CUDA_ARCH__

@@ -6,7 +6,7 @@
 namespace clearway {
 namespace {
 
-/// Gauss and Legendre's rule of eight places on [-1, 1], one half of it.
+/// The Gauss-Legendre rule with eight places on [-1, 1], of which this is one half.
 struct Node {
   double place, weight;
 };
@@ -26,7 +26,8 @@ double by_eight_places(const PositionCurve& curve, double from, double to) {
   return sum * half;
 }
 
-/// Deep enough for a cusp: beyond it the interval has no parameters left that differ.
+/// Greatest number of halvings, deep enough for a cusp: beyond it no two parameters of the interval
+/// differ.
 constexpr int kMostHalvings = 40;
 
 double refined(const PositionCurve& curve, double from, double to, double whole, int halvings) {
@@ -50,7 +51,7 @@ double parameter_at(const PositionCurve& curve, double length, double whole) {
   if (!(length < whole)) return 1;
   double low = 0, high = 1, at = length / whole;
   double low_length = 0;
-  // Halving alone would end after 60 tries.
+  // Halving alone would end after 60 tries, so this many always suffice.
   for (int tries = 0; tries < 120; ++tries) {
     const double here = low_length + arc_length(curve, low, at);
     const double missing = length - here;

@@ -9,7 +9,7 @@
 namespace clearway {
 namespace {
 
-/// "poses 0-99, 901-1000", or the first few of many such runs.
+/// The poses as text, such as "poses 0-99, 901-1000", or the first few of many such runs.
 std::string listed(const std::vector<std::uint64_t>& indices) {
   constexpr std::size_t kMost = 4;
   const auto ranges = number_ranges(indices);
@@ -20,10 +20,11 @@ std::string listed(const std::vector<std::uint64_t>& indices) {
   return ranges.size() > kMost ? text + " and others" : text;
 }
 
-/// To a millimetre.
+/// A length in metres as text, rounded to a millimetre.
 std::string metres_text(double metres) { return format_number(std::round(metres * 1e3) / 1e3); }
 
-/// Whether ascending poses are those at the beginning of the path, those at its end, or both.
+/// Whether the given poses, which ascend, all belong to runs at the beginning or the end of the
+/// path.
 bool only_at_ends(const std::vector<std::uint64_t>& poses, std::size_t count) {
   std::size_t first = 0, last = 0;
   while (first < poses.size() && poses[first] == first) ++first;
@@ -60,8 +61,9 @@ std::vector<Message> doubts_about(const FollowedPath& followed, const PathStatio
     tell(Message::Severity::kWarning, code, poses, what);
   };
   const bool pivots = std::holds_alternative<BodyPivots>(mount);
-  // A wagon on pivots leaves the ends of any path: the verdict says how much of it was searched. A
-  // body that is missing on most of it is another matter, because the answer is hardly about it.
+  // A wagon on pivots leaves the ends of any path, and the verdict says how much of it was
+  // searched. A body that is missing on most of the path is different, because the answer is hardly
+  // about it.
   const bool mostly = followed.off_path.size() > count / 2;
   const bool expected = !mostly && only_at_ends(followed.off_path, count);
   tell(expected ? Message::Severity::kNote : Message::Severity::kWarning, "body-off-path",

@@ -13,13 +13,13 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 enum State : std::uint8_t { kOffPath = 1, kUndefined = 2, kFolded = 4, kTurned = 8 };
 
-/// Cosine from which on two axes count as along each other: 60 degrees.
+/// Cosine from which on two axes count as along each other: that of 60 degrees.
 constexpr double kAlong = 0.5;
-/// Sine from which on an axis counts as across another: 30 degrees.
+/// Sine from which on an axis counts as across another: that of 30 degrees.
 constexpr double kAcross = 0.5;
-/// Chords of a smaller share of the way between the pivots have no direction that means anything.
+/// Least chord, as a share of the way between the pivots, whose direction means anything.
 constexpr double kLeastChord = 1e-6;
-/// The same for the up direction beside the chord: its sine.
+/// Least sine between the up direction and the chord for the up direction to mean anything.
 constexpr double kLeastUp = 1e-6;
 
 Eigen::Vector3d position_of(const Pose& pose) {
@@ -39,7 +39,7 @@ Pose pose_of(const Eigen::Vector3d& x, const Eigen::Vector3d& up, const Eigen::V
   return pose;
 }
 
-/// A body at one pose of the path.
+/// The pose of a body that belongs to one pose of the path.
 struct BodyPose {
   Pose pose{};
   std::uint8_t state = 0;
@@ -52,7 +52,7 @@ BodyPose at_station(const PathStations& path, std::size_t i, const BodyStation& 
   body.pose = path.pose_at(*place);
   const Vec3 way = path.direction_at(*place);
   const Eigen::Vector3d along(way.x, way.y, way.z);
-  // A path that is driven backwards has the places ahead behind the model.
+  // On a path that is driven backwards, places ahead are behind the model.
   const bool backwards = along.dot(axis_of(body.pose, 0)) < -kAlong * along.norm();
   if (station.at != 0 && backwards) body.state = kTurned;
   return body;
@@ -81,7 +81,7 @@ BodyPose on_pivots(const PathStations& path, std::size_t i, const BodyPivots& pi
 
 void refuse_mirroring(const PathStations& path, const BodyMount& mount) {
   if (!std::holds_alternative<BodyPivots>(mount) || path.poses().empty()) return;
-  // One that mirrors by turns was refused before.
+  // Paths of which only some poses mirror were refused before.
   if (Eigen::Map<const RowMajor>(path.poses()[0].rotation).determinant() > 0) return;
   throw InputError(
       "the poses mirror the model; a body on two pivots is placed by a rotation; expected "

@@ -11,22 +11,26 @@
 
 namespace clearway {
 
-/// The poses of a body that follows a path. Indices count the path's poses and ascend.
+/// The poses of a body that follows a path. Indices are those of the path's poses, ascending.
 struct FollowedPath {
-  std::vector<Pose> poses;        ///< those there are
-  std::vector<std::uint64_t> of;  ///< the path's pose of each
+  std::vector<Pose> poses;        ///< the poses that the body has
+  std::vector<std::uint64_t> of;  ///< for each of `poses`, the index of the path's pose
 
-  std::vector<std::uint64_t> off_path;   ///< no pose: a station is off the path
-  std::vector<std::uint64_t> undefined;  ///< no pose: the chord has no direction, or points up
-  std::vector<std::uint64_t> folded;     ///< the chord is shorter than half of the way between
-  std::vector<std::uint64_t> turned;     ///< the path's axes are not about the body's
+  /// Poses without a body's pose, because a station is off the path
+  std::vector<std::uint64_t> off_path;
+  /// Poses without a body's pose, because the chord has no direction or points up
+  std::vector<std::uint64_t> undefined;
+  /// Poses whose chord is shorter than half of the way between its pivots
+  std::vector<std::uint64_t> folded;
+  std::vector<std::uint64_t> turned;  ///< poses at which the path's axes are far from the body's
 };
 
-/// Throws InputError for pivots on a path that mirrors the model. docs/design/bodies.md.
+/// The poses that a body has on the path. Throws InputError for pivots on a path that mirrors the
+/// model. docs/design/bodies.md.
 FollowedPath follow_path(const PathStations& path, const BodyMount& mount, int threads);
 
-/// Warnings of what is missing or odd in it; a note where stations are off the path at its ends
-/// only, and on no more than half of it. name: whose poses these are, for the texts.
+/// Warnings of what is missing or odd in a followed path; only a note if stations are off the path
+/// just at its ends, and on no more than half of it. name: the body's name for the texts.
 std::vector<Message> doubts_about(const FollowedPath& followed, const PathStations& path,
                                   const BodyMount& mount, const std::string& name);
 

@@ -13,7 +13,7 @@
 namespace clearway {
 namespace {
 
-/// Rounding of stations: of 1e6 lengths of ways, and of a station plus a distance.
+/// Rounding of stations, in metres: of the sum of 1e6 ways, and of a station plus a distance.
 constexpr double kRounding = 1e-9;
 
 std::string two_poses(std::size_t from) {
@@ -27,7 +27,7 @@ bool mirrors(const Pose& pose) {
 
 Vec3 vec3_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// How far the origin of the model's frame moves on each way: a station is to depend on the path,
+/// How far the origin of the model's frame moves on each way, so that a station depends on the path
 /// and on no model.
 std::vector<double> distances_of(std::span<const Pose> poses) {
   std::vector<double> distances;
@@ -49,7 +49,8 @@ std::vector<double> distances_of(std::span<const Pose> poses) {
   return distances;
 }
 
-/// Sums as if with twice the digits (Neumaier): a path may have 1e6 ways.
+/// Sums of the first 0, 1, 2, ... lengths, as if with twice the digits (Neumaier), because a path
+/// may have 1e6 ways.
 std::vector<double> sums_of(const std::vector<double>& lengths) {
   std::vector<double> sums{0};
   double sum = 0, lost = 0;
@@ -97,7 +98,8 @@ Pose PathStations::pose_at(const Place& place) const {
 }
 
 Vec3 PathStations::direction_at(const Place& place) const {
-  // A stop has no direction of its own: that of the next way counts, or else of the last one.
+  // A stop has no direction of its own, so that of the next way counts, or else that of the last
+  // one.
   std::size_t way = place.way;
   while (way < lengths_.size() && !(lengths_[way] > 0)) ++way;
   if (way < lengths_.size()) {
