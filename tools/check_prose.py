@@ -3,6 +3,8 @@
 
 It fails, with file and line, on
 - a relative link or anchor in any Markdown file that leads nowhere,
+- a path of the sources, such as `src/core/sweep`, in any Markdown file that is no folder and no file,
+  with or without its ending,
 - a command or option in README.md or docs/guide that the program does not have,
 - an option of a program that docs/guide does not describe,
 - a code of a warning or note that the sources have and docs/guide/warnings.md does not list, or
@@ -29,6 +31,8 @@ from prose.program import OPTION, Program
 
 OUTPUT_LANGUAGES = {"text", "json", "csv", "console"}
 PREFIXES = {"$", "time", "nice", "sudo"}
+SOURCE_PATH = re.compile(r"(?:src|include|tools|tests|examples|cmake|docs)/[\w./-]*\w")
+ENDINGS = ("", ".hpp", ".cpp", ".cu", ".py", ".sh")
 
 
 class Checker:
@@ -57,6 +61,8 @@ class Checker:
         for path, blocks in self.blocks.items():
             name = str(path.relative_to(self.root))
             self._check_links(path, name, blocks)
+            if name != "CHANGELOG.md":  # which names files of earlier versions too
+                self._check_source_paths(name, blocks)
             if name == "README.md" or name.startswith("docs/guide/"):
                 for block in blocks:
                     if block.kind != "code":
@@ -73,6 +79,19 @@ class Checker:
             for target in markdown.link_targets(block):
                 if not re.match(r"([a-z][a-z0-9+.-]*:|//)", target):
                     self._check_target(path, f"{name}:{block.line}", unquote(target))
+
+    def _check_source_paths(self, name, blocks):
+        for block in blocks:
+            if block.kind == "code":
+                continue
+            for span in markdown.CODE_SPAN.finditer(block.text):
+                if (SOURCE_PATH.fullmatch(span[2]) and "NAME" not in span[2]
+                        and not self._is_source(span[2])):
+                    self.problems.append(f"{name}:{block.line}: {span[2]}: no such file or folder")
+
+    def _is_source(self, path):
+        return (self.root / path).is_dir() or any(
+            self.root / (path + ending) in self.files for ending in ENDINGS)
 
     def _check_target(self, path, where, target):
         file, _, anchor = target.partition("#")

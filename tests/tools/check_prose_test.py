@@ -123,6 +123,13 @@ class CheckProse(unittest.TestCase):
         self.append("README.md", "\nOne. Two.\n" + "word " * 80 + "\n")
         self.assert_clean()
 
+    def test_a_path_of_the_sources_that_is_nowhere(self):
+        self.write("src/core/sweep.hpp", "")
+        self.append("README.md", "\n`src/core`, `src/core/sweep`, `src/NAME.cpp` and `src/core/sweep.hpp`.\n")
+        self.assert_clean()
+        self.append("README.md", "\nIn `src/core/weep`.\n")
+        self.assert_fault("src/core/weep: no such file or folder")
+
     def test_a_word_that_a_term_replaces(self):
         self.write("docs/design/glossary.md", GLOSSARY)
         self.assert_clean()
