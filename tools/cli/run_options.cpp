@@ -168,7 +168,7 @@ void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& length
       ->check(CLI::IsMember({"exact", "float"}));
 }
 
-/// Of "2/7"; of another text one that is not valid.
+/// The shard that "2/7" names; for any other text a shard that is not valid.
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = std::min(text.find('/'), text.size());
   const auto number = parse_count(text.substr(0, slash));

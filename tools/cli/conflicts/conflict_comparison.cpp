@@ -60,7 +60,7 @@ struct ComparedSide {
   std::vector<std::uint32_t> conflict_of;
 };
 
-/// Of what is the same: where b comes nearer, or deeper, by more than `by`.
+/// The pairs of the same conflict in which b comes nearer, or deeper, by more than `worse_by`.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> worse_ones(const ComparedConflicts& found) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
   for (const auto& pair : found.match.same) {

@@ -23,7 +23,8 @@ bool has_depths(const Conflicts& conflicts) {
                              [](const Conflict& c) { return c.points_inside.value_or(0) > 0; });
 }
 
-/// Without distances along the path.
+/// The worst conflicts, at most `most`: by least distance, or along the path where distances are
+/// not known.
 std::vector<Conflict> worst_of(const Conflicts& conflicts, std::size_t most) {
   std::vector<Conflict> out = conflicts.listed;
   const bool shifts = has_shifts(conflicts);

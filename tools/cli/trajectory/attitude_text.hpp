@@ -6,8 +6,8 @@
 
 namespace clearway::tool {
 
-/// The angles of a model with x forward, y left and z up, in a world with y north and z up.
-/// Degrees.
+/// The angles, in degrees, of a model with x forward, y left and z up, in a world with y north and
+/// z up.
 struct PoseAngles {
   double heading;  ///< clockwise from y, 0 to 360
   double pitch;    ///< nose up
