@@ -9,7 +9,7 @@ namespace clearway::scene {
 namespace {
 
 constexpr double kStep = 0.05;
-constexpr int kSplineSteps = 2000;  // a span
+constexpr int kSplineSteps = 2000;  // for each span
 
 /// Uniform cubic B-spline over four control points; f in [0, 1].
 Vec3 spline_point(const Vec3* control, double f) {

@@ -1,4 +1,4 @@
-// Cases that are hard for the sweep; it and the k-d tree have to give the same bytes.
+// Cases that are hard for the sweep. The sweep and the k-d tree have to give the same bytes.
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
 #include "bench/variants/variants.hpp"
@@ -64,7 +64,7 @@ class Hard {
   void finish() const { wrong_.refuse(); }
 
  private:
-  /// `of_sweep`: options of the sweep alone.
+  /// Runs both engines and compares their results. `of_sweep`: options for the sweep alone.
   void compare(const std::string& name, const SceneFiles& files,
                const std::vector<std::string>& options = {},
                const std::vector<std::string>& of_sweep = {}) {

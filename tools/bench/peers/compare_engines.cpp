@@ -36,7 +36,7 @@ nlohmann::json timing(const std::vector<double>& seconds, std::uint64_t searches
           {"searches_per_second", static_cast<double>(searches) / median(seconds)}};
 }
 
-/// Calls visit(slot, index) for the used slots in order, index counting them.
+/// Calls visit(slot, index) for the used slots in order; index counts them from 0.
 template <typename Visit>
 void for_each_point(const PackedCloud& cloud, Visit visit) {
   std::uint64_t index = 0;

@@ -7,8 +7,8 @@
 
 namespace clearway::scene {
 
-/// How a surface departs from its nominal shape: two scales of value noise (random numbers at the
-/// nodes of a lattice, blended trilinearly). All metres; amplitude 0: smooth.
+/// How a surface departs from its nominal shape, by two scales of value noise (random numbers at
+/// the nodes of a lattice, blended trilinearly). Everything is in metres; amplitude 0 is smooth.
 struct Roughness {
   double coarse_amplitude = 0;
   double coarse_size = 1;

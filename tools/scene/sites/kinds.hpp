@@ -4,7 +4,7 @@
 
 #include "scene/scene.hpp"
 
-/// One function for each kind of scene; scene.hpp's make_scene chooses.
+/// One function makes each kind of scene; make_scene of scene.hpp chooses.
 namespace clearway::scene {
 
 std::unique_ptr<const Scene> make_hall(const Sizes& sizes, std::uint64_t seed);
