@@ -43,7 +43,8 @@ struct Scene {
     return find_conflicts(Result(folder / "out.h5"), query.poses, options, conflict_of);
   }
 
-  /// Whether any of the points collides at poses first to last of the shifted path.
+  /// Whether any point of the group collides at the conflict's poses, first to last, of the shifted
+  /// path.
   bool collides(const std::vector<Vec3>& group, const Conflict& conflict, double shift) const {
     Query moved = query;
     moved.between_poses = false;
@@ -175,7 +176,8 @@ TEST_CASE("what the front of a vehicle meets is in front, whatever it is made of
     REQUIRE(found.listed.size() == 1);
     CHECK(found.listed[0].side == Side::kFront);
     CHECK(*found.listed[0].obstacle_chainage == Approx(12.1).margin(1e-9));
-    // From the pose at 10 m, whose front is at 12 m, to where its rear at -2 has passed.
+    // The conflict reaches from the pose at 10 m, whose front is at 12 m, to where the rear at -2 m
+    // has passed.
     CHECK(found.listed[0].chainage_from == 10);
     CHECK(found.listed[0].chainage_to == 14);
   }

@@ -120,7 +120,7 @@ TEST_CASE("the stretch bound of extreme matrices is never too small") {
 TEST_CASE("the rounding of a transform is bounded") {
   Random random(2);
   std::uint64_t wrong = 0;
-  long double nearest = 0;  // the largest part of the bound that was reached
+  long double nearest = 0;  // the largest share of the bound that was reached
   for (int trial = 0; trial < 200'000; ++trial) {
     const double far = trial % 3 == 0 ? 1 : trial % 3 == 1 ? 1e3 : 5e6;
     const Pose pose = random_pose(random, far);
