@@ -143,7 +143,7 @@ TEST_CASE("parts of different runs are refused and named") {
              Contains("moved2.h5: answers another question than") && Contains(": model is"));
   shards.scene.query.model.vertices[0].x = 0;
 
-  // The same points in other cells: parts of both would lack points.
+  // A store of the same points in other cells is refused, because parts of both would lack points.
   convert({shards.scene.folder / "wall.las"}, shards.scene.folder / "other.h5",
           {.cell_points = 128, .threads = 2});
   shards.store = "other.h5";

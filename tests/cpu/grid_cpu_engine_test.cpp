@@ -159,7 +159,7 @@ TEST_CASE("the grid cell chosen follows radius and density") {
   const auto plane =
       quantise(random_points(random, {{500, -200, 0}, {510, -190, 0}}, 100'000), kMillimetre);
   const double density = surface_density(MemoryCloud(plane, kMillimetre));
-  CHECK(density > 700);  // of 1000 a square metre
+  CHECK(density > 700);  // the true density is 1000 a square metre
   CHECK(density < 2000);
   CHECK(surface_density(MemoryCloud({}, kMillimetre)) == 0);
 }

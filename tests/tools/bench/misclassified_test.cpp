@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadius = 0.1, kClearance = 0.5;
 
-/// A distance for points 0, 1, ...; infinite where there is none.
+/// The distances of points 0, 1, ...; infinite where a point has none.
 using Distances = std::vector<double>;
 using Sources = std::vector<std::uint64_t>;
 
@@ -49,7 +49,7 @@ ResultReader truth_of(const ScratchFolder& folder, const Distances& distances,
   return ResultReader(folder / "truth.h5");
 }
 
-/// About the same points in another quantisation, and without clearances.
+/// An answer about the same points in another quantisation, without clearances.
 ResultReader answer_of(const ScratchFolder& folder, const Sources& hits, std::uint64_t points) {
   ResultHeader header = header_of(points, 0);
   header.environment_hash = 1;

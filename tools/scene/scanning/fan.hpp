@@ -32,7 +32,7 @@ class Fan {
   void meet_rectangle(const Rectangle& rectangle);
 
   std::size_t size() const { return ray_h_.size(); }
-  double ray_h(std::size_t k) const { return ray_h_[k]; }  ///< of the unit direction
+  double ray_h(std::size_t k) const { return ray_h_[k]; }  ///< unit direction
   double ray_w(std::size_t k) const { return ray_w_[k]; }
   /// The inverse of the distance at which ray k meets something; 0 where it meets nothing.
   double inverse_distance(std::size_t k) const { return inverse_distance_[k]; }

@@ -16,7 +16,7 @@ enum Stream : std::uint64_t { kJitter = 1, kRangeNoise = 2, kRoughness = 3 };
 constexpr double kBoundsMargin = 2;
 constexpr double kAnyDistance = 1e9;
 constexpr double kMetresToQuanta = 10000;
-constexpr double kDownAngle = 1.43;  // of the rays that replace those lost to the sky
+constexpr double kDownAngle = 1.43;  // radians, for rays that replace those lost to the sky
 
 std::int32_t quantum(double metres) {
   return static_cast<std::int32_t>(std::floor(metres * kMetresToQuanta + 0.5));

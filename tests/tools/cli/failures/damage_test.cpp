@@ -10,9 +10,9 @@ using Catch::Contains;
 
 namespace {
 
-/// Bytes tried, spread over the whole file.
+/// The number of bytes that are tried, spread over the whole file.
 #ifdef CLEARWAY_SANITIZED
-constexpr std::size_t kTries = 100;  // each takes several times as long
+constexpr std::size_t kTries = 100;  // with sanitizers each takes several times as long
 #else
 constexpr std::size_t kTries = 300;
 #endif
