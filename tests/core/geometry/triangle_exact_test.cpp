@@ -32,9 +32,7 @@ Exact squared_exact(const Vec3& e, const Triangle& t) {
   return std::min({edge(a, b), edge(b, c), edge(c, a)});
 }
 
-/// About
-/// root of d2 - exact distance
-/// over the bound; above 1 only where the bound is violated.
+/// About |root of d2 - exact distance| over the bound; above 1 only where the bound is violated.
 double share_of_bound(double d2, const Exact& squared, const Triangle& t) {
   const double distance = std::sqrt(d2);
   const double root = std::sqrt(CGAL::to_double(squared));

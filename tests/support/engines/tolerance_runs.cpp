@@ -20,10 +20,8 @@ std::vector<bool> by_source(const MemoryCloud& cloud, const HitSet& hits) {
   return out;
 }
 
-/// The largest
-/// d - radius
-/// of the wrong answers, rounded up, and 0 without any; computed with more digits than the engines
-/// use.
+/// The largest |d - radius| of the wrong answers, rounded up, and 0 without any; computed with more
+/// digits than the engines use.
 double farthest_difference(const std::vector<bool>& answer, const std::vector<bool>& expected,
                            const std::vector<Clearance>& least, double radius) {
   long double farthest = 0;

@@ -47,14 +47,9 @@ int stretch_environment(const std::filesystem::path& las_in, const std::filesyst
 void write_thinned_model(const std::filesystem::path& in, const std::filesystem::path& out,
                          double voxel);
 
-/// Writes a closed body like a car's that fills the box of a model,
-/// x/a
-/// ^4 +
-/// y/b
-/// ^4 +
-/// z/c
-/// ^4 = 1, as OFF. triangles: 2 n^2 for a whole n from 3 on; other numbers are rounded down to such
-/// a number.
+/// Writes a closed body like a car's that fills the box of a model, |x/a|^4 + |y/b|^4 + |z/c|^4 =
+/// 1, as OFF. triangles: 2 n^2 for a whole n from 3 on; other numbers are rounded down to such a
+/// number.
 void write_body(const std::filesystem::path& in, const std::filesystem::path& out,
                 std::uint64_t triangles);
 

@@ -13,8 +13,8 @@
 
 namespace clearway::tool {
 
-/// Reads the inputs of a campaign's runs as their tasks will, each file once. Errors name the key
-/// of campaign.json that they come from.
+/// Reads the inputs of a campaign's runs as their tasks will, each environment, model and
+/// trajectory once. Errors name the key of campaign.json that they come from.
 class QuestionReader {
  public:
   /// shard_seconds: as in Campaign.
