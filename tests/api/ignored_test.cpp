@@ -87,7 +87,7 @@ class Cloud {
       for (std::size_t i = 0; i < poses.size(); ++i) {
         if (poses[i] == HitSet::kNever) continue;
         const std::uint32_t pose = path_pose.empty() ? poses[i] : path_pose[poses[i]];
-        if (pose >= first[i].pose) continue;  // the lowest of equal bodies counts
+        if (pose >= first[i].pose) continue;  // at the same pose the first body counts
         first[i] = {pose, pulled_back(body.poses[poses[i]], ignored[i]).z};
       }
     };

@@ -16,9 +16,7 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Sine and cosine of an angle in radians,
-/// angle
-/// < 1e6; within 1e-12.
+/// Sine and cosine of an angle in radians, |angle| < 1e6; within 1e-12.
 inline SineCosine sine_cosine(double angle) {
   constexpr double kHalfPiHigh = 1.57079632673412561417, kHalfPiLow = 6.07710050650619224932e-11;
   const double turns = std::floor(angle * (2 / kPi) + 0.5);

@@ -16,9 +16,7 @@ struct Interval {
   bool empty() const { return !(low < high); }
 };
 
-/// The interval of h in which
-/// start + h * direction
-/// < half.
+/// The interval of h in which |start + h * direction| < half.
 Interval within_slab(double start, double direction, double half) {
   if (std::abs(direction) < 1e-12) {
     return std::abs(start) < half ? Interval{-kFar, kFar} : Interval{0, 0};

@@ -16,7 +16,7 @@ constexpr double kOpenShare = 0.06;  // share of the sweeps on each open stretch
 constexpr double kScannerHeight = 3.6;
 constexpr double kRangeNoise = 0.004;
 constexpr double kOpenReach = 45;
-constexpr double kGround = -0.75;  // height of the ground outside the ballast
+constexpr double kGround = -0.75;  // ground beside the ballast bed; the rails' tops are at 0
 constexpr double kHeapedShare = 0.8;
 constexpr double kHalfGauge = 0.75;
 constexpr Roughness kMasonry{0.03, 1.5, 0.015, 0.2};
