@@ -1,4 +1,4 @@
-// How many ignored points would collide: against brute force, whatever searches them.
+// How many ignored points would collide, against brute force, whichever engine searches.
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>

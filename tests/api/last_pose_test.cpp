@@ -1,4 +1,4 @@
-// The last pose that touches each point, against brute force: every pose, or way, asked alone.
+// The last pose that touches each point, against brute force, which asks every pose or way alone.
 #include <catch2/catch.hpp>
 
 #include "api/vehicle_truth.hpp"

@@ -65,7 +65,7 @@ TEST_CASE("ways with and without their ends touch the same points, one pose apar
 
 namespace {
 
-/// A pose of whole numbers: a quarter turn about an axis, or none, and a place.
+/// A pose of whole numbers: a place, and a quarter turn about an axis or none.
 struct WholePose {
   std::int64_t turn[9];
   WholePoint place;

@@ -7,7 +7,7 @@ using namespace clearway;
 
 namespace {
 
-/// Conflicts of boxes of 1 m, from these places on.
+/// Conflicts with boxes of 1 m, whose least corners are these places.
 Conflicts at(const std::vector<Vec3>& places) {
   Conflicts out;
   for (const Vec3& p : places) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr Quantisation kSteps{{0.001, 0.001, 0.001}, {0, 0, 0}};
 
-/// Points and a query, searched.
+/// Points and a query, and the conflicts that a search finds.
 struct Scene {
   Scene(const std::vector<Vec3>& places, Query asked) : query(std::move(asked)) {
     std::vector<Quantum> quanta;
@@ -138,7 +138,8 @@ TEST_CASE("a pole that a long load meets in its middle is named with station, si
     poses.push_back(rotation({0, 0, 1}, turn, {50 * std::sin(turn), 50 * (1 - std::cos(turn)), 0}));
   }
   const Pose& middle = poses[40];
-  // 1.4 m to the left of the middle of the load, whose side is at 1.5 m: 0.1 m inside it.
+  // This point is 1.4 m to the left of the middle of the load, whose side is at 1.5 m, so 0.1 m
+  // inside it.
   const double *r = middle.rotation, *t = middle.translation;
   const Vec3 at{t[0] + 1.4 * r[1], t[1] + 1.4 * r[4], 0};
   for (const bool solid : {true, false}) {

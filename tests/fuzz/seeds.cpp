@@ -239,7 +239,8 @@ void write_result_seeds(Seeds seeds) {
   }
 }
 
-/// Payloads of every kind of record, as journal.cpp's first bytes 0 to 3 need them.
+/// Payloads of every kind of record, in the forms that journal.cpp needs for its first bytes 0
+/// to 3.
 std::vector<std::string> payloads_of(char kind) {
   const bool first_pose = kind % 2 == 1, clearance = kind >= 2;
   const std::string bits("\5\0\0\0\0\0\0\0", 8);

@@ -10,7 +10,7 @@
 
 namespace clearway::test {
 
-/// `count` >= 2 values whose greatest exceeds the least by exactly `span`, at random places.
+/// Random values, `count` >= 2 of them, whose greatest exceeds the least by exactly `span`.
 template <typename Value>
 std::vector<Value> values_of_span(std::size_t count, std::make_unsigned_t<Value> span,
                                   std::uint64_t seed) {

@@ -31,7 +31,7 @@ std::string shell_word(const std::string& text) {
 
 std::string shell_word(const std::filesystem::path& path) { return shell_word(path.string()); }
 
-/// The long name of an option with its hyphens; empty for a positional.
+/// The long name of an option with its hyphens; empty for a positional argument.
 std::string name_of(const CLI::Option& option) {
   return option.get_lnames().empty() ? "" : "--" + option.get_lnames().front();
 }

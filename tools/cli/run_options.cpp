@@ -113,7 +113,7 @@ void add_query(CLI::App& command, RunOptions& options) {
   for_each_list_field([&](const auto& field) { add_field(command, field, options); });
 }
 
-/// An option that takes the name of one of the values.
+/// Adds an option that takes the name of one of the values.
 template <typename Value>
 void add_choice(CLI::App& command, const std::string& option, Value& chosen,
                 const std::vector<Value>& values, const std::string& description) {

@@ -9,7 +9,7 @@
 #include "clearway/trajectory.hpp"
 #include "io/result/result.hpp"
 
-/// An answer in words and as JSON. What it is, the library says: see clearway/answer.hpp.
+/// Answers in words and as JSON. The library decides what an answer is; see clearway/answer.hpp.
 namespace clearway::tool {
 
 /// The labels of a path's poses, and how far along it they are. Empty where the path is not at hand

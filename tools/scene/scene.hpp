@@ -44,8 +44,8 @@ struct Scene {
   std::vector<double> stations;  ///< arc lengths where a scanner stood; only for the mine
 };
 
-/// Distance of the wagon's bogies: pivots at x = +-kBogieDistance / 2 of its frame, on the height
-/// of the rails' tops.
+/// The distance of the wagon's bogies, metres. The pivots are at x = +-kBogieDistance / 2 of its
+/// frame, at the height of the rails' tops.
 inline constexpr double kBogieDistance = 20;
 
 /// Makes a scene. It may not be moved or copied, because it refers to itself.

@@ -1,4 +1,4 @@
-// Which places lie inside a solid: bodies whose inside is known.
+// Which places lie inside a solid, with bodies whose inside is known.
 #include "core/geometry/inside.hpp"
 
 #include <catch2/catch.hpp>

@@ -17,7 +17,7 @@ struct Long3 {
 
 long double length(const Long3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
-/// R m without the translation, with 64-bit mantissas.
+/// The rotated point R m, without the translation, with 64-bit mantissas.
 Long3 rotate(const Pose& pose, const Long3& m) {
   const double* r = pose.rotation;
   return {r[0] * m.x + r[1] * m.y + r[2] * m.z, r[3] * m.x + r[4] * m.y + r[5] * m.z,

@@ -1,4 +1,5 @@
-// `--precision float` against floats alone by brute force: the same wrong answers everywhere.
+// `--precision float` against brute force in floats alone, which gives the same wrong answers
+// everywhere.
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -8,7 +8,7 @@
 
 namespace clearway::test {
 
-/// The cube from 0 to 1: 8 vertices, 12 triangles, outsides counter-clockwise.
+/// The cube from 0 to 1: 8 vertices, and 12 triangles that are counter-clockwise seen from outside.
 inline TriangleMesh unit_cube() {
   return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
           {{0, 3, 2},

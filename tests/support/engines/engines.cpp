@@ -59,7 +59,7 @@ int next_threads() {
   return ++runs % 5 == 0 ? 3 : 1;
 }
 
-/// First poses by brute force, at poses and between them.
+/// The expected first poses by brute force, at poses and between them.
 struct Expected {
   Expected(const std::vector<Vec3>& positions, Query query) {
     query.between_poses = false;

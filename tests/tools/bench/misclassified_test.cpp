@@ -87,9 +87,9 @@ TEST_CASE("wrong points are counted by their distance, first and last ones too")
   CHECK(out.beyond == 2);
   CHECK(out.largest_distance == kRadius);
   std::array<std::uint64_t, 18> histogram{};
-  histogram[0] = 2;   // at r, and the next double below it, 1.4e-17 away
-  histogram[15] = 2;  // 0.05 and 0.02
-  histogram[16] = 1;  // 0.1
+  histogram[0] = 2;   // distances at r and at the next double below it, 1.4e-17 away
+  histogram[15] = 2;  // distances 0.05 and 0.02
+  histogram[16] = 1;  // distance 0.1
   CHECK(out.histogram == histogram);
 }
 

@@ -95,10 +95,11 @@ class Bench {
   Json convert(const std::string& key, const std::filesystem::path& environment,
                const std::filesystem::path& store, const std::vector<std::string>& convert_options);
 
-  /// The engines of this machine: those on the GPU where there is one, and the CPU's.
+  /// The exact engines of this machine: those on the GPU where there is one, and the CPU's.
   std::vector<EngineChoice> exact_engines() const;
   EngineChoice engine(const std::string& name) const;
-  /// "sweep", "grid" or "grid float" on the GPU where there is one, else on the CPU.
+  /// The engine "sweep", "grid" or "grid float", on the GPU where there is one, otherwise on the
+  /// CPU.
   EngineChoice engine_here(const std::string& name) const;
 
   /// Judges a result; what it returns is added to the case as "findings".

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t kTurns = 10'000;
 constexpr int kPasses = 20;
-constexpr double kPassNoise = 0.005;  // metres
+constexpr double kPassNoise = 0.005;  // metres; noise of the passes
 constexpr std::uint64_t kPassSeed = 1;
 
 class Hard {

@@ -111,7 +111,7 @@ class Stability {
   void finish() const { wrong_.refuse(); }
 
  private:
-  static constexpr double kTunnelLength = 1335;  // metres, at the size of the paper
+  static constexpr double kTunnelLength = 1335;  // metres, in the paper's size
 
   Bench::Judge judge() const {
     return [this](const std::filesystem::path& result) { return judged(result, truth_); };

@@ -119,7 +119,7 @@ nlohmann::json compare(const PackedCloud& cloud, const Query& query,
 nlohmann::json compare_engines(const CompareOptions& options) {
   const StoreReader store(options.environment);
   const std::vector<Vec3> model =
-      read_model_points(options.model, {.spacing = options.radius / 4});  // as clearway run
+      read_model_points(options.model, {.spacing = options.radius / 4});  // as in clearway run
   const std::vector<Pose> all = read_trajectory(options.trajectory, {});
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < all.size(); i += options.every_pose) poses.push_back(all[i]);

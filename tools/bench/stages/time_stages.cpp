@@ -97,7 +97,7 @@ nlohmann::ordered_json time_stages(const StageOptions& options) {
   if (options.cold) drop_from_page_cache(options.environment);
   const StoreReader store(options.environment);
   const std::vector<Vec3> model =
-      read_model_points(options.model, {.spacing = options.radius / 4});  // as clearway run
+      read_model_points(options.model, {.spacing = options.radius / 4});  // as in clearway run
   const std::vector<Pose> poses = read_trajectory(options.trajectory, {});
   const Query query{model, poses, {.radius = options.radius}};
   const QueryTrees trees(query);

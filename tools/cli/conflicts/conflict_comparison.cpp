@@ -27,7 +27,7 @@
 namespace clearway::tool {
 namespace {
 
-/// One of the results that are compared.
+/// One of the two results that are compared.
 struct ComparedSide {
   ComparedSide(ConflictComparison& options, const std::filesystem::path& file,
                const std::filesystem::path& trajectory, const std::filesystem::path& vehicle)

@@ -24,7 +24,7 @@ struct ComparedResult {
   Conflicts conflicts;
 };
 
-/// What comparing the conflicts of two results found.
+/// The outcome of a comparison of two results' conflicts.
 struct ComparedConflicts {
   ComparedResult a, b;
   std::vector<QueryDifference> questions;

@@ -61,7 +61,7 @@ std::string row_text(const Conflict& c, bool distances, bool depths, bool shifts
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
-/// The groups that are not listed, and where the first of them is.
+/// A line about the groups that are not listed, and where the first of them is.
 std::string small_text(const ConflictFile& file) {
   const Conflicts& c = file.conflicts;
   if (c.small_groups == 0) return "";

@@ -37,7 +37,7 @@ void set_environment_unit(const Store& store, Options&... options) {
   ((options.environment_unit_is_assumed = store.length_unit() == "unknown"), ...);
 }
 
-/// An option that takes the name of a unit of a file.
+/// Adds an option that takes the name of a file's unit.
 CLI::Option* add_unit_option(CLI::App& command, const std::string& names, FileUnit& unit,
                              const std::string& description);
 

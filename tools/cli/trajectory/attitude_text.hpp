@@ -16,7 +16,8 @@ struct PoseAngles {
 
 PoseAngles angles_of(const Pose& pose);
 
-/// "heading 90.0 degrees (along x), nose 1.4 degrees down, right side 0.2 degrees up".
+/// The attitude in words: "heading 90.0 degrees (along x), nose 1.4 degrees down, right side 0.2
+/// degrees up".
 std::string attitude_text(const Pose& pose);
 
 }  // namespace clearway::tool

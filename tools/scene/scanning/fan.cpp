@@ -45,8 +45,8 @@ Interval cut(const Prism& prism, const PathPoint& scanner, const SineCosine& azi
   return {std::max(a.low, b.low), std::min(a.high, b.high)};
 }
 
-/// Angle of a corner from straight down, 0 to 2 pi; straight down is 2 pi for the left half.
-/// Only good for choosing rays to test, with a margin: atan2 may differ between machines.
+/// The angle of a corner from straight down, 0 to 2 pi; straight down is 2 pi for the left half.
+/// Only good for choosing rays to test, with a margin, because atan2 may differ between machines.
 double corner_angle(double h, double w, bool left) {
   const double angle = std::atan2(h, -w);
   return angle < 0 || (left && angle == 0) ? angle + 2 * kPi : angle;

@@ -15,7 +15,7 @@ constexpr double kScannerHeight = 1.5;
 constexpr double kLowestRay = 0.87, kHighestRay = 2.62;
 constexpr double kLeastAzimuth = 0.1;  // radians from the gallery's direction
 constexpr double kRangeNoise = 0.003;
-constexpr double kReach = 36;  // at the least azimuth
+constexpr double kReach = 36;  // metres along the gallery, at the least azimuth
 constexpr double kRideHeight = 0.08;
 constexpr Roughness kRock{0.55, 3.0, 0.1, 0.35};
 constexpr Roughness kFloor{0.08, 1.2, 0.02, 0.15};

@@ -1,4 +1,5 @@
-// A flipped byte of a store or a result: named by verify, never a wrong answer with exit code 0.
+// A flipped byte of a store or a result is named by verify, and never gives a wrong answer with
+// exit code 0.
 #include <catch2/catch.hpp>
 #include <map>
 
