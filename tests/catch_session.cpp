@@ -1,4 +1,4 @@
-// Catch is compiled here and nowhere else.
+// The only file in which Catch is compiled.
 #define CATCH_CONFIG_RUNNER
 #include "catch_session.hpp"
 

@@ -1,5 +1,5 @@
-// Main of the test programs that need real data: without CLEARWAY_TEST_DATA a test is skipped, and
-// says so.
+// The main function of the test programs that need real data. Without CLEARWAY_TEST_DATA a test is
+// skipped, and says so.
 #include <cstdlib>
 
 #include "catch_session.hpp"

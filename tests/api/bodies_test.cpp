@@ -12,7 +12,7 @@ TEST_CASE("first poses and bodies are those of brute force for each body") {
     Vehicle vehicle(seed);
     check_first_poses(vehicle, {.threads = static_cast<int>(seed % 2 + 1)});
     const auto body = Result(vehicle.folder / "out.h5").first_body();
-    // The third body is where the first one is at some poses: the first one counts there.
+    // At some poses the third body is where the first one is, and the first one counts there.
     for (std::uint32_t i = 0; i < 3; ++i) CHECK(std::ranges::count(body, i) > 0);
   }
 }

@@ -27,7 +27,7 @@ PageEngineNeeds needs_of_devices() {
           .on_gpu = true};
 }
 
-/// As the CUDA form, with engines on the host.
+/// A kind of search like the one for CUDA, with engines that run the kernels' bodies on the host.
 template <typename Element>
 class HostKindOf final : public SweepKindOf<Element> {
  public:
@@ -78,7 +78,7 @@ SearchResult answer_of(const Vehicle& vehicle, const StoreReader& store, PageEng
       .result;
 }
 
-/// Returns how many points collide.
+/// Checks that both searches give the same result. Returns how many points collide.
 std::uint64_t check_same(const Vehicle& vehicle) {
   const StoreReader store(vehicle.folder / "scan.h5");
   const SearchOptions options{.threads = 2};

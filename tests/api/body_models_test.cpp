@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Two bodies are the same surface, and tie at some poses.
+/// A vehicle two of whose bodies are the same surface and tie at some poses.
 struct SurfaceVehicle : Vehicle {
   explicit SurfaceVehicle(std::uint64_t seed) : Vehicle(seed) {
     make_surface(0);

@@ -18,7 +18,8 @@ Surface ball(const Vec3& at) {
   return mapped(unit_sphere(1), [&](const Vec3& v) { return plus(at, 0.35, v); });
 }
 
-/// So far apart that what is inside at one of them need not touch the surface at another.
+/// Keeps every fourth pose of a body, so far apart that what is inside at one of them need not
+/// touch the surface at another.
 void keep_some_poses(Body& body) {
   const Body all = body;
   body.poses.clear();
@@ -30,8 +31,8 @@ void keep_some_poses(Body& body) {
   }
 }
 
-/// The first and the last body are the same two solids and an open triangle, and tie at some
-/// poses. The second has points, or the triangles between them.
+/// A vehicle whose first and last body are the same two solids and an open triangle, and tie at
+/// some poses. The second body has points, or the triangles between them.
 struct SolidVehicle : Vehicle {
   explicit SolidVehicle(std::uint64_t seed, bool surface_too = false) : Vehicle(seed) {
     Bodies parts;

@@ -1,4 +1,4 @@
-// How many ignored points would collide: against brute force, whatever searches them.
+// How many ignored points would collide, against brute force, whichever engine searches.
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -69,7 +69,7 @@ class Cloud {
     return in_box || classes_[i] == 1 || classes_[i] == 3;
   }
 
-  /// Of the ignored points, one by one and body by body.
+  /// The expected counts: brute force over the ignored points, body by body.
   Counts by_hand() const {
     std::vector<Vec3> ignored;
     for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -87,7 +87,7 @@ class Cloud {
       for (std::size_t i = 0; i < poses.size(); ++i) {
         if (poses[i] == HitSet::kNever) continue;
         const std::uint32_t pose = path_pose.empty() ? poses[i] : path_pose[poses[i]];
-        if (pose >= first[i].pose) continue;  // of equal ones the lowest body
+        if (pose >= first[i].pose) continue;  // at the same pose the first body counts
         first[i] = {pose, pulled_back(body.poses[poses[i]], ignored[i]).z};
       }
     };
@@ -244,7 +244,7 @@ TEST_CASE("a query that ignores nothing has no ignored points that collide") {
   cloud.query.ignore_classes.clear();
   cloud.query.ignore_boxes.clear();
   cloud.check(cloud.run("out.h5"), {});
-  cloud.query.ignore_classes = {9};  // which no point has
+  cloud.query.ignore_classes = {9};  // a class that no point has
   cloud.check(cloud.run("none.h5"), {});
 }
 

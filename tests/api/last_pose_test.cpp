@@ -1,4 +1,4 @@
-// The last pose that touches each point, against brute force: every pose, or way, asked alone.
+// The last pose that touches each point, against brute force, which asks every pose or way alone.
 #include <catch2/catch.hpp>
 
 #include "api/vehicle_truth.hpp"
@@ -9,7 +9,8 @@ using namespace clearway::test;
 
 namespace {
 
-/// The body, or the model, at its pose i, or on the way from there to the next.
+/// The query of one body, or of the model, at its pose i alone, or on the way from there to the
+/// next.
 Query alone(const Query& whole, std::size_t i) {
   Query one = whole;
   const std::size_t end = whole.between_poses ? std::min(i + 2, whole.poses.size()) : i + 1;
@@ -18,7 +19,7 @@ Query alone(const Query& whole, std::size_t i) {
   return one;
 }
 
-/// Of each place; kNever where nothing touches it.
+/// The last pose of the path that touches each place, by brute force; kNever where none does.
 std::vector<std::uint32_t> last_by_hand(const std::vector<Vec3>& places, const Query& query,
                                         const std::vector<std::uint32_t>& path_pose) {
   std::vector<std::uint32_t> out(places.size(), kNever);
@@ -48,7 +49,7 @@ void check_last_poses(const Result& result, const std::vector<std::uint32_t>& ex
   CHECK(later > 0);
 }
 
-/// The vehicle with the first body's model as the only one.
+/// The query of the first body's model alone, on the vehicle's path.
 Query one_model(const Vehicle& vehicle, bool between_poses) {
   Query query(vehicle.query.bodies[0].model, vehicle.query.poses, vehicle.query);
   query.first_pose = true;

@@ -39,7 +39,7 @@ const std::vector<Mode>& modes() {
   return kModes;
 }
 
-/// Many where all that a part may hold is asked for.
+/// The numbers of shards to try; many for the mode in which a part holds every table.
 std::vector<std::uint32_t> counts(const Mode& mode, Engine engine) {
   if (mode.name == std::string("all tables")) return {1, 2, 7, 64};
   return engine == Engine::kSweep ? std::vector<std::uint32_t>{2, 7}
@@ -143,7 +143,7 @@ TEST_CASE("parts of different runs are refused and named") {
              Contains("moved2.h5: answers another question than") && Contains(": model is"));
   shards.scene.query.model.vertices[0].x = 0;
 
-  // The same points in other cells: parts of both would lack points.
+  // A store of the same points in other cells is refused, because parts of both would lack points.
   convert({shards.scene.folder / "wall.las"}, shards.scene.folder / "other.h5",
           {.cell_points = 128, .threads = 2});
   shards.store = "other.h5";
@@ -175,7 +175,7 @@ TEST_CASE("damage in a part is noticed") {
     if (!said.empty()) CHECK_THAT(said, Contains("part2.h5"));
     std::filesystem::remove(shards.scene.folder / "merged.h5");
   }
-  CHECK(refused > tries / 2);  // the rest is in what HDF5 does not use
+  CHECK(refused > tries / 2);  // the other tries change bytes that HDF5 does not use
 }
 
 TEST_CASE("a part is no result") {

@@ -1,5 +1,5 @@
-// What a part holds beside its rows: the warnings of its run, and how an answer was computed that
-// is not exact.
+// What a part holds beside its rows: the warnings of its run, and how an answer that is not exact
+// was computed.
 #include <sys/resource.h>
 
 #include <atomic>
@@ -22,7 +22,7 @@ const Message kOfAll{Message::Severity::kWarning,
                      {{"grains", 7}, {"share of it", 0.5}}};
 const Message kOfOne{Message::Severity::kWarning, "late", "the path came late"};
 
-/// Those of the scene's question left out.
+/// The warnings that are about the inputs, without those about the scene's question.
 template <typename Warning>
 std::vector<Warning> of_inputs(const std::vector<Warning>& warnings) {
   std::vector<Warning> out;
@@ -32,7 +32,7 @@ std::vector<Warning> of_inputs(const std::vector<Warning>& warnings) {
   return out;
 }
 
-/// Three parts; all warn of the question, and of kOfAll, and the second one of kOfOne.
+/// Searches three parts. All warn of the question and of kOfAll, the second one also of kOfOne.
 std::vector<std::filesystem::path> warned_parts(Shards& shards) {
   shards.options.input_warnings = {kOfAll};
   auto parts = shards.parts(3);
@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> warned_parts(Shards& shards) {
   return parts;
 }
 
-/// A part without rows, whose header is changed.
+/// Changes the header of a part without rows.
 void change(const std::filesystem::path& part, const std::function<void(ResultPart&)>& how) {
   std::optional<ResultHeader> header;
   {
@@ -53,7 +53,7 @@ void change(const std::filesystem::path& part, const std::function<void(ResultPa
   ResultWriter(part, *header, 0).finish();
 }
 
-/// Until the end of its scope the process may open so many files.
+/// Limits the number of files that the process may open, until the end of its scope.
 class OpenFilesLimit {
  public:
   explicit OpenFilesLimit(rlim_t files) {
@@ -160,7 +160,7 @@ TEST_CASE("a part that was interrupted and is resumed holds the warnings") {
   CHECK(warnings[0].code == "dusty");
   CHECK(warnings[0].parts == 1);
 
-  // Other words for the same inputs do not make it another part.
+  // Other warnings about the same inputs do not make it another part.
   options.input_warnings = {kOfOne};
   CHECK(search(store, shards.scene.query, output, options).was_finished);
 }

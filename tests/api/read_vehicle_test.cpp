@@ -12,7 +12,8 @@ using Catch::Contains;
 
 namespace {
 
-/// A quarter of a circle of 20 m, and models of points, of a triangle and of a solid.
+/// A folder with a path, a quarter of a circle of 20 m, and models of points, of a triangle and of
+/// a solid.
 struct Files {
   Files() {
     std::string own;
@@ -127,7 +128,7 @@ TEST_CASE("a body whose station or pivots are far from the vehicle is warned of"
   CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -50})") == "body-far ");
   CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "pivots": [-46, -54]})") == "body-far ");
   CHECK(codes(wagon + R"(, {"name": "rear", "model": "bogie.xyz", "at": -48})") == "body-far ");
-  // A train is one vehicle from wagon to wagon.
+  // Wagons in a row are one vehicle: none counts as far from the path.
   CHECK(codes(wagon + R"(, {"name": "b", "model": "wagon.xyz", "at": -20},
                            {"name": "c", "model": "wagon.xyz", "at": -40},
                            {"name": "d", "model": "wagon.xyz", "at": -60})")

@@ -25,7 +25,7 @@ TEST_CASE("programs read profile, model box and the places of clearances") {
   CHECK(profile.distance == rows.distance);
   CHECK(profile.source == rows.source);
   CHECK(profile.chainage == rows.chainage);
-  REQUIRE(profile.xyz.size() == rows.xyz.size());  // NaN equals NaN
+  REQUIRE(profile.xyz.size() == rows.xyz.size());  // bytes are compared, so that NaN equals NaN
   CHECK(std::memcmp(profile.xyz.data(), rows.xyz.data(), 12 * sizeof(Vec3)) == 0);
   CHECK(result.model_box() == header.model_box);
 }

@@ -18,7 +18,7 @@ bool has_warning(const std::vector<Message>& warnings, const std::string& code) 
   });
 }
 
-/// What the call is refused with; empty where it is not.
+/// The message with which the call is refused; empty where it is not.
 template <typename Call>
 std::string usage_error_of(const Call& call) {
   try {
@@ -29,7 +29,8 @@ std::string usage_error_of(const Call& call) {
   return {};
 }
 
-/// Checks that the call, which takes the bytes of memory, runs with what its refusal says.
+/// Checks that the call, whose argument is its memory in bytes, runs with the amount that its
+/// refusal names.
 template <typename Call>
 void check_memory_remedy(const Call& call) {
   double enough = 0;
@@ -238,7 +239,8 @@ TEST_CASE("check_search refuses what search refuses") {
   check({.radius = 0.1}, {.overwrite = true, .resume = true});
   CHECK_NOTHROW(check_search(scene.query, output));
   search(store, scene.query, output);
-  CHECK_NOTHROW(check_search(scene.query, output));  // only the search knows what it answers
+  // Only the search knows which question the file answers.
+  CHECK_NOTHROW(check_search(scene.query, output));
   CHECK_THAT(usage_error_of([&] { search(store, scene.query, output); }),
              Contains("exists already, and answers the same question"));
   put_bytes(output, "no result");

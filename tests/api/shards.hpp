@@ -11,7 +11,8 @@
 
 namespace clearway::test {
 
-/// Searches of everything and of parts, all with the same options, and merges of these.
+/// Searches of the whole query and of its shards, all with the same options, and merges of the
+/// parts.
 struct Shards {
   explicit Shards(SearchOptions with = {}) : options(std::move(with)) {
     options.threads = 2;
@@ -21,7 +22,7 @@ struct Shards {
     query.poses[50].translation[1] = 0.5;  // away from the wall, so that some poses meet nothing
   }
 
-  /// The bytes of the search of everything.
+  /// The bytes of the result of the whole search.
   std::string whole() {
     options.shard.reset();
     search(Store(scene.folder / store), scene.query, scene.folder / "whole.h5", options);
@@ -44,7 +45,7 @@ struct Shards {
     return bytes_of(scene.folder / "merged.h5");
   }
 
-  /// What merging is refused with.
+  /// The message with which merging is refused; empty where it is not.
   std::string refusal(const std::vector<std::filesystem::path>& parts,
                       const MergeOptions& how = {}) const {
     try {

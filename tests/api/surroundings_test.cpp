@@ -20,8 +20,8 @@ using namespace clearway::test;
 
 namespace {
 
-/// Before any call of HDF5, for the other tests of this program have some: HDF5 1.10.8 complains at
-/// its end of damaged files that it could not close.
+/// Called before any other call of HDF5, which other tests of this program make, because
+/// HDF5 1.10.8 complains at its end of damaged files that it could not close.
 const herr_t kNoHandlerAtExit = H5dont_atexit();
 
 int printed_errors = 0;
@@ -31,7 +31,7 @@ herr_t print_error(hid_t, void*) {
   return 0;
 }
 
-/// What a program may have set, and a library may not.
+/// State that belongs to the program and that a library may not change.
 struct GlobalState {
   GlobalState() {
     H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
@@ -57,11 +57,11 @@ struct GlobalState {
   std::string locale;
 };
 
-/// Standard output and error go to a file while it lives.
+/// Sends standard output and error to a file while it lives.
 class Captured {
  public:
   explicit Captured(const std::filesystem::path& file) : file_(file) {
-    std::cout.flush();  // what the test program has said itself
+    std::cout.flush();  // text of the test program itself
     const int into = ::open(file.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     for (int k = 0; k < 2; ++k) {
       kept_[k] = ::dup(k + 1);
@@ -94,11 +94,11 @@ class Captured {
   std::array<int, 2> kept_{};
 };
 
-/// Every call of the library, those that fail too.
+/// Calls every function of the library, also in ways that fail.
 void use_all(const ApiScene& scene) {
   const auto input = scene.folder / "wall.las", site = scene.folder / "site.h5",
              output = scene.folder / "out.h5", damaged = scene.folder / "damaged.h5";
-  const int more = 8;  // than the caller lets oneTBB have
+  const int more = 8;  // threads, more than the caller lets oneTBB have
   convert({input}, site, {.cell_points = 64, .threads = more});
   CHECK_THROWS_AS(convert({input}, site), UsageError);
   const Store store(site);

@@ -58,7 +58,7 @@ struct Vehicle {
     query.bodies[body].poses.push_back(at);
     query.bodies[body].path_pose.push_back(pose);
   }
-  /// The model becomes triangles of three points each.
+  /// Makes a body's model a surface, of one triangle for every three of its points.
   void make_surface(std::size_t body) {
     const auto corners = static_cast<std::uint32_t>(query.bodies[body].model.vertices.size());
     for (std::uint32_t i = 0; i + 2 < corners; i += 3) {
@@ -71,7 +71,7 @@ struct Vehicle {
     own.model.solid_of = query.bodies[body].model.solid_of;
     return own;
   }
-  /// For brute force: ignored points are far away.
+  /// The points for brute force, with the ignored points moved far away.
   std::vector<Vec3> searched_places() const {
     std::vector<Vec3> out = places;
     for (Vec3& place : out) {
@@ -86,7 +86,8 @@ struct Vehicle {
     return out;
   }
 
-  /// Where there is a GPU too, and memory is not the question, there to the same bytes.
+  /// Runs the search on the CPU. Where there is a GPU, and memory is not limited, checks that it
+  /// gives the same bytes there.
   Result run(const SearchOptions& options = {}) {
     SearchOptions how = options;
     how.threads = std::max(how.threads, 1);

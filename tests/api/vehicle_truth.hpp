@@ -16,7 +16,7 @@ namespace clearway::test {
 
 inline constexpr std::uint32_t kNever = HitSet::kNever;
 
-/// A pose of the path and a body; none: kNever.
+/// The first pose of the path at which a point collides, and the body; kNever where none does.
 struct First {
   std::uint32_t pose = kNever, body = kNever;
   friend bool operator<(const First& a, const First& b) {

@@ -77,7 +77,7 @@ TEST_CASE("clearances of few model points, poses and points") {
 }
 
 TEST_CASE("clearances along slow paths") {
-  // Runs of many poses are nearly straight, seen from the model: they are searched as one.
+  // Seen from the model, runs of many poses are nearly straight, so they are searched as one.
   Scene scene;
   scene.points.resize(250);
   const double bend = GENERATE(0.0, 1e-9, 1e-3, 0.5, 4.0);
@@ -119,7 +119,8 @@ TEST_CASE("clearances that several poses tie for") {
 }
 
 TEST_CASE("clearances that mirror images tie for") {
-  // Points in the plane x = 0, poses at -x and x in exact numbers: equal d2, the earlier wins.
+  // Points in the plane x = 0 and poses at -x and x, all in exact numbers: d2 is equal and the
+  // earlier pose wins.
   Scene scene;
   scene.quantisation = {{0x1p-10, 0x1p-10, 0x1p-10}, {0, 0, 0}};
   scene.points.clear();
@@ -166,7 +167,7 @@ TEST_CASE("clearances far from the origin and of matrices that are not rigid") {
 }
 
 TEST_CASE("clearances where roundings decide the pose and the model point") {
-  // A model whose points are all as far from the points asked about, give or take a few roundings,
+  // All points of the model are equally far from the points asked about, but for a few roundings,
   // at poses that differ by as little: the least computed d2 is not that of the nearest point.
   Random random(23);
   for (int trial = 0; trial < 40; ++trial) {

@@ -20,7 +20,8 @@ std::vector<Vec3> wall(double step) {
   return points;
 }
 
-/// Signed distances of all points by every engine that knows clearances, which all agree.
+/// The signed distances of all points by every engine that has clearances, after a check that all
+/// agree.
 std::vector<double> signed_distances(const std::vector<Vec3>& points, const Vec3& offset,
                                      Query query) {
   const Quantisation quantisation{{0x1p-20, 0x1p-20, 0x1p-20}, {offset.x, offset.y, offset.z}};
@@ -49,7 +50,7 @@ std::vector<double> signed_distances(const std::vector<Vec3>& points, const Vec3
   return distances;
 }
 
-/// Poses along x; a body's own frame is the environment's but for that.
+/// Poses along x that only move, so that a body's frame is parallel to the environment's.
 std::vector<Pose> along_x(double from, double to, int count) {
   std::vector<Pose> poses;
   poses.reserve(static_cast<std::size_t>(count));
@@ -69,7 +70,7 @@ TEST_CASE("a box driven through a wall is as deep as half its least side") {
   const Query query = bodies.query(along_x(-1, 1, 33), 0.05);  // steps of 1/16
   const std::vector<double> found = signed_distances(points, offset, query);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // At x = 0, which is a pose, the box is nearest by its sides along y and z.
+    // At the pose x = 0 the box is nearest by its sides along y and z.
     const double y = std::abs(points[i].y) - 0.25, z = std::abs(points[i].z) - 0.75;
     const double outside = std::hypot(std::max(y, 0.0), std::max(z, 0.0));
     const double expected = y < 0 && z < 0 ? std::max({y, z, -0.5}) : outside;

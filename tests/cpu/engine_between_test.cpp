@@ -36,7 +36,7 @@ struct Scene {
   std::vector<Quantum> points = quantise(random_points(random, kRoom, 2000), quantisation);
   std::vector<Vec3> model = random_points(random, {{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}}, 40);
 
-  /// Points that collide between poses but at none.
+  /// Checks every engine between poses. Returns how many points collide there but at no pose.
   std::uint64_t check(const std::vector<Pose>& poses, double radius) const {
     const Query query{model, poses, {radius}};
     const auto discrete = brute_force_first_poses(positions_of(points, quantisation), query);
@@ -65,13 +65,15 @@ TEST_CASE("a point that only the inside of a segment touches") {
 TEST_CASE("the first pose is that of the first way that touches the point, ends included") {
   std::vector<Pose> poses;
   for (int i = 0; i < 4; ++i) poses.push_back(translation({1.0 * i, 0, 0}));
-  // At the start, inside of the three segments, at and beside poses 1 and 2, at and past the end.
+  // Points at the start, inside each of the three segments, at and beside poses 1 and 2, at and
+  // past the end.
   const std::vector<Vec3> points{{-0.0625, 0, 0}, {0.5, 0, 0}, {1.5, 0, 0},    {2.5, 0, 0},
                                  {1, 0.0625, 0},  {2, 0, 0},   {0.9375, 0, 0}, {3, 0, 0},
                                  {3.0625, 0, 0},  {3.5, 0, 0}};
   CHECK(first_poses(points, kOnePoint, poses, 0.125) ==
         std::vector<std::uint32_t>{0, 0, 1, 2, 0, 1, 0, 2, 2, kNever});
-  // A corner: the model is near on the way to it, though nowhere nearer than at its pose.
+  // At a corner the model is near on the way to it, though nowhere nearer than at the corner's
+  // pose.
   const std::vector<Pose> corner{translation({0, 0, 0}), translation({1, 0, 0}),
                                  translation({0, 0.03125, 0})};
   CHECK(first_poses({{1.0625, 0, 0}}, kOnePoint, corner, 0.125) == std::vector<std::uint32_t>{0});
@@ -147,14 +149,14 @@ TEST_CASE("steps whose squared length underflows") {
 namespace {
 
 struct Grazed {
-  double length;  ///< of the step
-  double offset;  ///< of everything
-  double jitter;  ///< of the environment points, metres
+  double length;  ///< length of the step
+  double offset;  ///< distance of everything from the origin
+  double jitter;  ///< metres by which the environment points are moved at random
   std::size_t model_points;
 };
 
-/// Model points on a line across their way, and environment points around one place beyond the
-/// line's end at the radius from its segment: as far from the middle of the model as can be.
+/// Checks model points on a line across their way, with environment points around one place beyond
+/// the line's end at the radius from its segment: as far from the middle of the model as can be.
 std::uint64_t check_grazed(Random& random, const Grazed& g, std::uint64_t& total) {
   const double radius = uniform(random, 0.05, 2);
   const Vec3 along = random_direction(random);

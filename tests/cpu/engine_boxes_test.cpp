@@ -1,5 +1,5 @@
-// Boxes that are accepted as a whole: every point within the radius of one model point, or not
-// quite.
+// Boxes that are accepted as a whole, because every point is within the radius of one model point,
+// and boxes that just miss that.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -10,7 +10,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// A lattice whose farthest corner lies exactly 5 units from its first.
+/// Points of a lattice whose farthest corner lies exactly 5 units from its first.
 std::vector<Quantum> lattice() {
   std::vector<Quantum> points;
   for (std::int32_t y = 0; y <= 40; ++y) {

@@ -10,7 +10,7 @@ using namespace clearway::test;
 
 TEST_CASE("matrices that make a model of any size as large as the scene") {
   Scene scene;
-  scene.points.resize(800);  // what bounds cannot tell here is every pair's own work
+  scene.points.resize(800);  // few, because bounds tell nothing here and every pair is tested
   scene.poses.resize(15);
   const double size = GENERATE(1e-104, 1e-18, 1e104);
   for (Vec3& m : scene.model) {
@@ -44,7 +44,7 @@ TEST_CASE("radii") {
     scene.poses = {translation({0, 0, 0})};
     scene.radius = 1e-170;
     CHECK(scene.check() == 0);
-    scene.radius = 1e-155;  // but here the distances are zero, and below
+    scene.radius = 1e-155;  // here the computed distances are zero, so below the radius
     CHECK(scene.check() == scene.points.size());
   }
   SECTION("of a few quanta") {

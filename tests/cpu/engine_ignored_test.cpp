@@ -1,4 +1,4 @@
-// Every engine against brute force on points some of which are ignored: the answer is that of the
+// Every engine against brute force on points of which some are ignored: the answer is that of the
 // others alone.
 #include <catch2/catch.hpp>
 
@@ -14,7 +14,7 @@ struct IgnoringScene : Scene {
   std::vector<std::uint8_t> ignore_classes;
   std::vector<Box> ignore_boxes;
 
-  /// Colliding points that are not ignored.
+  /// Checks every engine. Returns how many points collide and are not ignored.
   std::uint64_t check_ignoring() {
     classes.resize(points.size());
     QueryParameters parameters{radius};
@@ -124,7 +124,7 @@ TEST_CASE("an ignored point is no pose's nearest one, however near it is") {
   IgnoringScene scene;
   scene.points.resize(200);
   const std::size_t others = scene.points.size();
-  for (const Pose& pose : scene.poses) {  // whole blocks of them in the middle of the model
+  for (const Pose& pose : scene.poses) {  // whole blocks are ignored in the middle of the model
     for (int i = 0; i < 64; ++i) {
       scene.points.push_back(
           quantise(std::vector{transform(pose, Vec3{0, 0, 0})}, scene.quantisation)[0]);

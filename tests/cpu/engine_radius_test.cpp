@@ -38,15 +38,16 @@ namespace {
 
 struct Boundary {
   Vec3 offset;
-  double jitter;  ///< metres; about the rounding of the coordinates
+  double jitter;  ///< metres; about as large as the rounding of the coordinates
   Vec3 stretch;
   std::size_t model_points;
   std::size_t poses;
-  double length = 3;  ///< of the model, metres
+  double length = 3;  ///< length of the model, metres
 };
 
-/// Model points on a line, at poses that hardly move, and environment points beyond the line's end
-/// at the radius, give or take `jitter`: as far from every sphere's centre as a collision can be.
+/// Checks model points on a line, at poses that hardly move, with environment points beyond the
+/// line's end at the radius, give or take `jitter`: as far from every sphere's centre as a
+/// collision can be.
 std::uint64_t check_boundary(Random& random, const Boundary& boundary, std::uint64_t& total) {
   const double radius = uniform(random, 0.05, 2);
   const Vec3 along = random_direction(random);
@@ -87,7 +88,7 @@ void check_boundaries(const Boundary& boundary) {
   Random random(11);
   std::uint64_t total = 0, colliding = 0;
   for (int i = 0; i < 40; ++i) colliding += check_boundary(random, boundary, total);
-  // Both answers occur in numbers.
+  // Both answers occur many times.
   CHECK(colliding > total / 20);
   CHECK(colliding < total - total / 20);
 }

@@ -79,7 +79,7 @@ std::uint64_t check_random_scene(std::uint64_t seed) {
 
 TEST_CASE("random scenes") {
 #ifdef CLEARWAY_SANITIZED
-  constexpr std::uint64_t kScenes = 100;  // each takes tens of times as long
+  constexpr std::uint64_t kScenes = 100;  // with sanitizers each takes tens of times as long
 #else
   constexpr std::uint64_t kScenes = 1000;
 #endif

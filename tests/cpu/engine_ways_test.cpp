@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::uint32_t kNever = HitSet::kNever;
 
-/// By the definition of version 0.1.0: the least pose that touches e, or from which a segment
-/// starts whose inside touches e. at_pose: whether the pose itself does.
+/// The first pose of a point e by the definition of version 0.1.0: the least pose that touches e,
+/// or from which a segment starts whose inside touches e. at_pose: whether the pose itself touches
+/// e.
 struct Earlier {
   std::uint32_t pose = kNever;
   bool at_pose = false;
@@ -64,7 +65,7 @@ TEST_CASE("ways with and without their ends touch the same points, one pose apar
 
 namespace {
 
-/// A pose of whole numbers: a quarter turn about an axis, or none, and a place.
+/// A pose of whole numbers: a place, and a quarter turn about an axis or none.
 struct WholePose {
   std::int64_t turn[9];
   WholePoint place;
@@ -106,7 +107,7 @@ struct WholePose {
 struct WholeScene {
   std::vector<WholePoint> environment, model;
   std::vector<WholePose> poses;
-  std::int64_t quarters;  ///< of the radius
+  std::int64_t quarters;  ///< the radius in quarters of a unit
 
   explicit WholeScene(Random& random) : quarters(static_cast<std::int64_t>(1 + below(random, 20))) {
     for (int i = 0; i < 300; ++i) environment.push_back(WholePose::whole(random, 13));
@@ -116,7 +117,7 @@ struct WholeScene {
     for (std::uint64_t i = 0; i < steps; ++i) add_step(random);
   }
 
-  /// A stop, a short step or a jump.
+  /// Adds a stop, a short step or a jump.
   void add_step(Random& random) {
     WholePose next = poses.back();
     const std::uint64_t kind = below(random, 4);
@@ -137,8 +138,8 @@ struct WholeScene {
     return out;
   }
 
-  /// The first way whose closed segments come nearer to e than the radius. undecided: that double
-  /// may round a tie with the radius on the way there.
+  /// The first way whose closed segments come nearer to e than the radius. undecided: set where
+  /// double may round a tie with the radius on one of the ways up to there.
   std::uint32_t first_way(const WholePoint& e, bool& undecided) const {
     const std::size_t ways = poses.size() == 1 ? 1 : poses.size() - 1;
     for (std::size_t i = 0; i < ways; ++i) {

@@ -1,4 +1,4 @@
-// What only the grid engine has: its options, its work list, its pages, its statistics.
+// Tests of what only the grid engine has: its options, its work list, its pages, its statistics.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -32,7 +32,7 @@ struct Scene {
     return {model, poses, {.radius = radius, .first_pose = first_pose}};
   }
 
-  /// How many points the run answers wrongly.
+  /// The number of points that the run answers wrongly.
   std::uint64_t wrong(const GridRun& run, const MemoryCloudOptions& packing,
                       GridStatistics* statistics = nullptr) const {
     const auto expected = brute_force_first_poses(positions_of(points, kMillimetre), query());
@@ -79,7 +79,7 @@ TEST_CASE("pages of one cell and of all, one slot and many") {
 }
 
 TEST_CASE("a model of several tasks") {
-  // More parts than one task looks at, the last one short.
+  // The model has more parts than one task looks at, and the last one is short.
   Scene scene(300);
   scene.model = random_points(scene.random, {{-1, -1, -0.3}, {1, 1, 0.3}},
                               kTaskParts * kPartGroups * kGroupPoints + 5000);
@@ -101,7 +101,7 @@ TEST_CASE("a sparse cell takes no more memory, and its clusters are searched in 
   GridStatistics statistics;
   CHECK(scene.wrong({}, {65536, 0}, &statistics) == 0);
   CHECK(statistics.searches > 0);
-  // A third of the points would be 2,000 a search.
+  // Testing a third of the points would be 2,000 tests a search.
   CHECK(statistics.point_tests < 100 * statistics.searches);
 }
 
@@ -149,8 +149,8 @@ TEST_CASE("what the grid engine does not offer is refused") {
 }
 
 TEST_CASE("the grid cell chosen follows radius and density") {
-  CHECK(cheapest_grid_cell(0.1, 0) >= 0.2);     // looking up is all the cost
-  CHECK(cheapest_grid_cell(0.1, 1e7) <= 0.05);  // testing points is
+  CHECK(cheapest_grid_cell(0.1, 0) >= 0.2);     // looking up is the whole cost
+  CHECK(cheapest_grid_cell(0.1, 1e7) <= 0.05);  // testing points is the whole cost
   CHECK(cheapest_grid_cell(1, 100) == 10 * cheapest_grid_cell(0.1, 10'000));
   for (double density = 1; density < 1e7; density *= 3) {
     CHECK(cheapest_grid_cell(0.1, density) >= cheapest_grid_cell(0.1, 3 * density));
@@ -159,7 +159,7 @@ TEST_CASE("the grid cell chosen follows radius and density") {
   const auto plane =
       quantise(random_points(random, {{500, -200, 0}, {510, -190, 0}}, 100'000), kMillimetre);
   const double density = surface_density(MemoryCloud(plane, kMillimetre));
-  CHECK(density > 700);  // of 1000 a square metre
+  CHECK(density > 700);  // the true density is 1000 a square metre
   CHECK(density < 2000);
   CHECK(surface_density(MemoryCloud({}, kMillimetre)) == 0);
 }

@@ -1,4 +1,4 @@
-// What only the kdtree engine promises.
+// Tests of what only the kdtree engine promises.
 #include "cpu/kdtree_engine.hpp"
 
 #include <atomic>

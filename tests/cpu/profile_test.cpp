@@ -36,7 +36,7 @@ struct ProfileScene : clearway::test::Scene {
     }
   }
 
-  /// The least d2 of a pose.
+  /// The least d2 at a pose, by brute force.
   double least(std::size_t pose) const {
     Query query{model, {poses[pose]}, {radius}};
     query.profile = 1e100;
@@ -79,7 +79,7 @@ TEST_CASE("a profile at the exact distance of a pose") {
       one.poses = {scene.poses[pose]};
       return one.check_profile(limit);
     };
-    CHECK(found(distance) == 0);  // not below it
+    CHECK(found(distance) == 0);  // the profile's distance itself is not below it
     while (rounded_product(distance, distance) <= scene.least(pose)) {
       distance = std::nextafter(distance, 1e9);
     }
@@ -135,7 +135,7 @@ TEST_CASE("profiles of stops, jumps and ways back") {
 }
 
 TEST_CASE("profiles for which many points tie") {
-  // All in exact numbers: whole planes of points are equally far.
+  // All numbers are exact, so that whole planes of points are equally far.
   ProfileScene scene;
   scene.quantisation = {{0x1p-10, 0x1p-10, 0x1p-10}, {0, 0, 0}};
   scene.points.clear();
@@ -184,8 +184,8 @@ TEST_CASE("profiles far from the origin and of matrices that are not rigid") {
 }
 
 TEST_CASE("profiles where roundings decide the point and the model point") {
-  // Points that are all as far from a model of points around one place, give or take a few
-  // roundings: the least computed d2 is not that of the nearest point.
+  // All points are equally far from a model of points around one place, but for a few roundings:
+  // the least computed d2 is not that of the nearest point.
   Random random(29);
   for (int trial = 0; trial < 40; ++trial) {
     const double far = trial % 3 == 0 ? 0 : trial % 3 == 1 ? 1e3 : 5e6;

@@ -11,7 +11,7 @@ inline const Quantisation kTenthMillimetre{{1e-4, 1e-4, 1e-4}, {0, 0, 0}};
 inline const Box kRoom{{-4, -3, -1}, {5, 4, 2}};
 inline const Box kPart{{-0.6, -0.4, -0.3}, {0.7, 0.5, 0.2}};
 
-/// A cloud in kRoom, a model and a path through it, all random.
+/// A random cloud in kRoom, a random model and a random path through the room.
 struct Scene {
   Random random{7};
   Quantisation quantisation = kTenthMillimetre;

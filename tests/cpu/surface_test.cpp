@@ -86,7 +86,7 @@ TEST_CASE("points on a surface and at the radius from it") {
   if (far) scene.move_far_away({-5e6, 5e5, 100});
   const std::vector<Vec3> places =
       places_beside(scene.random, scene.surface, scene.poses, radius, 300);
-  // Quanta of about a rounding, so that places are where they are wanted.
+  // Quanta are about as large as a rounding, so that places are where they are wanted.
   for (int k = 0; k < 3; ++k) {
     scene.quantisation.offset[k] = places[0][k];
     double reach = 1e-6;
@@ -194,7 +194,7 @@ TEST_CASE("surfaces within a tolerance") {
 
 namespace {
 
-/// A long load of few triangles, and walls beside it that it just fits between.
+/// A long load of few triangles, and walls beside it between which it just fits.
 struct GrazingScene : SurfaceScene {
   explicit GrazingScene(double bend) {
     surface = box_surface({{-3, -0.4, -0.3}, {3, 0.5, 0.2}});

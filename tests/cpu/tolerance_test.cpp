@@ -15,7 +15,7 @@ Vec3 beside(const Vec3& from, const Vec3& direction, double distance) {
           from.z + distance * direction.z};
 }
 
-/// A scale that leaves the integers some room beyond the points.
+/// A quantisation whose integers have some room beyond the points.
 Quantisation quantisation_of(const std::vector<Vec3>& points) {
   Quantisation quantisation{};
   for (int k = 0; k < 3; ++k) {
@@ -34,7 +34,7 @@ ToleratedResults check(const std::vector<Vec3>& environment, const std::vector<V
   return check_tolerance(quantise(environment, quantisation), quantisation, query);
 }
 
-/// Points at about the radius from random model points at random poses, out to twice the tolerance
+/// Places at about the radius from random model points at random poses, out to twice the tolerance
 /// and a few ulps to either side of it.
 std::vector<Vec3> points_at_radius(Random& random, const std::vector<Vec3>& model,
                                    const std::vector<Pose>& poses, double radius, double tolerance,
@@ -62,8 +62,8 @@ ToleratedResults check_at_radius(Random& random, const std::vector<Vec3>& model,
 
 }  // namespace
 
-// All that is left out lies on one line, as far as the tolerance lets it, and the points beyond its
-// end: here every part of the tolerance is spent.
+// Everything that is left out lies on one line, as far away as the tolerance allows, and so do the
+// points beyond its end: here every part of the tolerance is spent.
 TEST_CASE("distances that grow by all of the tolerance") {
   Random random(3);
   std::uint64_t differing = 0;
@@ -93,8 +93,8 @@ TEST_CASE("distances that grow by all of the tolerance") {
   CHECK(differing > 300);  // the tolerance is made use of
 }
 
-// The same, where the field's candidate is one of many points just too far to be taken, so that
-// bounds settle what the thinning made too far.
+// Everything that is left out lies on one line again, and the field's candidate is one of many
+// points just too far to be taken, so that bounds settle what the thinning moved too far.
 TEST_CASE("a tolerance spent on thinning and then on bounds") {
   Random random(4);
   std::uint64_t differing = 0;

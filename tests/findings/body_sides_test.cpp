@@ -12,11 +12,11 @@ namespace {
 
 const std::vector<Vec3> kCube{{-1, -1, -1}, {1, 1, 1}};
 
-/// A path along x, and two bodies beside it: one is turned to y, one is not there at pose 0.
+/// A path along x, and two bodies beside it, of which one is turned to y and one has no pose 0.
 struct TwoBodies : Found {
   TwoBodies() {
     poses = {translation({100, 50, 0}), translation({101, 50, 0})};
-    const Pose turned{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {100, 60, 0}};  // ahead is y, left is -x
+    const Pose turned{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {100, 60, 0}};  // y is ahead, -x is left
     bodies = {{.name = "a < b & c", .model = kCube, .poses = {turned, turned}, .path_pose = {0, 1}},
               {.name = "rear",
                .model = {{-1, -1, -4}, {1, 1, 4}},
@@ -67,9 +67,9 @@ TEST_CASE("with clearances it is seen from the nearest body at the nearest pose"
   CHECK(seen.body == 1u);
   CHECK(seen.side == Side::kRight);
   CHECK(seen.lateral == -3.5);
-  found.clearances.pose = {0};  // where it is not
+  found.clearances.pose = {0};  // a pose that the second body lacks
   const Conflict lost = found.conflict(found.bodies);
-  CHECK(lost.side == Side::kRight);  // of the body that touches first, at its first pose
+  CHECK(lost.side == Side::kRight);  // seen from the body that touches first, at its first pose
   CHECK_FALSE(lost.lateral);
   CHECK_FALSE(lost.height);
 }

@@ -23,7 +23,7 @@ constexpr const char* kUtm =
 constexpr const char* kOwn =
     R"(PROJCS["Site \ grid ""A""",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]])";
 
-/// Two conflicts of three points, written.
+/// Two conflicts of three points in a written file.
 struct Written {
   explicit Written(const std::string& wkt) {
     found.poses = {translation({500'000, 4'000'000, 100})};
@@ -103,10 +103,10 @@ TEST_CASE("a GeoPackage has the scans' system, its layers and its marks") {
   CHECK(value("SELECT points FROM conflicts WHERE id = 2") == "3");
   CHECK(value("SELECT least_distance FROM conflicts WHERE id = 2") == "null");
   CHECK(value("SELECT typeof(source) FROM stretches") == "integer");
-  // A point: 8 bytes of header, 5 of well-known binary, three numbers.
+  // A point has 8 bytes of header, 5 of well-known binary and three numbers.
   CHECK(value("SELECT length(geom) FROM conflicts") == std::to_string(8 + 5 + 24));
   CHECK(value("SELECT length(geom) FROM footprints") == std::to_string(8 + 32 + 13 + 5 * 24));
-  // The only pose twice.
+  // The line has the only pose twice.
   CHECK(value("SELECT length(geom) FROM stretches") == std::to_string(8 + 32 + 9 + 2 * 24));
 }
 

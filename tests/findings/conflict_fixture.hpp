@@ -27,8 +27,8 @@ struct Found {
   double clearance = 0;
   ClearanceRows clearances = {};
   std::uint64_t solids = 0;
-  std::vector<Body> bodies = {};         ///< of a vehicle
-  std::vector<std::uint32_t> body = {};  ///< of each row; there where bodies are
+  std::vector<Body> bodies = {};         ///< the bodies of a vehicle
+  std::vector<std::uint32_t> body = {};  ///< the body of each row, where there are bodies
 
   ResultHeader header() const {
     ResultHeader out;
@@ -66,7 +66,8 @@ struct Found {
   }
 };
 
-/// The definition, with integers of 128 bits where the scales are equal.
+/// Whether two points are neighbours by the definition, with integers of 128 bits where the scales
+/// are equal.
 inline bool neighbours(const Found& found, std::size_t i, std::size_t j, double gap) {
   const double* scale = found.quantisation.scale;
   std::int64_t d[3];
@@ -108,7 +109,7 @@ inline std::vector<std::size_t> all_pairs(const Found& found, double gap) {
   return group;
 }
 
-/// Checks conflict_of, without small groups and cuts, against all_pairs(). Gives the number of
+/// Checks conflict_of, without small groups and cuts, against all_pairs(). Returns the number of
 /// groups.
 inline std::size_t check_groups(const Found& found, double gap, int threads = 2) {
   const ScratchFolder folder;
@@ -129,7 +130,7 @@ inline std::size_t check_groups(const Found& found, double gap, int threads = 2)
     if (known->second != conflict_of[i]) FAIL("row " << i << " is in another group");
     ++points[conflict_of[i]];
   }
-  // As many numbers as groups: no number is of two groups.
+  // There are as many numbers as groups, so that no two groups share a number.
   REQUIRE(points.size() == id_of.size());
   REQUIRE(conflicts.listed.size() == id_of.size());
   CHECK(conflicts.groups == id_of.size());

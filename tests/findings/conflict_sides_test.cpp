@@ -29,12 +29,12 @@ TEST_CASE("lateral and height are along the axes of the model at the pose") {
   CHECK(left.lateral == 2.5);
   CHECK(left.height == 0.75);
   CHECK(at({101, 48.5, -0.75}, translation({100, 50, 0})).lateral == -1.5);
-  const Pose turned{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {100, 50, 0}};  // ahead is y, left is -x
+  const Pose turned{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {100, 50, 0}};  // y is ahead, -x is left
   CHECK(at({98, 50, 3}, turned).lateral == 2);
   CHECK(at({98, 50, 3}, turned).height == 3);
   ConflictOptions how;
   how.forward = Axis::kPlusY;
-  how.up = Axis::kMinusZ;  // left is +x: from above it would be -x
+  how.up = Axis::kMinusZ;  // +x is left; seen from above it would be -x
   CHECK(at({102, 50, 3}, translation({100, 50, 0}), how).lateral == 2);
   CHECK(at({102, 50, 3}, translation({100, 50, 0}), how).height == -3);
 }

@@ -1,4 +1,4 @@
-// What is said of conflicts: numbers, cuts, distances, and what is refused.
+// What Clearway tells about conflicts: numbers, cuts, distances, and what is refused.
 #include "clearway/error.hpp"
 #include "findings/conflict_fixture.hpp"
 
@@ -84,7 +84,7 @@ TEST_CASE("a group is cut at multiples of the split where it is longer") {
   CHECK(cut.longest_group_points == 600);
   options.split = 0;
   CHECK(conflicts_of(found, options).listed.size() == 1);
-  options.split = 59;  // as long as it is
+  options.split = 59;  // as long as the conflict
   CHECK(conflicts_of(found, options).listed.size() == 1);
   options.split = 58.5;
   CHECK(conflicts_of(found, options).listed.size() == 2);
@@ -156,7 +156,7 @@ TEST_CASE("least distances come from the clearances, of equal ones the smallest 
   CHECK(out.listed[0].nearest_source == 2);
   CHECK(out.listed[0].nearest_pose == 1);
   CHECK(out.listed[0].encroachment == 0.25);
-  CHECK_FALSE(out.listed[0].depth);  // of points
+  CHECK_FALSE(out.listed[0].depth);  // a model of points has no depth
   CHECK(out.listed[1].least_distance == 0.5);
   CHECK(out.listed[1].nearest_source == 8);
 }

@@ -44,7 +44,7 @@ TEST_CASE("random points are grouped as all pairs are") {
       ++scenes;
     }
   }
-  CHECK(groups > 3 * scenes);  // not all in one
+  CHECK(groups > 3 * scenes);  // not all points are in one group
 }
 
 TEST_CASE("axes of different scales are grouped as all pairs are") {
@@ -68,14 +68,14 @@ TEST_CASE("points exactly at the gap are neighbours, wherever the scan is") {
       for (const std::int32_t more : {0, 1}) {
         Found found;
         found.quantisation = {{0.001, 0.001, 0.001}, {offset.x, offset.y, offset.z}};
-        // A lattice of which neighbours are as far apart as the gap, or a step more.
+        // A lattice whose neighbours are as far apart as the gap, or a step more.
         for (std::int32_t i = 0; i < 216; ++i) {
           const std::int32_t edge = steps + more;
           found.quanta.push_back({i % 6 * edge, i / 6 % 6 * edge, i / 36 * edge});
         }
         CHECK(check_groups(found, gap) == (more == 0 ? 1 : 216));
       }
-      // 0.3 m as the diagonal of 0.1, 0.2 and 0.2.
+      // Points 0.3 m apart, on the diagonal of 0.1, 0.2 and 0.2.
       Found slanted;
       slanted.quantisation = {{0.001, 0.001, 0.001}, {offset.x, offset.y, offset.z}};
       slanted.quanta = {{0, 0, 0}, {100, 200, 200}, {1000, 0, 0}, {1100, 200, 201}};
@@ -108,7 +108,7 @@ TEST_CASE("integers over their whole range are compared without overflow") {
 }
 
 TEST_CASE("dense places that are just too far apart stay apart") {
-  // Two tilted plates of many points, a step more apart than the gap, or exactly the gap.
+  // Two tilted plates of many points that are the gap, or a step more, apart.
   for (const std::int32_t more : {0, 1}) {
     Found found;
     for (std::int32_t i = 0; i < 1500; ++i) {
@@ -116,7 +116,7 @@ TEST_CASE("dense places that are just too far apart stay apart") {
       found.quanta.push_back({x, y, z});
       found.quanta.push_back({x, y, z + 300 + more});
     }
-    // The nearest pairs are not straight above each other: as all pairs say.
+    // The nearest pairs are not straight above each other; all_pairs() decides.
     check_groups(found, 0.3);
     CHECK(check_groups(found, 0.2) == 2);
   }

@@ -7,7 +7,7 @@ using namespace clearway;
 
 namespace {
 
-/// Conflicts of boxes of 1 m, from these places on.
+/// Conflicts with boxes of 1 m, whose least corners are these places.
 Conflicts at(const std::vector<Vec3>& places) {
   Conflicts out;
   for (const Vec3& p : places) {
@@ -68,13 +68,13 @@ TEST_CASE("conflicts without extent match at their place whatever the gap") {
   for (const double gap : {1e-300, 1e-12, 0.3}) {
     CHECK(match_conflicts(a, a, gap).same == Pairs{{1, 1}, {2, 2}, {3, 3}});
   }
-  // Flat ones that touch: those with the most in common first.
+  // Of flat boxes that touch, those with the most in common are matched first.
   a.listed[0].box = {{500'000, 5'000'000, 100}, {500'010, 5'000'010, 100}};
   a.listed[1].box = {{500'008, 5'000'000, 100}, {500'020, 5'000'010, 100}};
   Conflicts b = a;
   std::swap(b.listed[0].box, b.listed[1].box);
   CHECK(match_conflicts(a, b, 1e-300).same == Pairs{{1, 2}, {2, 1}, {3, 3}});
-  // As ever: boxes that only touch when grown do not overlap.
+  // Boxes that only touch when grown do not overlap.
   CHECK(match_conflicts(at({{0, 0, 0}}), at({{2, 0, 0}}), 0.5).same.empty());
 }
 

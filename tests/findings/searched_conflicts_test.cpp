@@ -17,7 +17,7 @@ namespace {
 
 constexpr Quantisation kSteps{{0.001, 0.001, 0.001}, {0, 0, 0}};
 
-/// Points and a query, searched.
+/// Points and a query, and the conflicts that a search finds.
 struct Scene {
   Scene(const std::vector<Vec3>& places, Query asked) : query(std::move(asked)) {
     std::vector<Quantum> quanta;
@@ -43,7 +43,8 @@ struct Scene {
     return find_conflicts(Result(folder / "out.h5"), query.poses, options, conflict_of);
   }
 
-  /// Whether any of the points collides at poses first to last of the shifted path.
+  /// Whether any point of the group collides at the conflict's poses, first to last, of the shifted
+  /// path.
   bool collides(const std::vector<Vec3>& group, const Conflict& conflict, double shift) const {
     Query moved = query;
     moved.between_poses = false;
@@ -137,7 +138,8 @@ TEST_CASE("a pole that a long load meets in its middle is named with station, si
     poses.push_back(rotation({0, 0, 1}, turn, {50 * std::sin(turn), 50 * (1 - std::cos(turn)), 0}));
   }
   const Pose& middle = poses[40];
-  // 1.4 m to the left of the middle of the load, whose side is at 1.5 m: 0.1 m inside it.
+  // This point is 1.4 m to the left of the middle of the load, whose side is at 1.5 m, so 0.1 m
+  // inside it.
   const double *r = middle.rotation, *t = middle.translation;
   const Vec3 at{t[0] + 1.4 * r[1], t[1] + 1.4 * r[4], 0};
   for (const bool solid : {true, false}) {
@@ -175,7 +177,8 @@ TEST_CASE("what the front of a vehicle meets is in front, whatever it is made of
     REQUIRE(found.listed.size() == 1);
     CHECK(found.listed[0].side == Side::kFront);
     CHECK(*found.listed[0].obstacle_chainage == Approx(12.1).margin(1e-9));
-    // From the pose at 10 m, whose front is at 12 m, to where its rear at -2 has passed.
+    // The conflict reaches from the pose at 10 m, whose front is at 12 m, to where the rear at -2 m
+    // has passed.
     CHECK(found.listed[0].chainage_from == 10);
     CHECK(found.listed[0].chainage_to == 14);
   }

@@ -11,7 +11,7 @@ namespace {
 
 std::filesystem::path street(const std::string& name) { return data_folder() / "street" / name; }
 
-/// Those of the colliding points that lie in a part of the street, at the radius.
+/// The colliding points, at the radius, in a part of the street.
 Found crop(const Store& store, double radius, const ScratchFolder& folder, const Box& part) {
   const Query query(read_model_points(street("beetle.ply")),
                     read_trajectory(street("trajectory.txt")),

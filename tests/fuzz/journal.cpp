@@ -1,6 +1,6 @@
-// Any bytes as a journal: refused, or what it says is of the cloud and the query, and it can be
-// gone on with. The first byte chooses query and kind: the bytes of a file, or payloads (their
-// size in two bytes before each) of records whose hashes are right.
+// Any bytes as a journal: either it is refused, or what it says belongs to the cloud and the query,
+// and a run can continue from it. The first byte chooses query and kind: the bytes of a file, or
+// payloads (their size in two bytes before each) of records whose hashes are right.
 #include "io/journal/journal.hpp"
 
 #include <cstring>
@@ -22,7 +22,7 @@ enum Kind : std::uint8_t { kFirstPose = 1, kClearance = 2, kPayloads = 4, kProfi
 constexpr double kNever = 1e9;  // seconds
 const JournalIdentity kIdentity{{"query", "any"}};
 
-/// Three cells, the last of 22 points.
+/// A cloud of three cells, the last of 22 points.
 const MemoryCloud& cloud() {
   static const MemoryCloud cloud(cube_cloud(150, -4000, 4000, 3), kMillimetres, {64, 0});
   return cloud;
@@ -97,7 +97,7 @@ SearchResult restored(const SearchJournal& journal, const Query& query) {
   return answer;
 }
 
-/// What could be opened is restored and gone on with; nothing of that may be refused.
+/// Restores a journal that could be opened and continues from it; nothing of that may be refused.
 void go_on(const std::filesystem::path& path, const JournalReader& read, SearchJournal& journal,
            const Query& query) {
   const SearchResult before = restored(journal, query);

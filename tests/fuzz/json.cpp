@@ -1,5 +1,5 @@
-// Any bytes as the JSON files that people write: the first byte chooses a vehicle's file, a
-// campaign's, or any value, which has to be what the library for JSON reads.
+// Any bytes as the JSON files that people write. The first byte chooses a vehicle's file, a
+// campaign's, or any value, which has to be what the JSON library reads.
 #include <cstdlib>
 
 #include "campaign/campaign_file.hpp"
@@ -12,8 +12,8 @@ using namespace clearway::test;
 
 namespace {
 
-/// What parse_json() takes, the library takes, with the same value; what it refuses although the
-/// library takes it is nested too deep or has a key twice.
+/// Checks that the JSON library takes what parse_json() takes, with the same value, and that what
+/// parse_json() refuses alone is nested too deep or has a key twice.
 void compare_with_library(const std::string& text) {
   using nlohmann::ordered_json;
   try {
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const BodyEntry& entry : read_vehicle_file(input.path(), 0.3048)) {
         if (entry.name.empty()) std::abort();
       }
-    } else if (text.find('/') == std::string::npos) {  // patterns look through folders
+    } else if (text.find('/') == std::string::npos) {  // patterns with a slash would search folders
       const campaign::Campaign read = campaign::read_campaign(input.path());
       if (read.radii.size() != read.radius_names.size() || read.routes.empty()) std::abort();
     }

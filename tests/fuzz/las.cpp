@@ -7,7 +7,7 @@ using namespace clearway::test;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kFormatByte = 104;
-  if (size > kFormatByte && data[kFormatByte] >= 0x40) return 0;  // laz.cpp's
+  if (size > kFormatByte && data[kFormatByte] >= 0x40) return 0;  // LAZ, which laz.cpp reads
   const MemoryFile input({data, size});
   may_refuse([&] { read_twice(*read_las(InputBuffer(input.open(), InputBuffer::Access::kSeek))); });
   may_refuse([&] {

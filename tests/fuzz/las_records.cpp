@@ -1,4 +1,4 @@
-// Any bytes, whose records are copied as export --scans does.
+// Any bytes as LAS, whose records are copied as export --scans does.
 #include <cstdlib>
 
 #include "io/export/scan_records.hpp"
@@ -10,7 +10,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// Extra bytes that are described fill what the record has beyond its format.
+/// Checks that the described extra bytes fill what the record has beyond its format.
 void check(const LasRecordFormat& format) {
   if (format.extra_bytes.size() % kLasExtraBytes != 0) std::abort();
 }

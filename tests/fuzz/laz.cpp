@@ -10,7 +10,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// Reads some points, twice. Not all: a byte may hold a thousand of them.
+/// Reads some points twice. Not all are read, because a byte may hold a thousand of them.
 void read_some(const MemoryFile& input) {
   constexpr int kMostBatches = 4;
   const auto reader = read_las(InputBuffer(input.open(), InputBuffer::Access::kSeek));
@@ -26,7 +26,8 @@ void read_some(const MemoryFile& input) {
   if (counts[0] != counts[1] || counts[0] > *reader->info().declared_points) std::abort();
 }
 
-/// settings: format, what else, points (2 bytes), points of a chunk.
+/// The bytes before the points of a sound file. settings: format, flags, points (2 bytes), points
+/// of a chunk.
 std::string sound_head(std::string_view settings) {
   LazBytes laz;
   const auto number = [&](std::size_t at) { return static_cast<unsigned char>(settings[at]); };
@@ -38,7 +39,7 @@ std::string sound_head(std::string_view settings) {
   laz.chunked = (number(1) & 8u) == 0;
   laz.chunks = {number(4) * 50u + 1};
   std::string head = laz.head(number(2) + 256u * number(3));
-  // Older versions of items.
+  // Sets older versions of the items.
   if ((number(1) & 16u) != 0 && format < 4) {
     for (std::size_t at = head.size() - 2; at > laz.las.points_offset() + 54 + 34; at -= 6) {
       head[at] = 1;

@@ -12,7 +12,8 @@
 
 namespace clearway::test {
 
-/// A file of these bytes, in memory where the system has a folder for that. One at a time.
+/// A file of given bytes, in memory where the system has a folder for that. Only one may exist at a
+/// time.
 class MemoryFile {
  public:
   explicit MemoryFile(std::span<const std::uint8_t> bytes) {
@@ -23,7 +24,7 @@ class MemoryFile {
   ~MemoryFile() { ::unlink(path_.c_str()); }
 
   const std::filesystem::path& path() const { return path_; }
-  /// At the first byte.
+  /// The file, opened for reading at its first byte.
   File open() const { return File::open_for_reading(path_); }
 
  private:

@@ -6,7 +6,7 @@
 
 namespace clearway::test {
 
-/// One cell whose x, y and z are the same packed bytes.
+/// A cloud of one cell whose x, y and z are the same packed bytes.
 class OneCellCloud final : public PackedCloud {
  public:
   OneCellCloud(std::span<const std::byte> chunk, std::uint32_t count)

@@ -1,5 +1,5 @@
-// Any bytes as a packed chunk: refused, or every way to decode it gives the same values. The first
-// two bytes are the number of values.
+// Any bytes as a packed chunk: either it is refused, or every way to decode it gives the same
+// values. The first two bytes are the number of values.
 #include "core/cloud/packed_chunk.hpp"
 
 #include <cstdlib>
@@ -37,7 +37,7 @@ std::vector<Value> check_decoding(std::span<const std::byte> bytes, std::uint32_
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
   const std::uint32_t count = 1 + data[0] + 256u * (data[1] % 8);
-  // A block of exactly this size, so that a read past its end is seen.
+  // The bytes lie in a block of exactly their size, so that a read past its end is seen.
   const std::size_t chunk_bytes = size - 2;
   const auto copy = std::make_unique<std::byte[]>(chunk_bytes);
   std::copy_n(reinterpret_cast<const std::byte*>(data) + 2, chunk_bytes, copy.get());

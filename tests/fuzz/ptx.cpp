@@ -17,7 +17,7 @@ void read_and_tell(PointReader& reader) {
 }
 
 void read_as(unsigned what, InputBuffer input) {
-  static const ReaderScratch empty;  // where a scan is alone, and needs no pose
+  static const ReaderScratch empty;  // a folder in which a scan is alone, so that it needs no pose
   switch (what) {
     case 0:
       return read_and_tell(*read_ptx(std::move(input)));

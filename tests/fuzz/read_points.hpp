@@ -8,7 +8,7 @@
 
 namespace clearway::test {
 
-/// Reads all points twice, as a conversion does; the same number must come.
+/// Reads all points twice, as a conversion does, and checks that their number is the same.
 inline void read_twice(PointReader& reader) {
   PointBatch batch;
   std::uint64_t counts[2] = {0, 0};
@@ -22,7 +22,7 @@ inline void read_twice(PointReader& reader) {
   if (counts[0] != counts[1]) std::abort();
 }
 
-/// Lines ascend, one for each point asked for at the most.
+/// Asks for lines of points and checks that they ascend, at most one for each point.
 inline void tell_lines(PointReader& reader) {
   const std::uint64_t points[] = {0, 1, 5};
   const auto lines = reader.lines_of(points);

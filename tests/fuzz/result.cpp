@@ -1,4 +1,4 @@
-// Any bytes as a result.
+// Any bytes, read as a result.
 #include "io/result/check/compare_results.hpp"
 #include "io/result/check/verify_result.hpp"
 #include "io/result/result_rows.hpp"

@@ -17,7 +17,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// The seeds of one target.
+/// Writes the seeds of one fuzz target.
 class Seeds {
  public:
   Seeds(const std::filesystem::path& folder, const std::string& target) : folder_(folder / target) {
@@ -48,7 +48,7 @@ void write_las_seeds(Seeds seeds) {
   }
 }
 
-/// Each as a file and as its content: see e57.cpp.
+/// Writes each E57 seed as a file and as its content; see e57.cpp.
 void write_e57_seeds(Seeds seeds) {
   E57Bytes file;
   file.root_xml = "<coordinateMetadata type=\"String\">LOCAL_CS[\"a\"]</coordinateMetadata>";
@@ -77,7 +77,7 @@ void write_e57_seeds(Seeds seeds) {
   }
 }
 
-/// Whole files, and the same points behind the settings of laz.cpp.
+/// Writes LAZ seeds as whole files, and the same points behind the settings of laz.cpp.
 void write_laz_seeds(Seeds seeds) {
   for (const unsigned format : kLazFormats) {
     LazBytes laz = laz_bytes(format, 60);
@@ -239,7 +239,8 @@ void write_result_seeds(Seeds seeds) {
   }
 }
 
-/// Payloads of every kind of record, as journal.cpp's first bytes 0 to 3 need them.
+/// Payloads of every kind of record, in the forms that journal.cpp needs for its first bytes 0
+/// to 3.
 std::vector<std::string> payloads_of(char kind) {
   const bool first_pose = kind % 2 == 1, clearance = kind >= 2;
   const std::string bits("\5\0\0\0\0\0\0\0", 8);
@@ -273,7 +274,8 @@ void write_journal_seeds(Seeds seeds) {
   }
 }
 
-/// A first byte of 0, 1 or 2: any value, a vehicle, a campaign. The campaigns' files are there.
+/// Writes JSON seeds, whose first byte is 0 for any value, 1 for a vehicle and 2 for a campaign.
+/// The files that the campaigns name exist.
 void write_json_seeds(Seeds seeds) {
   const std::string value(1, '\0'), vehicle = "\1", campaign = "\2";
   seeds.add(value + R"({"a": [1, -2.5e3, "\u00e4\\\"", true, null, {"b": {}}], "c": [[[]]]})");

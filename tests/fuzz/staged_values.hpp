@@ -13,7 +13,7 @@
 
 namespace clearway::test {
 
-/// Stages a page of the one cell, in memory of exactly its size, and requires these values of it.
+/// Stages a page of one cell, in memory of exactly its size, and requires these values in it.
 inline void check_staged_cell(const PackedCloud& cloud, std::uint32_t cell,
                               const std::array<std::vector<std::int32_t>, 3>& values) {
   const std::array<PlannedCell, 1> planned{PlannedCell{cell, {0}}};

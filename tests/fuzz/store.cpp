@@ -1,4 +1,4 @@
-// Any bytes as a store.
+// Any bytes, read as a store.
 #include "read_store.hpp"
 
 using namespace clearway;

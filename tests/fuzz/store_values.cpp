@@ -1,5 +1,5 @@
-// A sound store whose checksums hold, but whose numbers are any: what HDF5 finds nothing wrong
-// with. The input is a list of edits of 11 bytes each: what, where (2 bytes), value (8 bytes).
+// A store whose checksums hold but whose numbers are arbitrary, so that HDF5 finds nothing wrong
+// with it. The input is a list of edits of 11 bytes each: what, where (2 bytes), value (8 bytes).
 #include <hdf5.h>
 
 #include <algorithm>
@@ -37,12 +37,13 @@ constexpr const char* kDatasets[] = {"cells/count", "cells/box",     "cells/addr
                                      "tree/nodes",  "sources/names", "sources/bytes"};
 constexpr const char* kAttributes[] = {"point_count", "input_points", "cell_points", "points_hash",
                                        "scale",       "offset",       "length_unit", "layout"};
-/// Values of datasets, their extents, attributes; one more for the packed chunks.
+/// The number of things to edit: values of datasets, their extents, and attributes. One more stands
+/// for the packed chunks.
 constexpr unsigned kWhats = 2 * std::size(kDatasets) + std::size(kAttributes);
 
 bool is_of_chunk(const Edit& edit) { return edit.what % (kWhats + 1) == kWhats; }
 
-/// The values of a dataset; none where it is too large for any.
+/// The values of a dataset; empty where it is too large to be read.
 std::vector<std::byte> values_of(const hdf5::Id& dataset, const hdf5::Id& type) {
   constexpr hssize_t kMost = 1 << 16;
   const hdf5::Id space(H5Dget_space(dataset.get()), H5Sclose, "space");
@@ -71,12 +72,13 @@ std::vector<std::byte> values_in(hid_t file, const char* name) {
   return values_of(dataset, type);
 }
 
-/// What `index_hash` is of, in its order.
+/// The datasets that `index_hash` covers, in its order.
 constexpr const char* kHashed[] = {"sources/names", "sources/bytes", "sources/xxh64", "cells/count",
                                    "cells/box",     "cells/address", "cells/bytes",   "cells/xxh64",
                                    "blocks/box",    "tree/nodes"};
 
-/// A store with cells of 64 points, the last of 44, and its values.
+/// A sound store with cells of 64 points, the last of 44, and the values that its index hash
+/// covers.
 struct SoundStore {
   SoundStore() {
     const ScratchFolder folder;
@@ -94,7 +96,7 @@ struct SoundStore {
   std::vector<std::vector<std::byte>> hashed;
 };
 
-/// Makes `index_hash` that of what the datasets hold. Only what was edited is read again.
+/// Sets `index_hash` to the hash of what the datasets hold. Only edited datasets are read again.
 void rehash(hid_t file, const SoundStore& sound, const std::set<std::string>& edited) {
   ColumnHashes hashes;
   for (std::size_t i = 0; i < std::size(kHashed); ++i) {
@@ -105,7 +107,7 @@ void rehash(hid_t file, const SoundStore& sound, const std::set<std::string>& ed
   hdf5::check(H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &digest), "index_hash");
 }
 
-/// Another extent, of which nothing is written.
+/// Replaces a dataset by one of another extent in which nothing is written.
 void resize_dataset(hid_t file, const char* name, const Edit& edit) {
   const hdf5::Id dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
   const hdf5::Id type(H5Dget_type(dataset.get()), H5Tclose, name);
@@ -133,14 +135,14 @@ void edit_attribute(hid_t file, const char* name, const Edit& edit) {
   hdf5::check(H5Awrite(attribute.get(), type.get(), value.data()), name);
 }
 
-/// Bytes of a packed chunk.
+/// Changes bytes of a packed chunk.
 void edit_chunk(std::string& bytes, const CellIndex& index, const Edit& edit) {
   const std::size_t chunk = edit.where % index.bytes.size();
   const std::size_t at = edit.where / index.bytes.size() % (index.bytes[chunk] - 8);
   std::memcpy(bytes.data() + index.address[chunk] + at, &edit.value, 8);
 }
 
-/// Makes the hashes of packed chunks those of `bytes`.
+/// Sets the hashes of packed chunks to those of `bytes`.
 void rehash_chunks(hid_t file, std::string_view bytes, const CellIndex& index) {
   std::vector<std::uint64_t> hashes = index.xxh64;
   for (std::size_t i = 0; i < hashes.size(); ++i) {
@@ -152,7 +154,7 @@ void rehash_chunks(hid_t file, std::string_view bytes, const CellIndex& index) {
       "hashes");
 }
 
-/// Applies the edits to the file that has these bytes; HDF5 keeps its checksums right.
+/// Applies the edits to the file, which has these bytes; HDF5 keeps its own checksums right.
 void apply(std::span<const Edit> edits, const std::filesystem::path& path, std::string_view bytes,
            const SoundStore& sound) {
   const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "file");
@@ -179,7 +181,8 @@ void apply(std::span<const Edit> edits, const std::filesystem::path& path, std::
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  // HDF5 keeps what it frees: a file's tables have 600 KiB, which it would give back.
+  // HDF5 is to keep the memory that it frees: it would give back a file's tables, which have
+  // 600 KiB, each time.
   H5set_free_list_limits(-1, -1, -1, -1, -1, -1);
   return 0;
 }

@@ -11,7 +11,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// Without a database of PROJ, whose opening would take most of the time.
+/// A CRS that needs no database of PROJ, whose opening would take most of the time.
 constexpr const char* kMap = "+proj=utm +zone=32 +ellps=WGS84 +type=crs";
 constexpr const char* kGlobe = "+proj=longlat +ellps=WGS84 +type=crs";
 

@@ -1,4 +1,5 @@
-// Any bytes, read as XYZ or PTS text: by what they say, and by columns that the caller chose.
+// Any bytes, read as XYZ or PTS text, with the columns that they name and with columns that the
+// caller chose.
 #include "io/formats/text/xyz_reader.hpp"
 #include "read_points.hpp"
 

@@ -1,4 +1,4 @@
-// Budgets of device memory, and what the CUDA grid engine takes of it. Runs on a device only.
+// Budgets of device memory, and how much of it the CUDA grid engine takes. Runs on a device only.
 #include "gpu/grid_engine.hpp"
 
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ struct Scene {
   std::vector<Pose> poses = smooth_path(random, {{-4, -3, -1}, {5, 4, 2}}, 200);
   MemoryCloud cloud{points, kMillimetre, {1000, 0}};
 
-  /// How many points an engine with such a layout answers wrongly.
+  /// The number of points that an engine with such a layout answers wrongly.
   std::uint64_t wrong(bool first_pose, std::uint32_t cells_a_page, std::uint32_t slots) const {
     const Query query{model, poses, {.radius = 0.1, .first_pose = first_pose}};
     const GridRun run{.cells_a_page = cells_a_page};

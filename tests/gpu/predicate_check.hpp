@@ -7,19 +7,19 @@
 
 namespace clearway {
 
-/// One pair put to the predicate, by the body that the kernel and its host twin share.
+/// One pair for the predicate, which the kernel and its host twin decide by the same body.
 struct PredicateCase {
   Vec3 environment;
   Vec3 model;
   Pose pose;
-  Pose next;  ///< the model point moves to it from pose
+  Pose next;  ///< the pose to which the model point moves from `pose`
   double radius;
 };
 
 struct PredicateAnswer {
   double squared_distance;
   bool hit;
-  bool inside;  ///< hit by the inside of the segment to the next pose
+  bool inside;  ///< whether the inside of the segment to the next pose hits
 };
 
 CLEARWAY_HD inline PredicateAnswer decide(const PredicateCase& c) {
@@ -28,8 +28,8 @@ CLEARWAY_HD inline PredicateAnswer decide(const PredicateCase& c) {
           collides_inside(c.environment, moved, transform(c.next, c.model), c.radius)};
 }
 
-/// The predicate's answers computed on the current CUDA device: bit for bit the host's, or the
-/// device must not be used. Throws ResourceError with CUDA's own words.
+/// Computes the predicate's answers on the current CUDA device. They are the host's bit for bit, or
+/// else the device must not be used. Throws ResourceError with CUDA's own words.
 std::vector<PredicateAnswer> decide_on_device(const std::vector<PredicateCase>& cases);
 
 }  // namespace clearway

@@ -32,7 +32,8 @@ double spell_out_dot(const double* a, const double* b) {
   return sum;
 }
 
-/// Of the segment to the next pose: whether the foot is inside, and w.w.
+/// The segment to the next pose seen from the environment point: whether the perpendicular's foot
+/// lies inside it, and the squared distance w.w.
 struct Segment {
   bool beside;
   double squared;
@@ -85,7 +86,7 @@ std::vector<PredicateCase> cases_at_the_radius(std::size_t count) {
   return cases;
 }
 
-/// The predicate spelt out, without the header's helpers.
+/// The predicate's answer, spelt out without the header's helpers.
 PredicateAnswer spelt_out(const PredicateCase& c) {
   double m[3], d[3];
   spell_out_transform(c.pose, c.model, m);

@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-/// A line of points, and a model of two points that goes along it.
+/// A query of a model of two points that goes along a line of points.
 class Asked {
  public:
   explicit Asked(int poses) {
@@ -80,7 +80,7 @@ TEST_CASE("auto goes on with the engine of the run that is resumed") {
   Asked asked(3);
   CHECK(asked.chosen(Engine::kSweep) == Engine::kSweep);
   CHECK(asked.chosen(Engine::kKdtree) == Engine::kKdtree);
-  asked.options.memory_bytes = 1 << 20;  // too little: that is said, and nothing of another engine
+  asked.options.memory_bytes = 1 << 20;  // too little, which is reported without another engine
   CHECK(asked.chosen(Engine::kKdtree) == Engine::kKdtree);
   CHECK_FALSE(asked.report.engine_estimate);
   asked.options.engine = Engine::kGrid;

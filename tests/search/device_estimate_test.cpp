@@ -1,4 +1,4 @@
-// The choice between CPU and GPU, by estimate.
+// The choice between CPU and GPU by estimate.
 #include "search/choice/device_estimate.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// The choice of a device, among GPUs that are made up.
+// The choice of a device among GPUs that are made up.
 #include "search/devices.hpp"
 
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kWanted = 1024 * kMiB;
 constexpr std::uint64_t kUnusable = 0;
 
-/// GPUs by what they have free, and which were opened.
+/// GPUs, given by their free memory, and which of them were opened.
 struct Machine {
   std::vector<std::uint64_t> free_bytes;
   std::vector<int> opened = {};
@@ -45,7 +45,8 @@ TEST_CASE("the first GPU with all the memory that is wanted is taken, and no fur
 }
 
 TEST_CASE("where no GPU has all that is wanted, the one with the most is the last one opened") {
-  Machine machine{{300 * kMiB, 500 * kMiB, kWanted, 400 * kMiB}};  // a twentieth is left to others
+  // A twentieth of a GPU's memory is left to others.
+  Machine machine{{300 * kMiB, 500 * kMiB, kWanted, 400 * kMiB}};
   const DeviceChoice choice =
       choice_of({one_with_room(machine.count(), machine.open(), kWanted, silent())}, kWanted);
   CHECK(machine.opened.back() == 2);

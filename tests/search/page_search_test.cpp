@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
-/// The sweep on the CPU, with other needs and memory where a test sets them.
+/// The sweep on the CPU, with other needs and other memory where a test sets them.
 class MadeUpKind final : public CpuSweepKindOf<Vec3> {
  public:
   using Base = CpuSweepKindOf<Vec3>;
@@ -40,7 +40,7 @@ class MadeUpKind final : public CpuSweepKindOf<Vec3> {
   bool is_never_made = false;
 };
 
-/// A line of points, and a model of one point that goes along it.
+/// A search with a model of one point that goes along a line of points.
 class Line {
  public:
   Line() {
@@ -56,7 +56,7 @@ class Line {
     kind.emplace(*store, query, options);
   }
 
-  /// Returns the number of hits.
+  /// Runs the search and returns the number of hits.
   std::uint64_t run() {
     const auto open = [&]() -> SearchJournal* {
       ++journals_opened;
@@ -71,7 +71,7 @@ class Line {
         .result.hits.count();
   }
 
-  /// None where it runs.
+  /// The error with which the search is refused; nullopt where it runs.
   std::optional<ResourceError> refusal() {
     try {
       run();
@@ -81,7 +81,8 @@ class Line {
     return std::nullopt;
   }
 
-  /// What a run with so many threads and devices of one slot needs; it ends before it begins.
+  /// The host bytes that a run with these numbers of threads and devices, each with one slot,
+  /// needs; it ends before it begins.
   std::uint64_t needed(int threads, std::uint32_t devices) {
     kind->changed_needs().most_slots = 1;
     kind->changed_needs().threads = threads;
@@ -91,7 +92,8 @@ class Line {
     return report.needed_host_bytes;
   }
 
-  /// Host and device want opposite layouts: 100 MiB a slot, and 100 MiB a slot less than four.
+  /// Makes host and device want opposite layouts: 100 MiB a slot on the host, and on the device 100
+  /// MiB for each slot fewer than five.
   void set_at_odds(std::uint64_t most_device_bytes) {
     kind->changed_needs().most_slots = 4;
     kind->changed_needs().on_gpu = true;

@@ -16,7 +16,7 @@ TEST_CASE("trees built with several threads are those of one") {
   double x = 0;
   for (int i = 0; i < 5'000; ++i) {
     const double angle = 0.001 * i;
-    x += i % 700 < 100 ? 0 : 0.1 * unit(random);  // with stops
+    x += i % 700 < 100 ? 0 : 0.1 * unit(random);  // the path has stops
     query.poses.push_back(
         {{std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1},
          {x, 0, 0}});

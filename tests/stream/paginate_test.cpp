@@ -18,8 +18,8 @@ PageShape shape_alone(const PackedCloud& cloud, const PlannedCell& cell) {
           .payload_bytes = cloud.packed_bytes(cell.cell)};
 }
 
-/// Every cell in one page, in order; sizes as they are and within the bounds; no page could have
-/// had the next cell too.
+/// Checks that every cell is in one page, in order, that sizes are right and within the bounds, and
+/// that no page had room for the next cell.
 void check_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                  const std::vector<PlannedPage>& pages, std::uint64_t page_bytes,
                  std::uint32_t most_cells) {

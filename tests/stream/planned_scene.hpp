@@ -48,7 +48,7 @@ class PlannedScene {
   std::vector<PlannedCell> cells;
 };
 
-/// Planned cells of a cloud without asking what reaches them: every cell, with a few nodes each.
+/// Plans every cell of a cloud with a few nodes each, whether or not they reach it.
 inline std::vector<PlannedCell> every_cell(const PackedCloud& cloud) {
   std::vector<PlannedCell> cells;
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {

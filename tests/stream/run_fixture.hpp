@@ -13,8 +13,8 @@ namespace clearway::test {
 
 using Act = std::function<void(std::uint32_t)>;
 
-/// An engine that searches in threads of its own, as a device does, with something to do before
-/// each step. Notes every use of a slot that its contract does not allow.
+/// An engine that searches in threads of its own, as a device does, and calls a test's function
+/// before each step. It counts every use of a slot that its contract does not allow.
 class TestEngine final : public PageEngine {
  public:
   TestEngine(const PlannedScene& scene, const SlotLayout& layout)
@@ -71,7 +71,7 @@ class TestEngine final : public PageEngine {
   std::vector<std::future<PageResult>> searches_;
 };
 
-/// A cloud with something to do before each read.
+/// A cloud that calls a test's function before each read.
 class TestCloud final : public PackedCloud {
  public:
   explicit TestCloud(const PackedCloud& cloud) : cloud_(cloud) {}
@@ -122,7 +122,7 @@ class TestProgress final : public Progress {
   bool ended = false;
 };
 
-/// One run of the pipeline with its parts at hand.
+/// One run of the pipeline, with access to its parts.
 struct Run {
   explicit Run(const PlannedScene& planned, std::uint32_t slots = 4, std::uint32_t page_cells = 3)
       : scene(planned),

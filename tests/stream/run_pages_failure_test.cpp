@@ -1,4 +1,5 @@
-// What a stage of the pipeline throws: the run ends with it, and nothing is left under way.
+// When a stage of the pipeline throws, the run ends with that exception, and nothing is left under
+// way.
 #include <catch2/catch.hpp>
 #include <new>
 
@@ -10,7 +11,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// Throws at call `n`.
+/// A function that throws at call `n`.
 template <typename Exception>
 Act throwing_at(std::uint32_t n, const std::string& what) {
   return [=](std::uint32_t call) {
@@ -40,7 +41,7 @@ TEST_CASE("what any stage throws ends the run with its message") {
       }
     }
   }
-  CHECK(TestEngine::violations == 0);  // no search was left alone
+  CHECK(TestEngine::violations == 0);  // the end of every search was awaited
 }
 
 TEST_CASE("pages under way are finished before an exception leaves, however slow") {

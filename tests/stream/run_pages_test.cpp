@@ -9,7 +9,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// Slots whose first pose or clearance is not that of brute force.
+/// The number of entries whose first pose or clearance is not that of brute force.
 std::uint64_t wrong_slots(const PlannedScene& scene, const SearchResult& answer) {
   const auto points = positions_of(scene.cloud_points, kTenths);
   const auto first_poses = brute_force_first_poses(points, scene.query);

@@ -24,7 +24,7 @@ namespace {
 const JournalIdentity kIdentity{{"query", "a test"}};
 constexpr double kNever = 1e9;  // seconds
 
-/// Asks to stop after as many calls of advance().
+/// Asks to stop after a given number of calls of advance().
 class StoppingProgress final : public Progress {
  public:
   explicit StoppingProgress(std::uint64_t most) : most_(most) {}
@@ -62,7 +62,8 @@ class JournalledScene {
   JournalledScene(bool first_pose, double clearance, double profile = 0)
       : scene({64, 0}, 9000, 150, first_pose, clearance, profile) {}
 
-  /// Goes on with the journal, where there is one, until the progress asks to stop or it is done.
+  /// Runs the sweep, from the journal where there is one, until the progress asks to stop or the
+  /// search is done.
   std::optional<SearchResult> sweep(std::uint64_t most_pages) {
     const auto run = [&](SearchJournal& journal, Progress& progress) {
       std::vector<PlannedCell> cells = scene.cells;
@@ -143,7 +144,7 @@ TEST_CASE("a sweep stopped again and again gives the answer of one that was not"
         REQUIRE(++runs < 200);
       }
       CHECK(runs > 5);
-      CHECK(parts.begun == whole.scene.cells.size());  // none twice
+      CHECK(parts.begun == whole.scene.cells.size());  // no cell was searched twice
       CHECK(difference(whole.scene.cloud, *answer, *expected, whole.scene.query) == 0);
       const std::optional<SearchResult> again = parts.sweep(0);  // nothing is left to do
       REQUIRE(again);
@@ -286,7 +287,7 @@ TEST_CASE("a journal that cannot grow ends the run with its error") {
                                 progress, times, &journal),
                       Contains("a.journal: cannot write"));
   }
-  const JournalReader read(s.path);  // the record that was not written whole is a torn tail
+  const JournalReader read(s.path);  // the record that was cut off is a torn tail
   CHECK(read.records() > 0);
   CHECK(read.records() < pages.size());
   CHECK_FALSE(read.torn().empty());

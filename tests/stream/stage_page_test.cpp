@@ -13,7 +13,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// Memory for a page, its bytes set beforehand to what no page may depend on.
+/// Memory for a page, whose bytes are set beforehand to values on which no page may depend.
 struct PageMemory {
   PageMemory(std::uint64_t page_bytes, unsigned char before)
       : words(page_bytes / sizeof(Word)), bytes(std::as_writable_bytes(std::span(words))) {
@@ -26,7 +26,7 @@ struct PageMemory {
   std::span<std::byte> bytes;
 };
 
-/// Whether the page says of every cell what the cloud does, value for value.
+/// Checks that the page holds what the cloud holds of every cell, value for value.
 void check_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, const PageRef& page) {
   REQUIRE(page.shape.cells == cells.size());
   std::uint64_t wrong = 0;
@@ -55,7 +55,7 @@ void check_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, co
   CHECK(wrong == 0);
 }
 
-/// Points whose coordinates need 0 to 32 bits.
+/// A cloud whose coordinates need 0 to 32 bits.
 MemoryCloud cloud_of_bits(unsigned x_bits, unsigned y_bits, unsigned z_bits, std::size_t points,
                           std::uint32_t cell_points) {
   Random random(x_bits + 100 * y_bits + 10'000 * z_bits);

@@ -1,4 +1,4 @@
-// A store read past its map, cell by cell.
+// A store that is read by calls, cell by cell, without its map.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>

@@ -13,9 +13,9 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr std::uint64_t kPoints = 230'000;  // passes take 65,536 rows at the least
+constexpr std::uint64_t kPoints = 230'000;  // a pass takes 65,536 rows at least
 
-/// A store whose order is far from that of the sources.
+/// A store whose order differs widely from that of the sources.
 class Site {
  public:
   Site() {
@@ -26,7 +26,7 @@ class Site {
 
   const StoreReader& store() const { return *store_; }
 
-  /// The result file's bytes.
+  /// Writes the answer and returns the bytes of the result file.
   std::string written(const SearchResult& answer, const ResultHeader& header,
                       std::uint64_t memory_bytes, int threads = 0) const {
     NoProgress progress;
@@ -36,7 +36,7 @@ class Site {
     return bytes_of(folder_ / "out.h5");
   }
 
-  /// What the last one gave.
+  /// What the last call of written() reported.
   const WrittenResult& found() const { return found_; }
 
   ResultReader result() const { return ResultReader(folder_ / "out.h5"); }
@@ -57,7 +57,7 @@ ResultHeader header_of(const StoreReader& store) {
 
 double squared_of(std::uint64_t source) { return 1 / (4 + static_cast<double>(source)); }
 
-/// Most points have a clearance and a hit, both computed from the source's index.
+/// An answer in which most points have a clearance and a hit, both computed from the source index.
 SearchResult answer_for(const StoreReader& store) {
   SearchResult answer{HitSet(store.entry_count(), true), ClearanceSet(store.entry_count())};
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
@@ -72,7 +72,7 @@ SearchResult answer_for(const StoreReader& store) {
   return answer;
 }
 
-/// Of every source index.
+/// The position of the point with each source index.
 std::vector<Vec3> places_of(const StoreReader& store) {
   std::vector<Vec3> places(store.point_count());
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {

@@ -5,7 +5,7 @@
 
 namespace clearway::test {
 
-/// 3 x 3, row-major.
+/// A 3 x 3 matrix, row-major.
 using Rotation = std::array<double, 9>;
 
 inline Rotation operator*(const Rotation& a, const Rotation& b) {
@@ -30,8 +30,9 @@ inline Rotation about_z(double a) {
   return {std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1};
 }
 
-/// Navigation's angles, as the textbooks have them: forward, right, down turn by roll, then pitch,
-/// then heading into north, east, down; both ends turned to ours.
+/// The rotation of navigation's angles, radians, as the textbooks define them: from forward, right,
+/// down turn by roll, then pitch, then heading into north, east, down. Both frames are then turned
+/// into Clearway's: forward, left, up and east, north, up.
 inline Rotation navigation_rotation(double roll, double pitch, double heading) {
   const Rotation enu_of_ned{0, 1, 0, 1, 0, 0, 0, 0, -1};
   const Rotation frd_of_flu{1, 0, 0, 0, -1, 0, 0, 0, -1};

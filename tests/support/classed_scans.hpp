@@ -19,7 +19,7 @@ inline std::vector<std::uint8_t> random_classes(std::size_t count, unsigned most
   return classes;
 }
 
-/// offset: of the coordinates, metres; where it is not given, that of LasBytes.
+/// Writes a LAS file whose points have classes. offset: of the coordinates, metres.
 inline void write_classed(const std::filesystem::path& path, const std::vector<Quantum>& points,
                           const std::vector<std::uint8_t>& classes, unsigned format = 6,
                           std::array<double, 3> offset = LasBytes().offset) {

@@ -30,8 +30,8 @@ struct NamedCloud {
   std::vector<Quantum> points;
 };
 
-/// `count` points each: spread, with many ties, on a line, on a plane, all in one place, over the
-/// whole range of the integers, and in clusters of very different density.
+/// Clouds of `count` points each: spread, with many ties, on a line, on a plane, all in one place,
+/// over the whole range of the integers, and in clusters of very different density.
 inline std::vector<NamedCloud> hard_clouds(std::size_t count, std::uint64_t seed) {
   std::vector<NamedCloud> clouds{
       {"spread", cube_cloud(count, -100000, 100000, seed)},

@@ -4,8 +4,8 @@
 
 #include "clearway/vec3.hpp"
 
-/// Distances on a way in whole numbers, for small whole coordinates. Shares nothing with the
-/// predicate, and never rounds.
+/// Distances on a way in whole numbers, for small whole coordinates. The code shares nothing with
+/// the predicate, and never rounds.
 namespace clearway::test {
 
 struct WholePoint {
@@ -42,9 +42,10 @@ struct ExactWay {
     }
   }
 
-  /// Whether it is below the square of quarters / 4.
+  /// Whether the squared distance is below the square of quarters / 4.
   bool is_within(std::int64_t quarters) const { return 16 * over < quarters * quarters * under; }
-  /// Whether it is equal to that square, and a quotient that double may have to round says so.
+  /// Whether the squared distance equals the square of quarters / 4 and comes from a quotient that
+  /// double may have to round.
   bool is_rounded_tie(std::int64_t quarters) const {
     return 16 * over == quarters * quarters * under && (under & (under - 1)) != 0;
   }

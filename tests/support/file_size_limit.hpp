@@ -6,7 +6,8 @@
 
 namespace clearway::test {
 
-/// No file of this process grows beyond this while it lives.
+/// Lets no file of this process grow beyond a number of bytes while the object lives; writes then
+/// fail.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -8,13 +8,14 @@
 
 namespace clearway::test {
 
-/// HDF5 1.10.8 loses buffers where it fails on damaged metadata or cannot close a file: while one
-/// of these lives, the leak check looks away. Buffers of earlier calls that HDF5 keeps to use again
-/// are given back first: it may lose these too.
+/// Turns the leak check off while it lives, because HDF5 1.10.8 loses buffers where it fails on
+/// damaged metadata or cannot close a file. Buffers of earlier calls that HDF5 keeps to use again
+/// are freed first, since it may lose these too.
 class LeaksOfHdf5 {
  public:
   LeaksOfHdf5() {
-    H5dont_atexit();  // before its first call, as src/io does: it fails on a file it cannot close
+    H5dont_atexit();  // before HDF5's first call, as in src/io, because it fails on a file it
+                      // cannot close
     H5garbage_collect();
   }
 

@@ -72,7 +72,8 @@ MemoryCloud::MemoryCloud(std::span<const Quantum> points, std::span<const std::u
   }
 }
 
-/// Splits by planes in the middle of the longest side, so that cells of many buckets are short.
+/// Adds the nodes of the top tree. It splits by planes in the middle of the longest side, so that
+/// the cells of many buckets are short.
 void MemoryCloud::add_top(std::span<Point> points, std::uint64_t bucket_points) {
   const std::size_t self = top_.size();
   top_.push_back({static_cast<std::uint32_t>(cells_.size()), 0, 0});
@@ -145,7 +146,7 @@ std::uint64_t MemoryCloud::packed_bytes(std::uint32_t cell) const {
 
 std::array<PackedChunk<std::int32_t>, 3> MemoryCloud::read_packed(std::uint32_t cell,
                                                                   std::span<std::byte> to) const {
-  coordinates(cell);  // throws where it is damaged
+  coordinates(cell);  // throws where the cell is damaged
   std::array<PackedChunk<std::int32_t>, 3> chunks;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto& bytes = chunks_[cell][axis];

@@ -19,13 +19,13 @@ struct MemoryCloudOptions {
   std::uint64_t bucket_points = 0;
 };
 
-/// A PackedCloud in memory, for tests and benchmarks: the k-d order, boxes and packed chunks that a
-/// store has, made in one go.
+/// A PackedCloud in memory, for tests and benchmarks. It makes the k-d order, boxes and packed
+/// chunks that a store has, all at once.
 class MemoryCloud final : public PackedCloud {
  public:
   MemoryCloud(std::span<const Quantum> points, const Quantisation& quantisation,
               const MemoryCloudOptions& options = {});
-  /// The same; classes: of the points.
+  /// A cloud of points with classes. classes: one for each point.
   MemoryCloud(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
               const Quantisation& quantisation, const MemoryCloudOptions& options = {});
 
@@ -49,13 +49,13 @@ class MemoryCloud final : public PackedCloud {
     return source(std::uint64_t{cell} * cell_entries() + index);
   }
 
-  /// Index, in the points given, of the point in a used slot.
+  /// The index, in the constructor's points, of the point at an entry that is used.
   std::uint64_t source(std::uint64_t slot) const { return sources_[slot]; }
   bool is_used(std::uint64_t slot) const {
     return slot % cell_entries() < cells_[slot / cell_entries()].count;
   }
 
-  /// From now on coordinates(cell) throws InputError, as for a damaged store.
+  /// Makes coordinates(cell) throw InputError from now on, as for a damaged store.
   void damage(std::uint32_t cell) { damaged_cell_ = cell; }
 
  private:
@@ -77,14 +77,14 @@ class MemoryCloud final : public PackedCloud {
   std::vector<BlockBox> blocks_;
   std::vector<std::uint64_t> sources_;
   std::vector<std::array<std::vector<std::byte>, 3>> chunks_;
-  std::vector<std::vector<std::byte>> classes_;  ///< a chunk a cell
+  std::vector<std::vector<std::byte>> classes_;  ///< one chunk for each cell
   std::uint32_t damaged_cell_ = 0xffffffff;
 };
 
 /// The positions of quanta, as the store defines them.
 std::vector<Vec3> positions_of(std::span<const Quantum> points, const Quantisation& quantisation);
 
-/// The nearest quanta.
+/// The quanta that are nearest to the points.
 std::vector<Quantum> quantise(std::span<const Vec3> points, const Quantisation& quantisation);
 
 }  // namespace clearway

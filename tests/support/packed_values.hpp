@@ -10,7 +10,7 @@
 
 namespace clearway::test {
 
-/// `count` >= 2 values whose greatest exceeds the least by exactly `span`, at random places.
+/// Random values, `count` >= 2 of them, whose greatest exceeds the least by exactly `span`.
 template <typename Value>
 std::vector<Value> values_of_span(std::size_t count, std::make_unsigned_t<Value> span,
                                   std::uint64_t seed) {
@@ -31,7 +31,8 @@ std::vector<Value> values_of_span(std::size_t count, std::make_unsigned_t<Value>
   return values;
 }
 
-/// A span that needs exactly `bits` bits; for all of a value's bits one that HDF5 stores raw.
+/// A random span that needs exactly `bits` bits; where these are all bits of a value, HDF5 stores
+/// it raw.
 template <typename Value>
 std::make_unsigned_t<Value> span_of_bits(unsigned bits, std::uint64_t seed) {
   using Unsigned = std::make_unsigned_t<Value>;

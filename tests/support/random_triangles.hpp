@@ -20,13 +20,13 @@ inline double longest_edge(const Triangle& t) {
                    length_of(difference(t.c, t.b))});
 }
 
-/// The bound of docs/design/numerics.md ("Triangles"): of the root of a computed d2.
+/// The bound of docs/design/numerics.md ("Triangles") on the error of the root of a computed d2.
 inline double triangle_error(double distance, double longest) {
   return kUnitRoundoff * (8 * distance + 160 * longest) + 1e-150;
 }
 
-/// Needles, slivers, triangles without area or length, of 1e-9 m to 1e6 m, near and far from the
-/// origin, in any order of the corners.
+/// A random triangle: a needle, a sliver, one without area or length, of 1e-9 m to 1e6 m, near the
+/// origin or far from it, with its corners in any order.
 inline Triangle random_triangle(Random& random) {
   const double size = std::pow(10.0, uniform(random, -9, 6));
   const Vec3 along = random_direction(random), beside = random_direction(random);
@@ -41,7 +41,7 @@ inline Triangle random_triangle(Random& random) {
   switch (below(random, 8)) {
     case 0:
       t.c = plus(t.a, uniform(random, 0, 1), difference(t.b, t.a));
-      break;  // about collinear
+      break;  // nearly collinear corners
     case 1:
       t.c = below(random, 2) == 0 ? t.a : t.b;
       break;
@@ -68,7 +68,8 @@ inline Triangle random_triangle(Random& random) {
   }
 }
 
-/// On a corner, an edge, the face or beside it, then moved away by 0 to 1000 of its sizes.
+/// A random place on a corner, an edge, the face or beside it in the plane, moved away by 0 to 1000
+/// times the longest edge.
 inline Vec3 random_place_at(Random& random, const Triangle& t) {
   double b = uniform(random, -0.2, 1.2), c = uniform(random, -0.2, 1.2);
   switch (below(random, 6)) {

@@ -17,7 +17,7 @@
 
 namespace clearway::test {
 
-/// A folder that is gone with its owner.
+/// A temporary folder that is removed when its owner ends.
 class ReaderScratch {
  public:
   ReaderScratch() {
@@ -49,7 +49,7 @@ class ReaderScratch {
 };
 
 struct ReadCloud {
-  CloudInfo info;  ///< as it is after the last point
+  CloudInfo info;  ///< what the reader tells after the last point
   std::vector<std::array<std::int32_t, 3>> quanta;
   std::vector<Vec3> positions;
   std::vector<std::uint8_t> classes;
@@ -74,7 +74,7 @@ inline ReadCloud read_all(const std::filesystem::path& path) {
   return read_all(*open_point_file(path));
 }
 
-/// The message with which reading the file is refused; empty where it is not.
+/// The message with which reading the file is refused; empty where it is read.
 inline std::string refusal_of(const std::filesystem::path& path) {
   try {
     read_all(path);
@@ -84,7 +84,7 @@ inline std::string refusal_of(const std::filesystem::path& path) {
   return {};
 }
 
-/// The same, read as a stream.
+/// The message with which reading the file as a LAS stream is refused; empty where it is read.
 inline std::string stream_refusal_of(const std::filesystem::path& path) {
   try {
     read_all(

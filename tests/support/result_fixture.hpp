@@ -16,7 +16,7 @@
 
 namespace clearway::test {
 
-/// A folder of its own, removed at the end.
+/// A temporary folder that is removed when its owner ends.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -43,8 +43,8 @@ inline std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Makes these the bytes of the file. One that is there is written in place: a file that was cut to
-/// nothing goes to the disk as soon as it is closed, which takes hundreds of times as long.
+/// Replaces the bytes of a file. An existing file is written in place, because a file that was cut
+/// to nothing goes to the disk as soon as it is closed, which takes hundreds of times as long.
 inline void put_bytes(const std::filesystem::path& path, const std::string& bytes) {
   const bool in_place = std::filesystem::is_regular_file(path);
   const auto mode = std::ios::binary | std::ios::out | (in_place ? std::ios::in : std::ios::out);
@@ -72,7 +72,7 @@ inline ResultHeader sample_header(bool first_pose) {
   return header;
 }
 
-/// Rows with gaps, negative quanta and first poses above 2^31; `count` of them.
+/// Makes `count` rows with gaps, negative quanta and first poses above 2^31.
 inline ResultRows sample_rows(const ResultHeader& header, std::size_t count) {
   ResultRows rows;
   for (std::size_t i = 0; i < count; ++i) {
@@ -97,7 +97,7 @@ inline ClearanceRows sample_clearances(const ResultHeader& header, std::size_t c
   return rows;
 }
 
-/// The profile of header.poses poses; every fifth has no point.
+/// A profile of header.poses poses, of which every fifth has no point.
 inline ProfileRows sample_profile(const ResultHeader& header) {
   ProfileRows rows;
   for (std::size_t i = 0; i < header.poses; ++i) {
@@ -114,7 +114,7 @@ inline ProfileRows sample_profile(const ResultHeader& header) {
   return rows;
 }
 
-/// Writes `rows` by append() calls of `step` rows.
+/// Writes a result, with append() calls of `step` rows each.
 inline void write_result(const std::filesystem::path& path, const ResultHeader& header,
                          const ResultRows& rows, std::size_t step = 1000,
                          const ClearanceRows& clearances = {}, const ProfileRows& profile = {}) {

@@ -15,7 +15,7 @@ void add_column(const hdf5::Id& group, const char* name, ColumnHashes& hashes,
   hashes.add(values);
 }
 
-/// What release 0.1.0 wrote of two colliding points and three clearances.
+/// Writes the file that release 0.1.0 wrote for two colliding points and three clearances.
 inline void write_version_2(const std::filesystem::path& path) {
   hdf5::Id file = hdf5::create_file(path);
   const hdf5::Id collisions = hdf5::create_group(file, "collisions");

@@ -19,21 +19,22 @@ Vec3 random_point(Random& random, const Box& box);
 std::vector<Vec3> random_points(Random& random, const Box& box, std::size_t count);
 Vec3 random_direction(Random& random);
 
-/// Rotation by `angle` about a unit axis, then translation.
+/// The pose that rotates by `angle` (radians) about a unit axis and then translates.
 Pose rotation(const Vec3& axis, double angle, const Vec3& translation);
 Pose random_rotation(Random& random, const Vec3& translation);
 Pose translation(const Vec3& by);
 
-/// The pose as a text file with six decimals has it: slightly non-orthonormal.
+/// The pose as a text file with six decimals holds it: slightly non-orthonormal.
 Pose printed_with_six_digits(Pose pose);
 
-/// The rotation with its columns scaled.
+/// The pose with the columns of its rotation scaled by `by`.
 Pose stretched(Pose pose, const Vec3& by);
 
 /// A smooth path through the box that turns as it goes.
 std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count);
 
-/// 5 m along x, to the left along a parabola and turning: by 0.5 bend metres and bend radians.
+/// A path of 5 m along x that moves to the left along a parabola, by 0.5 bend metres, and turns by
+/// bend radians.
 std::vector<Pose> slow_path(int count, double bend);
 
 }  // namespace clearway

@@ -35,7 +35,7 @@ struct Bodies {
   }
 };
 
-/// Each vertex by a function.
+/// The body with `map` applied to each vertex.
 template <typename Map>
 Surface mapped(Surface body, Map map) {
   for (Vec3& v : body.vertices) v = map(v);
@@ -51,7 +51,8 @@ inline Surface tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, const Ve
   return {{a, b, c, d}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 }
 
-/// An octahedron whose triangles are divided in four `levels` times; vertices at a distance of 1.
+/// A sphere of radius 1 about the origin: an octahedron whose triangles are divided in four
+/// `levels` times.
 inline Surface unit_sphere(int levels) {
   Surface body{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
@@ -77,7 +78,7 @@ inline Surface unit_sphere(int levels) {
   return body;
 }
 
-/// Around the z axis, its tube of radius `thin` at a distance of 1.
+/// A torus around the z axis, with a tube of radius `thin` at a distance of 1.
 inline Surface torus(double thin, std::uint32_t around, std::uint32_t along_tube) {
   Surface body{{}, {}};
   for (std::uint32_t i = 0; i < around; ++i) {
@@ -94,9 +95,9 @@ inline Surface torus(double thin, std::uint32_t around, std::uint32_t along_tube
   return body;
 }
 
-/// A body that does not cross itself, within about `size` of the origin: any turn, from as wide as
-/// high down to needles and sheets that are 1e-9 times as thick. is_simple: of at most 40
-/// triangles.
+/// A random body that does not cross itself, within about `size` of the origin, turned anyhow, from
+/// as wide as high down to needles and sheets that are 1e-9 times as thick. is_simple: it has at
+/// most 40 triangles.
 inline Surface random_body(Random& random, double size, bool is_simple = false) {
   const Pose turn = random_rotation(random, {0, 0, 0});
   const auto thinness = [&] {

@@ -60,7 +60,7 @@ inline ConversionReport convert_quietly(const ConversionOptions& options) {
   return convert_scans(options, progress);
 }
 
-/// The message with which the conversion is refused; empty where it is not.
+/// The message with which the conversion is refused; empty where it succeeds.
 template <typename Refusal = Error>
 std::string conversion_refusal(const ConversionOptions& options) {
   try {
@@ -71,7 +71,7 @@ std::string conversion_refusal(const ConversionOptions& options) {
   return {};
 }
 
-/// Of a store with classes, by source.
+/// The classes of a store's points, by source index.
 inline std::vector<std::uint8_t> classes_by_source(const StoreReader& store) {
   std::vector<std::uint8_t> classes(store.metadata().input_points);
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
@@ -113,7 +113,8 @@ inline std::vector<StoredPoint> stored_points(const StoreReader& store) {
   return points_of_cells(store, 0, static_cast<std::uint32_t>(store.cells().size()));
 }
 
-/// The points in source order; throws where an index is missing, out of range or there twice.
+/// The store's points in source order. Throws where a source index is missing, out of range or
+/// there twice.
 inline std::vector<Quantum> points_by_source(const StoreReader& store) {
   std::vector<Quantum> points(store.point_count());
   std::vector<bool> seen(points.size());

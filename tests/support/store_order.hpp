@@ -9,15 +9,16 @@
 
 namespace clearway::test {
 
-/// The store's order of a bucket's points (docs/design/store-format.md, "Order"), as plainly as it
-/// can be written: sort by (coordinate, source) on the longest side, cut, and the same with both
-/// parts.
+/// Puts a bucket's points into the store's order (docs/design/store-format.md, "Order"), as plainly
+/// as that can be written: it sorts by (coordinate, source) on the longest side, cuts, and does the
+/// same with both parts.
 void order_plainly(std::span<StoredPoint> points, std::uint64_t cell_points,
                    const Quantisation& quantisation);
 
-/// What docs/design/store-format.md promises of every store but the order inside a bucket: full
-/// cells but a bucket's last, buckets of at most 2^21 points, parts on either side of a plane (or,
-/// at one place, of a source index), boxes that hold. Each fault as a sentence.
+/// Checks what docs/design/store-format.md promises of every store except the order inside a
+/// bucket: full cells but a bucket's last, buckets of at most 2^21 points, parts on either side of
+/// a plane (or, at one place, of a source index), boxes that hold. Returns each fault as a
+/// sentence.
 std::vector<std::string> structure_faults(const StoreReader& store);
 
 }  // namespace clearway::test

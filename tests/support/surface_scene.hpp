@@ -12,7 +12,7 @@ namespace clearway::test {
 
 using Triples = std::vector<std::array<std::uint32_t, 3>>;
 
-/// Vertices that no triangle uses are among them, as in files.
+/// Triangles of a test's model. A vertex that no triangle uses is among the vertices, as in files.
 struct Surface {
   std::vector<Vec3> vertices{{9, 9, 9}};
   Triples triangles;
@@ -29,7 +29,7 @@ struct Surface {
   }
 };
 
-/// Twelve triangles over eight vertices.
+/// The surface of a box: twelve triangles over eight vertices.
 inline Surface box_surface(const Box& box) {
   Surface surface;
   surface.vertices.clear();
@@ -42,8 +42,8 @@ inline Surface box_surface(const Box& box) {
   return surface;
 }
 
-/// Triangles of every shape within a box: large ones, needles, slivers, flat ones, single places,
-/// tiny ones, and duplicates with other corners first.
+/// A surface of `count` triangles of every shape within a box: large ones, needles, slivers, flat
+/// ones, single places, tiny ones, and duplicates whose corners start elsewhere.
 inline Surface random_surface(Random& random, const Box& box, std::size_t count) {
   Surface surface;
   const Vec3 extent{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
@@ -87,8 +87,8 @@ inline Surface random_surface(Random& random, const Box& box, std::size_t count)
   return surface;
 }
 
-/// Places on corners, edges and faces of the surface at random poses and beside them, at about the
-/// radius: exactly, an ulp to either side, and anywhere near.
+/// Random places on corners, edges and faces of the surface at random poses, and beside them at
+/// about the radius: exactly, an ulp to either side, and anywhere near.
 inline std::vector<Vec3> places_beside(Random& random, const Surface& surface,
                                        const std::vector<Pose>& poses, double radius,
                                        std::size_t count) {

@@ -22,7 +22,8 @@ inline double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   return distance(p, {a.x + t * way.x, a.y + t * way.y, a.z + t * way.z});
 }
 
-/// The distance of p to a triangle: to its plane where p is above it, else to its nearest side.
+/// The distance from p to a triangle: to its plane where p is above it, otherwise to its nearest
+/// side.
 inline double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = cross(minus(b, a), minus(c, a));
   const double length = std::sqrt(dot(normal, normal));

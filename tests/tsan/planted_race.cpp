@@ -1,5 +1,5 @@
 // Work for the thread sanitizer, annotated as src/ is: without a race, or with a planted one, which
-// has to be reported. planted_race KIND
+// has to be reported. Usage: planted_race KIND
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -27,7 +27,7 @@ struct Item {
   std::vector<std::size_t> values{};
 };
 
-/// Long enough for another thread to take part.
+/// Waits long enough for another thread to take part.
 void pause() { std::this_thread::sleep_for(std::chrono::microseconds(200)); }
 
 class Pipeline {

@@ -25,8 +25,8 @@ struct Experiment {
   const char* name;
   void (*run)(Bench&);
   const char* help;
-  bool of_any_scene = false;  ///< takes --scenes; the others need certain ones
-  bool of_any_query = false;  ///< takes --env, --model and --trajectory too
+  bool of_any_scene = false;  ///< takes --scenes; other experiments need certain scenes
+  bool of_any_query = false;  ///< also takes --env, --model and --trajectory
 };
 
 constexpr Experiment kExperiments[] = {
@@ -54,7 +54,8 @@ constexpr Experiment kExperiments[] = {
      false, true},
 };
 
-/// Throws UsageError with the experiments that take --scenes.
+/// Throws UsageError, which lists the experiments that take --scenes, where one of the others is
+/// given that option.
 void check_scenes(const Experiment& experiment, bool given) {
   if (!given || experiment.of_any_scene) return;
   std::string others;
@@ -64,7 +65,7 @@ void check_scenes(const Experiment& experiment, bool given) {
   throw UsageError("--scenes is for " + others + "; " + experiment.name + " has scenes of its own");
 }
 
-/// The exit code.
+/// Runs an experiment and returns the exit code.
 int run_bench(const Experiment& experiment, const BenchOptions& options) {
   try {
     tool::run_stoppable(options.output, kHowToResume, [&] {
@@ -128,7 +129,7 @@ void add_cases(CLI::App& command, BenchOptions& options) {
 
 void add_bounds(CLI::App& command, BenchOptions& options) {
   const auto is_size = [](const std::string& text) {
-    tool::parse_size("a size", text);  // throws
+    tool::parse_size("a size", text);  // throws for text that is no size
     return std::string();
   };
   command.add_option("--memory", options.memory, "--memory of every run and conversion")
@@ -143,7 +144,7 @@ void add_bounds(CLI::App& command, BenchOptions& options) {
       ->type_name("N,...");
 }
 
-/// Gives back the option.
+/// Adds --scenes and returns the option.
 const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
       .add_option("--scenes", options.scenes,
@@ -152,7 +153,7 @@ const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));
 }
 
-/// All three are given, or none.
+/// Adds --env, --model and --trajectory, of which all or none are to be given.
 void add_query(CLI::App& command, std::filesystem::path& environment, std::filesystem::path& model,
                std::filesystem::path& trajectory, bool required) {
   CLI::Option* files[] = {command.add_option("--env", environment, "A store of clearway convert"),

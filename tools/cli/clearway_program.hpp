@@ -2,7 +2,7 @@
 
 namespace clearway::tool {
 
-/// The whole program, as main calls it. A campaign calls it in processes that it forks.
+/// The whole program, as main calls it. A campaign also calls it in the processes that it forks.
 int run_clearway(int argc, char** argv);
 
 }  // namespace clearway::tool

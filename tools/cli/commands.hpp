@@ -4,8 +4,8 @@ namespace CLI {
 class App;
 }
 
-/// One function a subcommand: adds its options to `program` and sets the callback that runs it. A
-/// callback sets `exit_code` where success is not 0 (run, compare, verify, campaign run) and throws
+/// Each function adds one subcommand: its options, and the callback that runs it. A callback sets
+/// `exit_code` where success is not 0 (run, merge, compare, verify, campaign run) and throws
 /// otherwise.
 namespace clearway::tool {
 

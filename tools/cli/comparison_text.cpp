@@ -131,7 +131,7 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
   }
   auto& points = out["differences"] = nlohmann::ordered_json::array();
   for (const PointDifference& point : c.points) points.push_back(point_json(point));
-  // Names of files need not be UTF-8.
+  // File names need not be UTF-8.
   return out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

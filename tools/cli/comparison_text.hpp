@@ -6,11 +6,11 @@
 
 namespace clearway::tool {
 
-/// A comparison in words, many lines. a, b: the files' names.
+/// A comparison in words, in many lines. a, b: the names of the compared files.
 std::string comparison_text(const Comparison& comparison, const std::string& a,
                             const std::string& b);
 
-/// The same as one JSON object, one line.
+/// A comparison as one JSON object, on one line. a, b: the names of the compared files.
 std::string comparison_json(const Comparison& comparison, const std::string& a,
                             const std::string& b);
 

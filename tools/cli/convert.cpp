@@ -53,7 +53,7 @@ nlohmann::ordered_json box_json(const StoreReader& store) {
   return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
 }
 
-/// Bytes that this process read and wrote by system calls, the page cache included, as the system
+/// The bytes that this process read and wrote by system calls, page cache included, as the system
 /// counts them; null where it does not.
 nlohmann::ordered_json bytes_moved() {
   nlohmann::ordered_json out = nullptr;
@@ -67,7 +67,7 @@ nlohmann::ordered_json bytes_moved() {
   return out;
 }
 
-/// Of a store that was there already, what only a conversion knows is null.
+/// The report as JSON. What only a conversion knows is null for a store that already existed.
 nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArguments& options,
                                double total_seconds) {
   const StoreReader store(options.output);
@@ -106,7 +106,8 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertArgumen
   return out;
 }
 
-/// Of a store that was there already, because the unit may have been given to its conversion alone.
+/// A clause about the unit of a store that already existed, because the unit may have been given
+/// only to the conversion that made it. Empty where the unit is unknown.
 std::string unit_clause(const std::filesystem::path& store) {
   const LengthUnit unit = StoreReader(store).metadata().unit;
   return unit == LengthUnit::kUnknown ? "" : ", with coordinates in " + to_string(unit);

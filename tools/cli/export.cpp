@@ -53,7 +53,8 @@ void check_combination(const ExportOptions& options) {
   }
 }
 
-/// Of the trajectory, which has to be that of the result.
+/// Reads the labels of the poses from the trajectory, if one is given. Throws InputError where it
+/// is not that of the result.
 PoseLabels labels_for(const ResultReader& result, ExportOptions& options) {
   PoseLabels labels;
   if (options.trajectory.empty()) return labels;
@@ -69,7 +70,7 @@ PoseLabels labels_for(const ResultReader& result, ExportOptions& options) {
   return labels;
 }
 
-/// What was written, and how many rows.
+/// How many rows were written, and what one row is.
 struct Exported {
   std::uint64_t rows;
   const char* row;

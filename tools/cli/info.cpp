@@ -40,7 +40,7 @@ ordered_json bounds_of(const StoreReader& store) {
   return box_json(position_box(store.quantisation(), store.tree()[0].box));
 }
 
-/// Those that points have, with their ASPRS names; null where the points have no classes.
+/// The classes that points have, with their ASPRS names; null where the points have no classes.
 ordered_json classes_json(const StoreMetadata& metadata) {
   if (!metadata.classes) return nullptr;
   ordered_json classes = ordered_json::array();
@@ -205,8 +205,8 @@ ordered_json describe_trajectory(const std::filesystem::path& file) {
           {"more", "clearway trajectory info " + file.filename().string()}};
 }
 
-/// The first of two readings that succeeds. Where neither does the first one's complaint is the
-/// better one: it is what the file looks like.
+/// The first of two readings that succeeds. Where neither does, the first one's error is thrown,
+/// because it is about the kind of file that this looks like.
 template <typename First, typename Second>
 ordered_json either(const std::filesystem::path& file, First first, Second second) {
   try {
@@ -240,7 +240,7 @@ ordered_json describe(const std::filesystem::path& file) {
   }
 }
 
-/// Which source indices come from a file.
+/// A clause that says which source indices come from a file.
 std::string indices_text(const ordered_json& source) {
   if (source["points"].is_null()) return "";
   const auto first = source["first_source"].get<std::uint64_t>();
@@ -286,9 +286,9 @@ struct InfoOptions {
 };
 
 void run_info(const InfoOptions& options) {
-  File::open_regular(options.file);  // a pipe without a writer would wait for ever
+  File::open_regular(options.file);  // opening a pipe without a writer would wait for ever
   const ordered_json description = describe(options.file);
-  // Names of files need not be UTF-8.
+  // File names need not be UTF-8.
   constexpr auto kReplace = ordered_json::error_handler_t::replace;
   print(options.json ? description.dump(2, ' ', false, kReplace) + "\n" : text_of(description));
 }

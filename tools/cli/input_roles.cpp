@@ -9,7 +9,7 @@
 namespace clearway::tool {
 namespace {
 
-/// What a file is good for instead; the option that takes it, or how to make what is needed.
+/// Advice on a file in the wrong place: the option that takes it, or how to make what is needed.
 std::string use_of(FileKind kind, const std::filesystem::path& path) {
   switch (kind) {
     case FileKind::kStore:
@@ -44,7 +44,7 @@ bool is_one_of_ours(FileKind kind) {
 
 void check_is_store(const std::filesystem::path& path) {
   const FileDescription file = describe_file(path);
-  // A damaged store is the store reader's to explain.
+  // The store's reader explains what is wrong with a damaged store.
   if (file.kind == FileKind::kStore || file.kind == FileKind::kOtherHdf5 ||
       file.kind == FileKind::kUnknown) {
     return;

@@ -4,8 +4,8 @@
 
 namespace clearway::tool {
 
-/// Throws InputError, saying what the file is and what to do, where it surely is not what the
-/// option takes. Everything else is left to the readers.
+/// Each function throws InputError, saying what the file is and what to do, where the file surely
+/// is not what the option takes. Every other file is left to the readers.
 void check_is_store(const std::filesystem::path& path);
 void check_is_model(const std::filesystem::path& path);
 void check_is_trajectory(const std::filesystem::path& path);

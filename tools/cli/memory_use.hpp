@@ -6,8 +6,8 @@
 
 namespace clearway::tool {
 
-/// Watches the resident memory of this process without mapped files from a thread of its own, every
-/// few milliseconds, as long as it lives. Source: /proc/self/statm.
+/// Watches the resident memory of this process, without mapped files, every few milliseconds from a
+/// thread of its own as long as the object lives. Source: /proc/self/statm.
 class MemoryWatch {
  public:
   MemoryWatch();
@@ -15,7 +15,7 @@ class MemoryWatch {
   MemoryWatch(const MemoryWatch&) = delete;
   MemoryWatch& operator=(const MemoryWatch&) = delete;
 
-  /// The most that was seen, now included, bytes; 0 where the system does not tell.
+  /// The largest resident memory that was seen so far, bytes; 0 where the system does not tell.
   std::uint64_t peak_bytes();
 
  private:

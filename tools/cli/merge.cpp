@@ -33,7 +33,7 @@ struct MergeCommand {
   bool json = false;
 };
 
-/// Those of runs, and in how many parts each is.
+/// The warnings of the runs, each with the number of parts that have it.
 nlohmann::ordered_json warnings_of(const MergeReport& report) {
   nlohmann::ordered_json out = warnings_json({report.warnings.begin(), report.warnings.end()});
   for (std::size_t i = 0; i < out.size(); ++i) out[i]["parts"] = report.warnings[i].parts;

@@ -75,7 +75,7 @@ ordered_json describe(const ModelInput& input) {
   return out;
 }
 
-/// What is as it should be is left out.
+/// The facts of a model in lines, without those that are as they should be.
 std::string facts_text(const ordered_json& facts) {
   std::string text;
   const auto line = [&text](const char* name, const std::string& value) {

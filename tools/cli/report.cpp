@@ -35,7 +35,7 @@ struct ReportCommand : ConflictCommand {
   ReportOptions report;
   std::vector<ParsedLength> classes;
   bool json = false;
-  const CLI::App* command = nullptr;  ///< whose options these are
+  const CLI::App* command = nullptr;  ///< the command that has these options
 };
 
 std::string now_in_utc() {
@@ -56,7 +56,7 @@ void name_files(ReportCommand& options) {
   if (options.report.date.empty()) options.report.date = now_in_utc();
 }
 
-/// What --model-above left out, from the note of the model's reader.
+/// Takes the number of points that --model-above left out from the note of the model's reader.
 void note_left_out(ReportCommand& options, const std::vector<Message>& messages) {
   options.report.model_above = options.model_options.above;
   for (const Message& told : messages) {

@@ -38,7 +38,7 @@ namespace {
 constexpr const char* kHowToResume =
     "the same command with --resume, without --force, continues from the finished work";
 
-/// Beside what the library reports.
+/// Times and memory that the program measures beside what the library reports.
 struct ProgramReport {
   double inputs_seconds = 0, total_seconds = 0;  ///< wall clock
   std::uint64_t peak_host_bytes = 0;
@@ -63,7 +63,7 @@ nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramRepo
           {"end_wait", search.end_wait}};
 }
 
-/// What the tolerance spared; null for an exact result.
+/// The work that the tolerance saved; null for an exact result.
 nlohmann::ordered_json tolerance_of(const SearchReport& report, double metres) {
   if (!report.tolerance) return nullptr;
   const ToleranceReport& spared = *report.tolerance;
@@ -76,14 +76,14 @@ nlohmann::ordered_json tolerance_of(const SearchReport& report, double metres) {
           {"settled_by_bounds", spared.resolved_by_bounds}};
 }
 
-/// Of both engines, where it chose one of them; otherwise null.
+/// The estimated seconds of both engines where the search chose between them; otherwise null.
 nlohmann::ordered_json estimate_of(const SearchReport& report) {
   if (!report.engine_estimate) return nullptr;
   return {{"sweep_seconds", report.engine_estimate->sweep_seconds},
           {"kdtree_seconds", report.engine_estimate->kdtree_seconds}};
 }
 
-/// Whether a value is known of this run; otherwise null.
+/// The value if it is known of this run; otherwise null.
 template <typename Value>
 nlohmann::ordered_json known(bool is_known, const Value& value) {
   return is_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -94,7 +94,7 @@ nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
   return {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
 }
 
-/// Of a result that was there already no engine searched: what only a search knows is null.
+/// The report as JSON. What only a search knows is null for a result that already existed.
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
                                const PathWords& path, const ProgramReport& program) {
   const bool searched = !report.was_finished;
@@ -181,7 +181,8 @@ Store open_environment(const std::filesystem::path& path) {
   }
 }
 
-/// Without --json the result itself is the answer: that nobody reads the sentence is no failure.
+/// Prints the verdict. Where standard output fails, the sentence is logged and the command does not
+/// fail, because without --json the result file is the answer.
 void print_verdict(const std::string& sentence) {
   try {
     print(sentence + "\n");
@@ -191,13 +192,14 @@ void print_verdict(const std::string& sentence) {
   }
 }
 
-/// The pages of the engine grid take very different times, and should not wait for each other's. To
-/// CUDA that is said before it starts.
+/// Asks CUDA, before it starts, for enough connections that pages of the grid engine, which take
+/// very different times, do not wait for each other.
 void prepare_device(const SearchOptions& options) {
   if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
 }
 
-/// A part without a colliding point does not say that there is none.
+/// Refuses --fail-on-collision with a shard, because a part without a colliding point does not say
+/// that there is none.
 void refuse_judging_part(const RunOptions& options) {
   if (!options.search.shard || !options.fail_on_collision) return;
   throw UsageError(

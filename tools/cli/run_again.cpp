@@ -17,7 +17,7 @@
 namespace clearway::tool {
 namespace {
 
-/// As a shell takes it for one word.
+/// The text, quoted where a shell would not take it for one word.
 std::string shell_word(const std::string& text) {
   constexpr std::string_view kPlain = "_./:=,+@%-";
   const bool plain = !text.empty() && std::ranges::all_of(text, [&](unsigned char c) {
@@ -31,12 +31,12 @@ std::string shell_word(const std::string& text) {
 
 std::string shell_word(const std::filesystem::path& path) { return shell_word(path.string()); }
 
-/// The long name of an option with its hyphens; empty for a positional.
+/// The long name of an option with its hyphens; empty for a positional argument.
 std::string name_of(const CLI::Option& option) {
   return option.get_lnames().empty() ? "" : "--" + option.get_lnames().front();
 }
 
-/// What the command was given for an option; nothing where it has no such option.
+/// The value that the command was given for an option; empty without one, or without that option.
 std::string given(const CLI::App& command, const std::string& name) {
   const CLI::Option* option = command.get_option_no_throw(name);
   return option == nullptr || option->empty() ? "" : option->results().front();
@@ -88,12 +88,12 @@ std::string ignored_words(const ResultHeader& header) {
   return text;
 }
 
-/// A distance that is worth asking for: so many times the radius, in round numbers.
+/// A distance that is worth asking for: `factor` times the radius, in round numbers.
 double times_radius(const ResultHeader& header, double factor) {
   return std::stod(fmt::format("{:.2g}", factor * header.radius));
 }
 
-/// What the run finds beside the colliding points.
+/// The options that say what the run finds.
 std::string asked_words(const ResultHeader& header, Remedy missing) {
   std::string text = " --radius " + format_number(header.radius);
   const bool first = header.first_pose || missing == Remedy::kAskForFirstPose;
@@ -107,7 +107,7 @@ std::string asked_words(const ResultHeader& header, Remedy missing) {
   return text;
 }
 
-/// What a result can lack, and what the name of a result that has it ends in.
+/// Something that a result can lack, and the ending of the name of a result that has it.
 struct Missing {
   const char* name;
   const char* ending;

@@ -113,7 +113,7 @@ void add_query(CLI::App& command, RunOptions& options) {
   for_each_list_field([&](const auto& field) { add_field(command, field, options); });
 }
 
-/// An option that takes the name of one of the values.
+/// Adds an option that takes the name of one of the values.
 template <typename Value>
 void add_choice(CLI::App& command, const std::string& option, Value& chosen,
                 const std::vector<Value>& values, const std::string& description) {
@@ -168,7 +168,7 @@ void add_engine(CLI::App& command, SearchOptions& options, LengthOptions& length
       ->check(CLI::IsMember({"exact", "float"}));
 }
 
-/// Of "2/7"; of another text one that is not valid.
+/// The shard that "2/7" names; for any other text a shard that is not valid.
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = std::min(text.find('/'), text.size());
   const auto number = parse_count(text.substr(0, slash));

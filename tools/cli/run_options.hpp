@@ -14,7 +14,7 @@ class App;
 
 namespace clearway::tool {
 
-/// The command line of `clearway run`.
+/// The options of `clearway run`.
 struct RunOptions {
   std::filesystem::path environment, model, vehicle, trajectory, output;
   QueryParameters query;
@@ -26,10 +26,11 @@ struct RunOptions {
   bool json = false;
 };
 
-/// How the model of a run is read. Throws UsageError for options that contradict each other.
+/// The options by which the model of a run is read. Throws UsageError for options that contradict
+/// each other.
 ModelOptions model_options_of(const RunOptions& options);
 
-/// `options` outlive the command.
+/// Adds the options of `clearway run`. `options` outlive the command.
 void add_run_options(CLI::App& command, RunOptions& options);
 
 }  // namespace clearway::tool

@@ -58,7 +58,7 @@ void write_to_stdout(const scene::Scene& made, const SceneOptions& options, Prog
   scene::write_environment(made, options.seed, out, options.threads, progress);
 }
 
-/// Better refused at once than after minutes.
+/// Throws ResourceError where the disk is too small, at once instead of after minutes.
 void check_disk_space(const std::filesystem::path& folder, std::uint64_t points) {
   constexpr std::uint64_t kBytesAPoint = 20;
   const std::uint64_t free = free_disk_bytes(folder);
@@ -69,7 +69,7 @@ void check_disk_space(const std::filesystem::path& folder, std::uint64_t points)
   }
 }
 
-/// All files are whole under temporary names before the first gets its own.
+/// Writes the scene's files; all are complete under temporary names before the first gets its own.
 void make_scene_files(const SceneOptions& options) {
   const auto sizes = sizes_of(options);
   const bool to_stdout = options.environment == "-";

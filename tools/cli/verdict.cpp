@@ -17,10 +17,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Whether the place's coordinates are known, as they are but in old files.
+/// Whether the place's coordinates are known; only old files lack them.
 bool has_xyz(const FoundPlace& place) { return !std::isnan(place.xyz.x); }
 
-/// The body's name where there are several. A profile does not say which body is so near.
+/// The name of the body that is nearest at a place; empty for one model, and for a profile, which
+/// does not say which body is nearest.
 std::string body_of(const Answer& answer, const std::optional<FoundPlace>& place) {
   const bool names_body = !answer.bodies.empty() && &place != &answer.least_profile;
   return names_body ? answer.bodies[place->body] : "";
@@ -62,7 +63,8 @@ std::string nearest_text(const Answer& answer, const PathWords& path, const std:
   return asked > 0 ? fmt::format("; none is within {} {}", asked, unit) : "";
 }
 
-/// ", with 12 points ignored (class 2), 3 of which would collide"; empty where none is ignored.
+/// A clause about ignored points, such as ", with 12 points ignored (class 2), 3 of which would
+/// collide"; empty where none is ignored.
 std::string ignored_clause(const Answer& answer) {
   if (!answer.parameters.ignores_points()) return "";
   std::string text = ", with " + ignored_text(answer.parameters, answer.ignored) + ", ";
@@ -72,7 +74,7 @@ std::string ignored_clause(const Answer& answer) {
   return text + format_count(*answer.ignored_colliding) + " of which would collide";
 }
 
-/// The verdict, and what the search found of it.
+/// The verdict with the finding behind it.
 std::string finding_text(const Answer& answer, const PathWords& path, const std::string& unit) {
   const std::string limit = fmt::format("{} {}", answer.parameters.radius, unit);
   const std::string ignored = ignored_clause(answer);
@@ -119,8 +121,8 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
   return out;
 }
 
-/// How much of the path the answer is about, where that is not all of it: bodies on pivots have no
-/// pose at its ends.
+/// A clause that says on how much of the path the vehicle was searched, since bodies on pivots have
+/// no pose at its ends. Empty where that is the whole path.
 std::string searched_text(const Answer& answer, const std::string& unit) {
   if (!answer.searched || !(answer.searched->whole < answer.searched->path)) return "";
   const SearchedLength& searched = *answer.searched;

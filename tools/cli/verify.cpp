@@ -23,17 +23,18 @@ namespace {
 
 struct Findings {
   std::vector<std::string> faults;
-  std::string remark{};  ///< of what is no fault
+  std::string remark{};  ///< something worth saying that is no fault
 };
 
-/// As a run leaves it that was killed before the first byte.
+/// Whether the file is an empty journal, as left by a run that was killed before the first byte.
 bool is_empty_journal(const std::filesystem::path& file) {
   std::error_code unknown;
   return file.extension() == ".journal" && std::filesystem::is_regular_file(file, unknown) &&
          std::filesystem::is_empty(file, unknown);
 }
 
-/// A torn tail is what a run that was killed leaves: the next one cuts it off.
+/// Checks a journal. A torn tail is no fault: a run that was killed leaves it, and the next one
+/// cuts it off.
 Findings verify_journal(const std::filesystem::path& file) {
   const JournalReader journal(file);
   journalled_work(journal);

@@ -5,7 +5,8 @@
 
 namespace clearway::scene {
 
-/// Small turns away from a direction of travel, radians, first order: left, nose up, left side up.
+/// Small turns away from a direction of travel, in radians and to first order: to the left, nose
+/// up, left side up.
 struct Attitude {
   double yaw = 0, pitch = 0, roll = 0;
 };

@@ -9,9 +9,9 @@ namespace clearway::scene {
 namespace {
 
 constexpr double kStep = 0.05;
-constexpr int kSplineSteps = 2000;  // a span
+constexpr int kSplineSteps = 2000;  // for each span
 
-/// Uniform cubic B-spline over four control points; f in [0, 1].
+/// The point of the uniform cubic B-spline over four control points at f in [0, 1].
 Vec3 spline_point(const Vec3* control, double f) {
   const double g = 1 - f, f2 = f * f, f3 = f2 * f;
   return (1.0 / 6) * ((g * g * g) * control[0] + (3 * f3 - 6 * f2 + 4) * control[1] +

@@ -7,7 +7,8 @@
 
 namespace clearway::scene {
 
-/// A place beside the path: arc length along it, offset to the left of it, height above it. Metres.
+/// A place beside the path, in metres: arc length along it, offset to the left of it, height above
+/// it.
 struct PathPoint {
   double s, v, w;
 };
@@ -31,14 +32,14 @@ struct PathPiece {
 class Path {
  public:
   static Path from_pieces(std::span<const PathPiece> pieces, double slope);
-  /// A closed uniform cubic B-spline.
+  /// The closed uniform cubic B-spline of these control points.
   static Path closed_spline(std::span<const Vec3> control);
 
   double length() const { return length_; }
   bool closed() const { return closed_; }
   PathFrame at(double s) const;
   Vec3 to_world(const PathPoint& point) const;
-  /// Unit tangent, slope included.
+  /// The unit tangent at s, slope included.
   Vec3 direction(double s) const;
 
  private:

@@ -14,12 +14,13 @@ class Random {
 
   std::uint64_t bits(std::uint64_t counter) const { return mix(key_ + (counter + 1) * kStep); }
 
-  /// In [0, 1).
+  /// A random number in [0, 1).
   double unit(std::uint64_t counter) const { return to_unit(bits(counter)); }
 
   static double to_unit(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-  /// Roughly normal with mean 0 and variance 1 (a sum of four uniforms), within +-3.5.
+  /// A roughly normal random number with mean 0 and variance 1 (a sum of four uniforms), within
+  /// +-3.5.
   static double to_normal(std::uint64_t bits) {
     const std::uint64_t sum =
         (bits & 0xffff) + (bits >> 16 & 0xffff) + (bits >> 32 & 0xffff) + (bits >> 48);
@@ -38,14 +39,14 @@ class Random {
 };
 
 /// A sequence of random numbers, for laying out a scene. Throw at most one in the arguments of a
-/// call: compilers differ in their order.
+/// call, because compilers evaluate arguments in different orders.
 class Dice {
  public:
   Dice(std::uint64_t seed, std::uint64_t stream) : random_(seed, stream) {}
 
   double unit() { return random_.unit(counter_++); }
   double between(double low, double high) { return low + (high - low) * unit(); }
-  /// 0 to count - 1.
+  /// A whole number from 0 to count - 1.
   int choice(int count) { return static_cast<int>(unit() * count); }
   bool chance(double probability) { return unit() < probability; }
 

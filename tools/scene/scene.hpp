@@ -19,16 +19,16 @@ enum class Kind { kHall, kPlant, kMine, kTunnel };
 inline constexpr Kind kAllKinds[] = {Kind::kHall, Kind::kPlant, Kind::kMine, Kind::kTunnel};
 
 std::string_view name_of(Kind kind);
-/// Throws UsageError where there is none of that name.
+/// The kind of scene with this name. Throws UsageError where there is none.
 Kind kind_named(std::string_view name);
 
 struct Sizes {
-  std::uint64_t points;        ///< of the environment, >= 1
+  std::uint64_t points;        ///< number of points of the environment, >= 1
   std::uint64_t model_points;  ///< >= 1
   std::uint64_t poses;         ///< >= 1
 };
 
-/// Those of the data set that the scene is like. Source: the paper, table 1.
+/// The sizes of the data set that the scene resembles. Source: the paper, table 1.
 Sizes full_sizes(Kind kind);
 
 /// A synthetic environment, a model and its trajectory: the same for the same kind, sizes and seed,
@@ -40,15 +40,15 @@ struct Scene {
   World world;
   ScanPlan plan;
   std::vector<Vec3> model;
-  std::function<Pose(std::uint64_t)> pose;  ///< of 0 to sizes.poses - 1
-  std::vector<double> stations;             ///< arc lengths where a scanner stood; mine only
+  std::function<Pose(std::uint64_t)> pose;  ///< pose 0 to sizes.poses - 1
+  std::vector<double> stations;  ///< arc lengths where a scanner stood; only for the mine
 };
 
-/// Distance of the wagon's bogies: pivots at x = +-kBogieDistance / 2 of its frame, on the height
-/// of the rails' tops.
+/// The distance of the wagon's bogies, metres. The pivots are at x = +-kBogieDistance / 2 of its
+/// frame, at the height of the rails' tops.
 inline constexpr double kBogieDistance = 20;
 
-/// The scene may not be moved or copied away: it refers to itself.
+/// Makes a scene. It may not be moved or copied, because it refers to itself.
 std::unique_ptr<const Scene> make_scene(Kind kind, const Sizes& sizes, std::uint64_t seed);
 
 }  // namespace clearway::scene

@@ -4,7 +4,7 @@
 
 #include "clearway/vec3.hpp"
 
-/// What the scenes need of vectors and angles, made of + - * / and sqrt alone: IEEE rounds these
+/// Vectors and angles for the scenes, made of + - * / and sqrt alone, because IEEE rounds these
 /// alike everywhere, which the sine of a C library does not promise.
 namespace clearway::scene {
 
@@ -16,7 +16,7 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Of an angle in radians, |angle| < 1e6; within 1e-12.
+/// Sine and cosine of an angle in radians, |angle| < 1e6; within 1e-12.
 inline SineCosine sine_cosine(double angle) {
   constexpr double kHalfPiHigh = 1.57079632673412561417, kHalfPiLow = 6.07710050650619224932e-11;
   const double turns = std::floor(angle * (2 / kPi) + 0.5);

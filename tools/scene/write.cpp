@@ -17,8 +17,9 @@ namespace {
 
 constexpr std::uint64_t kBatchPoints = 1 << 15;
 
-/// Sweeps of consecutive batches: scanned in parallel, written in order. Points lie in a ring, a
-/// place a batch in flight: what oneTBB holds between two stages is lost when a stage throws.
+/// Scans batches of consecutive sweeps in parallel and writes them in order. Points lie in a ring
+/// with a place for each batch in flight, because what oneTBB holds between two stages is lost when
+/// a stage throws.
 void scan_in_order(const Scanner& scanner, int threads, LasWriter& writer, Progress& progress) {
   const std::uint64_t sweeps = scanner.plan().sweeps();
   const std::uint64_t batch =

@@ -11,10 +11,11 @@ namespace clearway::scene {
 void write_environment(const Scene& scene, std::uint64_t seed, const File& file, int threads,
                        Progress& progress);
 
-/// Binary PLY, float32.
+/// Writes the model as binary PLY, float32.
 void write_model(const Scene& scene, const File& file);
 
-/// Twelve numbers a line, nine digits each: rotation and translation, row-major 3 x 4.
+/// Writes the trajectory with twelve numbers a line, nine digits each: rotation and translation,
+/// row-major 3 x 4.
 void write_trajectory(const Scene& scene, const File& file);
 
 }  // namespace clearway::scene

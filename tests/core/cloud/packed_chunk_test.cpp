@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSizes[] = {2, 7, 64, 1000};
 
-/// The chunk's bytes at the very end of a block of the heap, where a sanitizer sees every read past
+/// A chunk's bytes at the very end of a block of the heap, where a sanitizer sees every read past
 /// them.
 class ExactBytes {
  public:
@@ -28,7 +28,7 @@ class ExactBytes {
   std::size_t size_;
 };
 
-/// The payload bit by bit, straight from the format's description.
+/// Packs the payload bit by bit, straight from the format's description.
 template <typename Value>
 std::vector<std::byte> plainly_packed(const std::vector<Value>& values, unsigned minbits) {
   using Unsigned = std::make_unsigned_t<Value>;
@@ -44,7 +44,8 @@ std::vector<std::byte> plainly_packed(const std::vector<Value>& values, unsigned
   return payload;
 }
 
-/// Every value one by one, and whole and partial runs from every (of the long ones: many) offset.
+/// Reads every value one by one, and whole and partial runs from every offset (of long chunks: from
+/// many).
 template <typename Value>
 void check_reading(const PackedChunk<Value>& chunk, const std::vector<Value>& values) {
   REQUIRE(chunk.size() == values.size());

@@ -11,7 +11,7 @@ using namespace clearway;
 
 namespace {
 
-/// A point of the box, on its border in about half of the axes.
+/// A random point of the box, on its border in about half of the axes.
 Vec3 point_of(Random& random, const Box& box) {
   Vec3 p = random_point(random, box);
   for (int k = 0; k < 3; ++k) {

@@ -51,7 +51,7 @@ TEST_CASE("signs are right beyond their bound") {
     }
     const Box box = box_of(body.vertices);
     const double side = std::max({box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z});
-    if (side < 1e-4 * std::abs(box.hi.y)) continue;  // may cross itself, as rounded
+    if (side < 1e-4 * std::abs(box.hi.y)) continue;  // rounding may make the body cross itself
     const Mesh mesh = exact(body);
     const CGAL::Side_of_triangle_mesh<Mesh, Kernel> side_of(mesh);
     Bodies bodies;

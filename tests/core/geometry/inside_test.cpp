@@ -1,4 +1,4 @@
-// Which places lie inside a solid: bodies whose inside is known.
+// Which places lie inside a solid, with bodies whose inside is known.
 #include "core/geometry/inside.hpp"
 
 #include <catch2/catch.hpp>
@@ -41,7 +41,8 @@ TEST_CASE("a box contains what lies between its sides") {
 }
 
 TEST_CASE("above edges and corners nothing is lost or counted twice") {
-  // Diagonals of the top and bottom faces, and vertical faces, are exactly above and below.
+  // The places lie exactly above and below diagonals of the top and bottom faces, and vertical
+  // faces.
   const Surface body = box_surface({{0, 0, 0}, {2, 2, 2}});
   for (const double x : {0.5, 1.0, 1.5}) {
     for (const double y : {0.5, 1.0, 1.5}) {
@@ -60,7 +61,7 @@ TEST_CASE("above edges and corners nothing is lost or counted twice") {
 TEST_CASE("in line with a turned wall nothing is inside") {
   Random random(11);
   for (int i = 0; i < 300; ++i) {
-    // The wall holds the vertical: only z is left as it is.
+    // A turn about z keeps the wall vertical.
     const double angle = uniform(random, 0, 6.3), c = std::cos(angle), s = std::sin(angle);
     const Surface body = mapped(box_surface({{0, 0, 0}, {1, 3, 1}}), [&](const Vec3& v) {
       return Vec3{c * v.x - s * v.y, s * v.x + c * v.y, v.z};

@@ -41,8 +41,8 @@ TEST_CASE("a segment without a length has no inside") {
   const Vec3 e{0.1, 0, 0}, a{0, 0, 0};
   CHECK_FALSE(collides_inside(e, a, a, 1));
   CHECK_FALSE(collides_inside(e, a, {1e-170, 0, 0}, 1));             // D underflows to 0
-  CHECK_FALSE(collides_inside(e, a, {1e200, 0, 0}, 0.01));           // D overflows: w is ae
-  CHECK_FALSE(collides_inside({1e200, 0, 0}, a, {1e200, 1, 0}, 1));  // as n does
+  CHECK_FALSE(collides_inside(e, a, {1e200, 0, 0}, 0.01));           // D overflows, so w is ae
+  CHECK_FALSE(collides_inside({1e200, 0, 0}, a, {1e200, 1, 0}, 1));  // n overflows
 }
 
 TEST_CASE("the inside of a segment in the order of its definition") {

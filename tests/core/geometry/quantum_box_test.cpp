@@ -63,7 +63,7 @@ TEST_CASE("a decoded block box holds the block, lies in the cell and is tight") 
 }
 
 TEST_CASE("the larger of two block boxes by code is the larger when decoded") {
-  // What uniting codes, not boxes, relies on.
+  // Uniting codes instead of boxes relies on this.
   Random random(3);
   std::uint64_t wrong = 0;
   for (int trial = 0; trial < 50'000; ++trial) {

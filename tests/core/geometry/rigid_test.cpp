@@ -17,7 +17,7 @@ struct Long3 {
 
 long double length(const Long3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
-/// R m without the translation, with 64-bit mantissas.
+/// The rotated point R m, without the translation, with 64-bit mantissas.
 Long3 rotate(const Pose& pose, const Long3& m) {
   const double* r = pose.rotation;
   return {r[0] * m.x + r[1] * m.y + r[2] * m.z, r[3] * m.x + r[4] * m.y + r[5] * m.z,
@@ -120,7 +120,7 @@ TEST_CASE("the stretch bound of extreme matrices is never too small") {
 TEST_CASE("the rounding of a transform is bounded") {
   Random random(2);
   std::uint64_t wrong = 0;
-  long double nearest = 0;  // the largest part of the bound that was reached
+  long double nearest = 0;  // the largest share of the bound that was reached
   for (int trial = 0; trial < 200'000; ++trial) {
     const double far = trial % 3 == 0 ? 1 : trial % 3 == 1 ? 1e3 : 5e6;
     const Pose pose = random_pose(random, far);

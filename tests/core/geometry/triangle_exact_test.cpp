@@ -32,7 +32,7 @@ Exact squared_exact(const Vec3& e, const Triangle& t) {
   return std::min({edge(a, b), edge(b, c), edge(c, a)});
 }
 
-/// |root of d2 - exact distance| in units of the bound, about; above 1 only where it is violated.
+/// About |root of d2 - exact distance| over the bound; above 1 only where the bound is violated.
 double share_of_bound(double d2, const Exact& squared, const Triangle& t) {
   const double distance = std::sqrt(d2);
   const double root = std::sqrt(CGAL::to_double(squared));
@@ -63,7 +63,7 @@ TEST_CASE("distances to triangles are within their bound of the exact ones") {
       worst_of_packets = std::max(worst_of_packets, of_packet);
     }
   }
-  CHECK(worst > 0.1);  // the measure sees errors
+  CHECK(worst > 0.1);  // errors do occur, so that the check means something
   CHECK(worst <= 1);
   CHECK(worst_of_packets > 0.1);
   CHECK(worst_of_packets <= 1);

@@ -22,7 +22,8 @@ TrianglePacket packet_of(const Triangle& t) {
 
 double root_of(const Vec3& e, const Triangle& t) { return std::sqrt(squared_distance(e, t)); }
 
-/// The predicate and a packet, each within the bound.
+/// The bound on the difference between the predicate and a packet, of which each is within the
+/// bound of its own.
 double twice_error(const Triangle& t, double distance) {
   return 2.01 * triangle_error(distance, longest_edge(t));
 }
@@ -41,7 +42,7 @@ TEST_CASE("a packet is as far from a place as the predicate says") {
     const TrianglePacket::Nearest near = packet.nearest(TrianglePacket::kMost - 1, x);
     const double distance = root_of(x, t);
     wrong += !(std::abs(std::sqrt(near.squared) - distance) <= twice_error(t, distance));
-    // Where the way starts, there is the triangle.
+    // The start of the way lies on the triangle.
     const Vec3 start = difference(x, near.way);
     off_way += !(root_of(start, t) <= twice_error(t, distance) + rounding_of(x));
   }
@@ -75,7 +76,7 @@ TEST_CASE("the bound of a hull is below the distance of every place of it") {
     const Vec3 way = difference(y, x);
     const TrianglePacket packet = packet_of(t);
     const TrianglePacket::Nearest near = packet.nearest(0, x);
-    // Any direction gives a bound; across the shortest way it is close.
+    // Every direction gives a bound; the direction of the shortest way gives a close one.
     const bool shortest = below(random, 3) != 0;
     const Vec3 across =
         shortest ? near.way : plus({}, length_of(near.way), random_direction(random));

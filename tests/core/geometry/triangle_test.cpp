@@ -35,7 +35,7 @@ TEST_CASE("a triangle collides strictly below the radius") {
     CHECK_FALSE(collides(e, kTriangle, 0.25));
     CHECK(collides(e, kTriangle, bits_above(0.25)));
   }
-  CHECK_FALSE(collides(Vec3{1, 1, 0}, kTriangle, 0));  // not even on it
+  CHECK_FALSE(collides(Vec3{1, 1, 0}, kTriangle, 0));  // not even for a point on the triangle
 }
 
 TEST_CASE("no triangle is farther than its corners as points") {
@@ -55,7 +55,8 @@ TEST_CASE("triangles without area are their edges and without length their corne
   CHECK(squared_distance(e, Triangle{a, a, b}) == 0.25);
   CHECK(squared_distance(e, Triangle{a, Vec3{3, 2, 3}, b}) == 0.25);
   CHECK(squared_distance(e, Triangle{a, a, a}) == 0.5);
-  // What underflows has no inside, and what overflows decides nothing.
+  // A triangle whose numbers underflow has no inside, and one whose numbers overflow decides
+  // nothing.
   const Vec3 o{0, 0, 0};
   CHECK(squared_distance(Vec3{0, 1, 0}, Triangle{o, Vec3{1e-170, 0, 0}, Vec3{0, 0, 1e-170}}) == 1);
   CHECK_FALSE(collides(Vec3{0, 1, 0},
@@ -107,7 +108,7 @@ TEST_CASE("the field of a surface bounds the distance to it") {
     const ModelField field(tree, 0.2, {.voxel = 0.15, .reach = 1}, 1);
     std::uint64_t wrong = 0;
     for (int i = 0; i < 2000; ++i) {
-      // A quarter on the surface itself, where roundings are all there is.
+      // A quarter of the places lie on the surface itself, where the distance is all rounding.
       Vec3 x = random_point(random, {{far - 3, -3, -3}, {far + 3, 3, 3}});
       if (i % 4 == 0) x = random_place_at(random, triangles[below(random, triangles.size())]);
       double least = kInfinity;

@@ -45,7 +45,7 @@ TEST_CASE("a way touches what is nearer than the radius to its closed segment") 
 }
 
 TEST_CASE("a hit at the end of a way has begun on the way") {
-  // So a way with its end and one without it touch the same points.
+  // It follows that a way with its end and one without it touch the same points.
   constexpr std::int64_t kParts = 1 << 20;
   Random random(32);
   int hits = 0, not_begun = 0;
@@ -56,7 +56,7 @@ TEST_CASE("a hit at the end of a way has begun on the way") {
     const WholePoint at_end = e - b, way = b - a;
     if (16 * dot(at_end, at_end) >= quarters * quarters) continue;
     ++hits;
-    // One part of the way before its end, all lengths times kParts.
+    // The place one of kParts parts of the way before its end, all lengths times kParts.
     const WholePoint before{kParts * at_end.x + way.x, kParts * at_end.y + way.y,
                             kParts * at_end.z + way.z};
     not_begun += 16 * dot(before, before) >= quarters * quarters * kParts * kParts;
@@ -72,7 +72,7 @@ TEST_CASE("a hit at a pose is a hit on the ways to it and from it") {
   for (int i = 0; i < 20'000; ++i) {
     const Vec3 e = random_point(random, box), a = random_point(random, box),
                b = random_point(random, box);
-    // At the very edge of what the pose decides.
+    // Radii at the very edge of what the pose decides.
     const double at = std::sqrt(squared_distance(e, a));
     for (const double radius : {std::nextafter(at, 0.0), at, std::nextafter(at, 2.0)}) {
       if (!collides(e, a, radius)) continue;

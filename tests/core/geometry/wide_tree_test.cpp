@@ -21,7 +21,7 @@ bool less(const Vec3& a, const Vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// What a search from a box visits, in order of the coordinates.
+/// The points that a search from a box visits, in order of the coordinates.
 std::vector<Vec3> visited_from(const WideTree& tree, const Box& box, double squared_reach) {
   std::vector<Vec3> visited;
   tree.ref().any_nearest_first(
@@ -49,7 +49,8 @@ std::vector<Vec3> random_points(std::size_t count, const Vec3& centre, double si
   return points;
 }
 
-/// A search visits each point within its reach as often as it is there, and no other.
+/// Checks that a search visits each point within its reach as often as the tree holds it, and no
+/// other.
 void check(const std::vector<Vec3>& points, const Vec3& centre, double size) {
   const WideTree tree{ModelTree(points)};
   std::mt19937_64 random(7);
@@ -103,7 +104,7 @@ TEST_CASE("a wide tree of triangles leaves out none within reach of a hull") {
   Random random(11);
   std::uint64_t missed = 0, visited = 0, in_reach = 0;
   for (int scene = 0; scene < 60; ++scene) {
-    // A bent patch, as fine as it is long or of long strips, anywhere and of any size.
+    // A bent patch, finely divided both ways or in long strips, anywhere and of any size.
     const double size = std::pow(10.0, uniform(random, -6, 4));
     const Vec3 at = plus({}, scene % 3 == 0 ? 1e4 * size : size, random_direction(random));
     const double length = scene % 2 == 0 ? size : 20 * size, bend = uniform(random, 0, 1);

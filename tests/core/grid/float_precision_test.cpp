@@ -1,4 +1,5 @@
-// `--precision float` against floats alone by brute force: the same wrong answers everywhere.
+// `--precision float` against brute force in floats alone, which gives the same wrong answers
+// everywhere.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,7 +15,7 @@ namespace {
 
 struct Counts {
   std::uint64_t hits = 0;
-  std::uint64_t differing = 0;  ///< from the exact answer
+  std::uint64_t differing = 0;  ///< number of answers that differ from the exact ones
 };
 
 Counts check_float(const Vec3& origin, double radius) {
@@ -55,6 +56,6 @@ TEST_CASE("floats alone decide by themselves, near the origin and far from it") 
   CHECK(near.hits > 100);
   const Counts far = check_float({5e6, 2e6, 100}, 0.15);
   CHECK(far.hits > 0);
-  CHECK(far.differing > 10 * near.differing + 10);  // a float there is half a metre
+  CHECK(far.differing > 10 * near.differing + 10);  // floats there are half a metre apart
   check_float({-1e4, 3e4, 0}, 0.3);
 }

@@ -42,7 +42,7 @@ bool in_step_range(const GridCell& grid, float p, float x) {
          at <= grid_step(x + grid.reach, grid.per_bucket);
 }
 
-/// What every filter says of the pair must agree with the predicate.
+/// Checks that what every filter says of the pair agrees with the predicate.
 void check_pair(const OneCell& cell, const Vec3& e, const Vec3& m, Tally& tally) {
   const GridCell& grid = cell.grid;
   const GridPoint p = rebased(grid, e, 0), x = rebased(grid, m, 0);
@@ -110,7 +110,7 @@ TEST_CASE("filters agree with the predicate for pairs around the radius") {
 }
 
 TEST_CASE("pairs one float rounding around the bounds of a cell") {
-  // The tightest place: the farthest corner, where rebasing rounds most.
+  // The bound is tightest at the farthest corner, where rebasing rounds most.
   Random random(22);
   Tally tally;
   const double scale = 0x1p-30;

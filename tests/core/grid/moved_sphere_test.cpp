@@ -1,4 +1,5 @@
-// Spheres of groups, at a pose and over a run, against single points where their bound is tight.
+// Spheres of groups, at a pose and over a run of poses, against single points where their bound is
+// tight.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -13,12 +14,12 @@ namespace {
 
 struct Place {
   Vec3 offset;
-  double jitter;  ///< metres; about the rounding of the coordinates
+  double jitter;  ///< metres; about as large as the rounding of the coordinates
   Vec3 stretch;
 };
 
-/// A model on a line at poses that hardly move, and points beyond its end at the radius: as far
-/// from a sphere's centre as a hit can be. Returns the number of hits.
+/// Checks a model on a line at poses that hardly move, with points beyond its end at the radius: as
+/// far from a sphere's centre as a hit can be. Returns the number of hits.
 std::uint64_t check_line(Random& random, const Place& place, std::size_t pose_count) {
   const double radius = uniform(random, 0.05, 2);
   const Vec3 along = random_direction(random);

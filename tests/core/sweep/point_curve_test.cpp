@@ -27,7 +27,7 @@ Pose turned(double angle, const Vec3& p) {
           {p.x, p.y, p.z}};
 }
 
-/// Where the parabola through three poses is at t, by Lagrange's formula.
+/// The place on the parabola through three poses at t, by Lagrange's formula.
 Place place_at(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e, long double t) {
   const MotionParabola through(node);
   const Vec3 a = motion.inverse_poses[through.first].apply(e);

@@ -20,7 +20,7 @@ long double distance(const Vec3& a, const Vec3& b) {
   return std::sqrt(squared);
 }
 
-/// How far any of the points is from the nearest kept one.
+/// The largest distance of any point from the nearest kept one.
 long double worst_cover(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& kept) {
   long double worst = 0;
   for (const Vec3& p : points) {
@@ -31,7 +31,8 @@ long double worst_cover(const std::vector<Vec3>& points, const std::vector<std::
   return worst;
 }
 
-/// How far a corner of the box is, at any pose, from where it is at the kept pose nearest in that.
+/// The largest distance of a corner of the box, at any pose, from where it is at the kept pose that
+/// is nearest in that sense.
 long double worst_motion(const std::vector<Pose>& poses, const std::vector<std::uint32_t>& kept,
                          const Box& box) {
   long double worst = 0;
@@ -70,7 +71,7 @@ TEST_CASE("kept points cover the model and no more of them are kept than need be
         const auto kept = kept_points(model, cover);
         CHECK(ascends(kept));
         CHECK(worst_cover(model, kept) <= cover);
-        // None lies within the cover of one before it.
+        // No kept point lies within the cover of one before it.
         for (std::size_t i = 0; i < kept.size(); ++i) {
           for (std::size_t j = 0; j < i; ++j) {
             if (distance(model[kept[i]], model[kept[j]]) < cover * (1 - 1e-12)) FAIL("too near");
@@ -130,7 +131,7 @@ TEST_CASE("equal poses in a row are one at any motion") {
 
 TEST_CASE("thinning makes distances no larger than the tolerance allows") {
   Random random(6);
-  long double largest = 0;  // growth, of the tolerance
+  long double largest = 0;  // the largest growth, as a share of the tolerance
   for (int trial = 0; trial < 500; ++trial) {
     const double tolerance = std::exp(uniform(random, -14, -1));
     const double far = trial % 3 == 0 ? 5e6 : 0;

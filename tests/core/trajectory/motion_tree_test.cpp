@@ -19,8 +19,8 @@ Pose turned(double angle, const Vec3& p) {
 
 double distance(const Vec3& a, const Vec3& b) { return std::sqrt(squared_distance(a, b)); }
 
-/// Every node covers its poses, holds its mid, halves into its children, and its delta bounds the
-/// motion of random model points, between poses to the next pose too.
+/// Checks that every node covers its poses, holds its mid and halves into its children, and that
+/// its delta bounds the motion of random model points, between poses up to the next pose.
 void check_tree(const std::vector<Pose>& poses, bool between_poses) {
   const MotionTree tree(poses, kModel, between_poses);
   REQUIRE(tree.nodes().size() == 2 * poses.size() - 1);

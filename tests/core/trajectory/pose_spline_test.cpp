@@ -46,7 +46,7 @@ double rotation_distance(const Pose& a, const Pose& b) {
   return greatest;
 }
 
-/// How far R^T R is from the identity.
+/// The distance of R^T R from the identity.
 double skewness(const Pose& pose) {
   const double* r = pose.rotation;
   double greatest = 0;
@@ -71,7 +71,7 @@ std::vector<Pose> random_walk(Random& random, std::size_t count, double far, dou
   return poses;
 }
 
-/// On a helix at the angle s.
+/// The pose on a helix at the angle s.
 Pose on_helix(double s) {
   Pose pose = rotation({0, 0, 1}, s, {10 * std::cos(s), 10 * std::sin(s), 2 * s});
   const Pose tilt = rotation({1, 0, 0}, 0.3, {0, 0, 0});
@@ -149,7 +149,7 @@ TEST_CASE("a pose spline's velocities are continuous at its poses") {
   for (std::size_t before = 0, i = 1; i + 1 < poses.size(); ++i) {
     if (curve.span(i - 1) > 0) before = i - 1;
     if (curve.span(i) == 0) continue;
-    // Differences of second order from either side, a unit of the parameter.
+    // Second-order differences from either side, with a unit of the parameter.
     constexpr double kStep = 1e-5;
     const auto slope = [&](const PoseCurve& way, double at, double by, double span, auto&& value) {
       return (-3 * value(way.at(at)) + 4 * value(way.at(at + by)) - value(way.at(at + 2 * by))) /

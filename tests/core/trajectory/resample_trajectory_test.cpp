@@ -23,7 +23,8 @@ std::vector<Pose> resampled(const std::vector<Pose>& poses, double max_motion,
   return resample_trajectory(poses, model, max_motion, progress);
 }
 
-/// All given poses are there, in order, and no random point of the model moves too far.
+/// Checks that all given poses are kept in order, and that no random point of the model moves too
+/// far in a step.
 void check_resampled(const std::vector<Pose>& poses, const std::vector<Pose>& out,
                      double max_motion) {
   auto at = out.begin();
@@ -166,7 +167,7 @@ TEST_CASE("thinning and resampling stays near the poses that were dropped") {
   for (std::size_t i = 0; i < poses.size(); i += 50) {
     double nearest = 1e300;
     for (const Pose& pose : out) nearest = std::min(nearest, motion_bound(kModel, pose, poses[i]));
-    // What follows the last kept pose is within the bound of thinning alone.
+    // Behind the last kept pose only the bound of thinning holds.
     worst = std::max(worst, i + 100 < poses.size() ? nearest : 0);
   }
   CHECK(worst < 0.01);

@@ -22,7 +22,7 @@ Pose heading(double angle, double x, double y) {
   return pose;
 }
 
-/// Where jumps begin.
+/// The poses at which jumps begin.
 std::vector<std::size_t> starts(const Doubles& steps, double least = 0.1) {
   std::vector<std::size_t> poses;
   for (const Jump& jump : jumps_of(steps, least)) poses.push_back(jump.pose);
@@ -31,7 +31,7 @@ std::vector<std::size_t> starts(const Doubles& steps, double least = 0.1) {
 
 using Starts = std::vector<std::size_t>;
 
-/// Even steps, of which those at `at` are longer.
+/// Steps of equal length, except that those at `at` are longer.
 Doubles even(std::size_t count, const Starts& at = {}, double longer = 31) {
   Doubles steps(count, 0.5);
   for (const std::size_t i : at) steps[i] = longer;
@@ -72,12 +72,12 @@ TEST_CASE("stops are no reason to doubt, and hide no jump") {
   append(steps, Doubles(20, 0));
   append(steps, starting);
   CHECK(starts(steps).empty());
-  // A recorder that shakes by millimetres, then is driven off at once.
+  // A recorder shakes by millimetres and is then driven off at once.
   Doubles shaking = even(20);
   append(shaking, Doubles(20, 0.002));
   append(shaking, even(20));
   CHECK(starts(shaking).empty());
-  // Every pose twice, and a gap beside a stop.
+  // Every pose occurs twice, and there is a gap beside a stop.
   Doubles twice;
   for (const double step : even(30, {12})) append(twice, {step, 0});
   CHECK(starts(twice) == Starts{24});

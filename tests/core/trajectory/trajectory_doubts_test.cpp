@@ -20,7 +20,7 @@ Pose pose_at(const Rotation& rotation, double x, double y, double z) {
   return pose;
 }
 
-/// A car on a winding road, at coordinates of a map.
+/// The path of a car on a winding road, at coordinates of a map.
 std::vector<Pose> winding_road() {
   std::vector<Pose> poses;
   double x = 5e5;
@@ -56,7 +56,7 @@ void invert(Pose& pose) {
   std::copy_n(moved, 3, pose.translation);
 }
 
-/// Codes, joined.
+/// The codes of the doubts, joined.
 std::string doubts(const std::vector<Pose>& poses,
                    RotationSource source = RotationSource::kMatrices) {
   std::string codes;
@@ -68,7 +68,7 @@ std::string doubts(const std::vector<Pose>& poses,
   return codes;
 }
 
-/// What a reader makes of x y z w where the file has w x y z.
+/// The rotation that a reader makes where it takes w x y z of the file for x y z w.
 Rotation misread(double half_angle) {
   const double x = std::cos(half_angle);
   const double y = 0;

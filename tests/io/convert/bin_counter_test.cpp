@@ -9,7 +9,7 @@ using namespace clearway;
 
 namespace {
 
-/// Over the whole of int32, so that the lattice reaches as far as it can.
+/// Random points over the whole of int32, so that the lattice reaches as far as it can.
 std::vector<LatticePoint> points_of(const Lattice& lattice, std::size_t count) {
   Random random(7);
   std::vector<LatticePoint> points;

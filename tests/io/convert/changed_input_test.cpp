@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Does something when a stage of the conversion begins.
+/// Calls a function when a stage of the conversion begins.
 class At final : public Progress {
  public:
   At(std::string stage, std::function<void()> act) : stage_(std::move(stage)), act_(act) {}
@@ -32,7 +32,7 @@ class At final : public Progress {
   std::function<void()> act_;
 };
 
-/// Two scans, and a file of as many bytes as the second one, of other points in the same place.
+/// Two scans, and a file of the second one's size with other points in the same place.
 struct Scans {
   Scans() {
     write_las(first, points);
@@ -40,7 +40,8 @@ struct Scans {
     auto others = points;
     std::swap(others.front(), others.back());
     write_las(other, others);
-    // So that a change is seen however coarse the file system's clock is.
+    // The file's time is set back, so that a change is seen however coarse the file system's clock
+    // is.
     const auto past = fs::last_write_time(second) - std::chrono::hours(1);
     fs::last_write_time(second, past);
     options = conversion_of({first, second}, folder / "a.h5");
@@ -77,7 +78,7 @@ TEST_CASE("an input that changes before its last pass is refused by name") {
   SECTION("all but its points changes") {
     change = [&scans] {
       std::string bytes = bytes_of(scans.second);
-      bytes[58] ^= 1;  // of the generating software's name
+      bytes[58] ^= 1;  // a byte of the generating software's name
       put_bytes(scans.second, bytes);
     };
   }

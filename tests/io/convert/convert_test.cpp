@@ -14,7 +14,7 @@ using Catch::Contains;
 
 namespace {
 
-/// One LAS file and the conversion of it.
+/// One LAS file and the options of its conversion.
 struct Scan {
   explicit Scan(std::vector<Quantum> cloud, std::uint32_t cell_points = 64)
       : points(std::move(cloud)) {
@@ -49,7 +49,7 @@ std::array<std::int64_t, 3> cube_of(const Quantum& q, std::int64_t quanta) {
   return cube;
 }
 
-/// A cell's points, and a bucket's, lie in one cube.
+/// Checks that a bucket's points, and so a cell's, lie in one cube.
 void check_cubes(const StoreReader& store, std::int64_t quanta) {
   for (const TopNode& node : store.top_tree()) {
     if (node.right != 0) continue;
@@ -195,7 +195,7 @@ TEST_CASE("too little memory is refused with the least that will do") {
 }
 
 TEST_CASE("too little memory for the index of many cells is refused before they are made") {
-  std::vector<Quantum> points;  // a cube, and so a cell, each
+  std::vector<Quantum> points;  // each in a cube, and so a cell, of its own
   for (int i = 0; i < 120'000; ++i) points.push_back({i % 400 * 2000, i / 400 * 2000, 0});
   Scan scan(points);
   scan.options.regular_size = 1;
@@ -247,7 +247,7 @@ TEST_CASE("a store with points left out is converted until its inputs change, an
   ConversionOptions options = conversion_of({folder / "a.ply"}, folder / "a.h5");
   convert_quietly(options);
   CHECK(is_converted(options, progress));
-  // A strict call takes it for done too, and then refuses what the store warns of.
+  // A strict call also takes the conversion for done, and then refuses what the store warns of.
   options.strict = true;
   CHECK(is_converted(options, progress));
   {

@@ -10,8 +10,8 @@ using Catch::Contains;
 
 namespace {
 
-/// The scale in metres that a refusal advises; 0: a coarser one, or one of the caller's choice;
-/// negative: none.
+/// The scale in metres that a refusal advises; 0 where it advises a coarser one or one of the
+/// caller's choice; negative where it advises none.
 double advised_scale(const std::vector<std::filesystem::path>& inputs,
                      const EnvironmentOptions& options = {}) {
   const auto error = refused(inputs, options);

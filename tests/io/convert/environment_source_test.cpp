@@ -1,4 +1,4 @@
-// What an environment is read from: its files in order, points that are not finite, units.
+// The inputs of an environment: its files in order, points that are not finite, units.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>

@@ -10,8 +10,9 @@ using namespace clearway::test;
 
 namespace {
 
-/// More than a bucket's points in one place, more than a bucket's in one bin of the counting grid,
-/// and sparse points over the whole range, which keep that grid coarse; all shuffled together.
+/// A cloud with more than a bucket's points in one place, more than a bucket's in one bin of the
+/// counting grid, and sparse points over the whole range, which keep that grid coarse; all are
+/// shuffled together.
 std::vector<Quantum> lopsided_cloud() {
   std::vector<Quantum> points = cube_cloud(150'000, -2147483648LL, 2147483647LL, 1);
   const auto dense = cube_cloud(kBucketPoints + 100'000, 1'000'000, 1'200'000, 2);

@@ -121,7 +121,7 @@ TEST_CASE("a folder of 3DTK scans converts with their poses, which are sources t
   CHECK(find(remarks, "left-out"));
   std::size_t placed = 0;
   for (const Message& remark : remarks) placed += remark.code == "scan-placed";
-  CHECK(placed == 4);  // three, and how many more
+  CHECK(placed == 4);  // three places, and the number of the others
 }
 
 TEST_CASE("a pose that changes during the conversion is noticed") {

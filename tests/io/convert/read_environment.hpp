@@ -12,7 +12,7 @@
 
 namespace clearway::test {
 
-/// What an EnvironmentSource gives and says.
+/// Everything that an EnvironmentSource gives: points and facts.
 struct Environment {
   Quantisation quantisation;
   std::vector<StoredPoint> points;

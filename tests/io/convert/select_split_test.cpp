@@ -20,7 +20,8 @@ std::vector<BucketPoint> bucket_of(const std::vector<Quantum>& points) {
   return bucket;
 }
 
-/// Whether the points below a split's value, and as many at it as it says, are the least ones.
+/// Checks that the points below a split's value, and as many at it as the split says, are the least
+/// ones.
 void check_split(const std::vector<BucketPoint>& points, std::size_t left, int axis) {
   CAPTURE(points.size(), left, axis);
   std::vector<std::int32_t> sorted;
@@ -59,7 +60,7 @@ TEST_CASE("a split leaves the least coordinates on its left") {
 
 TEST_CASE("a split is right where the sample tells nothing") {
   constexpr std::size_t kCount = 1 << 15;
-  constexpr std::size_t kPeriod = 32;  // a power of two, as the sample's steps are
+  constexpr std::size_t kPeriod = 32;  // a power of two, like the sample's steps
   for (const std::int32_t sampled : {-2147483647 - 1, -5, 1000, 2147483647}) {
     CAPTURE(sampled);
     std::vector<Quantum> points = cube_cloud(kCount, 0, 100, 3);

@@ -51,7 +51,7 @@ TEST_CASE("one unreadable file is refused, and the remedy named") {
 TEST_CASE("unreadable files are left out where that is asked for, and listed") {
   Scans scans;
   put_bytes(scans.folder / "scans/b.las", "LASF, but nothing else");
-  // Its first points are sound: what is wrong comes later.
+  // The first points of this file are sound, and the fault comes later.
   put_bytes(scans.folder / "scans/c.las",
             "ply\nformat ascii 1.0\nelement vertex 2\nproperty "
             "float x\nproperty float y\nproperty float z\n"
@@ -97,7 +97,8 @@ TEST_CASE("the columns chosen apply to texts, and are refused where there is non
   REQUIRE(report.box);
   CHECK(report.box->lo == Vec3{1, 2, 9});
   CHECK(report.box->hi == Vec3{7, 8, 60});
-  // A store does not tell its columns, so that it is no store of these inputs.
+  // A store does not tell the columns it was read with, so it never counts as the store of these
+  // inputs.
   NoProgress progress;
   CHECK_FALSE(is_converted(options, progress));
   options.inputs = {folder / "b.ply"};

@@ -1,4 +1,4 @@
-// What a conversion warns of, where something is wrong with the inputs, and only there.
+// Conversions warn where something is wrong with the inputs, and only there.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -51,7 +51,7 @@ double number(const Message& message, const std::string& name) {
   return 0;
 }
 
-/// The only warning.
+/// The only warning, which has to have this code.
 Message only(const std::vector<Message>& warnings, const std::string& code) {
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].code == code);
@@ -80,8 +80,8 @@ TEST_CASE("ordinary scans convert without a warning") {
 
 TEST_CASE("many points at one place are counted exactly, wherever they stand") {
   const Folder folder;
-  const std::size_t many = GENERATE(
-      std::size_t{50'000}, std::size_t{300'000});  // below and above what is looked at wholly
+  // Below and above the number of points up to which all are examined.
+  const std::size_t many = GENERATE(std::size_t{50'000}, std::size_t{300'000});
   const std::string how = GENERATE("at the end", "every seventh", "at random");
   std::vector<Quantum> points = scan(many, 4, 1, 50'000);
   std::mt19937 random(5);
@@ -284,7 +284,7 @@ TEST_CASE("coordinates that lost their digits are warned of with their step") {
   CHECK_THAT(floats.text, Contains("x, y are multiples of 0.03125 m, 0.5 m"));
   CHECK(text(500'000, 5.4e6, to(0.01)).empty());
   CHECK(text(0, 0, single).empty());
-  // A flat scan has lost nothing along its height.
+  // A flat scan loses nothing along its height.
   put_bytes(folder.folder / "flat.xyz", [&] {
     std::string lines;
     for (int i = 0; i < 1500; ++i) {

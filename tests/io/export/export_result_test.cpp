@@ -20,7 +20,7 @@ using Catch::Contains;
 
 namespace {
 
-/// A value at a byte of a file.
+/// The value that starts at a byte of a file.
 template <typename Value>
 Value value_at(const std::string& bytes, std::size_t at) {
   REQUIRE(at + sizeof(Value) <= bytes.size());
@@ -41,7 +41,7 @@ Sample sample(bool first_pose, std::size_t count, const std::string& crs = "") {
   return out;
 }
 
-/// The bytes of the exported file.
+/// The bytes of a sample's exported file.
 std::string exported(const Sample& sample, const std::string& name) {
   const ScratchFolder folder;
   write_result(folder / "out.h5", sample.header, sample.rows);
@@ -51,7 +51,7 @@ std::string exported(const Sample& sample, const std::string& name) {
   return bytes_of(folder / name);
 }
 
-/// The lines of a text as words, separated by `separator`.
+/// The words of each line of a text, separated by `separator`.
 std::vector<std::vector<std::string>> table(const std::string& text, char separator) {
   std::vector<std::vector<std::string>> out;
   std::istringstream lines(text);
@@ -72,7 +72,6 @@ bool same_quantum(const Sample& sample, int axis, const std::string& text, doubl
 
 constexpr std::size_t kMany = 65'600;  // more than a batch
 
-/// Cuts this process's files at a size for its lifetime: writing past it fails as on a full disk.
 }  // namespace
 
 TEST_CASE("CSV holds every column in full") {

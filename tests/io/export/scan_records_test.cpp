@@ -13,7 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr unsigned kOwn = 28 + 3;  // bytes of a record of format 1 with three more
+constexpr unsigned kOwn = 28 + 3;  // bytes of a record of format 1 with three extra bytes
 
 /// Two scans, of which the second has another offset, and the result of points 1, 3 and 4.
 struct Scans {
@@ -92,7 +92,7 @@ TEST_CASE("records of scans are copied with all their bytes") {
     CHECK(value_at<std::uint32_t>(bytes, at + kOwn) == poses[i]);
     CHECK(value_at<double>(bytes, at + kOwn + 4) == distances[i]);
   }
-  CHECK(value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) == 7003);  // of the result's scale
+  CHECK(value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) == 7003);  // in the result's scale
 }
 
 TEST_CASE("copied records are a LAS file that reads back as the result's points") {
@@ -167,7 +167,7 @@ TEST_CASE("scans that are no LAS may be among them where no point of theirs is c
   Scans scans;
   scans.rows = {{1}, {scans.rows.xyz[0]}, {9}};
   scans.clearances = {};
-  scans.second.format = 3;  // nothing of it is needed
+  scans.second.format = 3;  // a scan of which no point is needed
   CHECK_FALSE(scans.exported().empty());
   std::filesystem::remove(scans.folder / "scans/b.las");
   put_bytes(scans.folder / "scans/b.xyz", "1 2 3\n4 5 6\n7 8 9\n");

@@ -12,8 +12,8 @@ using namespace clearway::test;
 
 namespace {
 
-/// Requires that the file is read whole, and refused when cut at any byte, but for its last `spare`
-/// bytes: without them it has the same number of points.
+/// Requires that the whole file is read, and that it is refused when cut at any byte, except within
+/// its last `spare` bytes, without which it has the same number of points.
 void check_every_cut(const std::string& name, const std::string& bytes, bool as_stream,
                      std::size_t spare = 0) {
   ReaderScratch scratch;
@@ -84,7 +84,7 @@ TEST_CASE("a cut binary PLY file is refused at every byte") {
         "a.ply", head + "element vertex 3\n" + kXyz + "end_header\n" + std::string(36, 'v'), false);
   }
   SECTION("lists around the vertices and in them") {
-    // A list of 0x0101 = 257 two-byte items in either byte order.
+    // The list has 0x0101 = 257 two-byte items in either byte order.
     const std::string list = "\1\1" + std::string(514, 'i');
     const std::string property = "property list ushort short a\n";
     check_every_cut("a.ply",
@@ -104,8 +104,8 @@ TEST_CASE("a cut binary PLY file is refused at every byte") {
   }
 }
 
-// A text that lacks its last line break is read where all values of its last line are there: that
-// digits of the last number are missing cannot be seen.
+// A text that lacks its last line break is read where all values of its last line are present,
+// because missing digits of the last number cannot be noticed.
 TEST_CASE("a cut ASCII PLY file is refused at every byte before its last number") {
   const std::string head =
       "ply\nformat ascii 1.0\nelement a 1\nproperty list uchar int n\n"
@@ -113,7 +113,7 @@ TEST_CASE("a cut ASCII PLY file is refused at every byte before its last number"
       kXyz;
   const std::string rows = "2 10 11\n1.25 2.25 3.25\n4.25 5.25 625\n";
   check_every_cut("a.ply", head + "end_header\n" + rows, false, 3);
-  // Elements behind the vertices are not looked at, but the last vertex must be whole.
+  // Elements behind the vertices are not read, but the last vertex must be complete.
   check_every_cut(
       "a.ply",
       head + "element face 1\nproperty list uchar int n\nend_header\n" + rows + "3 10 11 12\n",

@@ -27,7 +27,7 @@ std::string las_sample() {
   return las.build();
 }
 
-/// Its checksums are right only where nothing was changed: e57_hostile_test.cpp makes them right.
+/// A small E57 file. Its checksums are wrong after any change; e57_hostile_test.cpp corrects them.
 std::string e57_sample() {
   E57Bytes file;
   file.scans = {e57_scan({1, 2}, {3, 4}, {5, 6})};
@@ -45,7 +45,7 @@ std::string ptx_sample() {
          "0 0 0 0.5\n";
 }
 
-/// Reads in every way that the file's name allows; anything but an Error fails the test.
+/// Reads a file in every way that its name allows; anything but an Error fails the test.
 void read_anything(const std::filesystem::path& path) {
   const auto attempt = [](auto read) {
     try {

@@ -15,7 +15,7 @@ struct Expected {
   const char* name;
   std::size_t points;
   LengthUnit unit;
-  Vec3 first, last;  ///< metres, within 1e-6 of a unit
+  Vec3 first, last;  ///< in metres, compared within 1e-6 of a unit
 };
 
 Vec3 position_of(const ReadCloud& cloud, std::size_t index) {

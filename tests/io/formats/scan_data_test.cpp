@@ -51,7 +51,7 @@ TEST_CASE("an ascii PCD in commas is read with all its digits") {
   CHECK(cloud.positions[0] == Vec3{289814.15, 4320978.61, 170.76});
 }
 
-// By hand: p' = p M with the matrix of the file.
+// The expected places are computed by hand as p' = p M, with the matrix of the file.
 TEST_CASE("a PTX of a turned scanner is placed by its matrix, beams without a return are absent") {
   const auto reader = open_point_file(data_folder() / "formats" / "complex-transform.ptx");
   PointBatch batch;

@@ -16,7 +16,7 @@ namespace {
 const JournalIdentity kIdentity{{"model", "00ff"}, {"radius", "0.1"}};
 constexpr double kNever = 1e9;  // seconds
 
-/// A payload for every record: its number, then so many bytes of text.
+/// A record's payload: its number, and a text whose length and letter follow from that.
 JournalRecord record_of(std::uint64_t number) {
   JournalRecord record;
   record.put_count(number);
@@ -24,7 +24,7 @@ JournalRecord record_of(std::uint64_t number) {
   return record;
 }
 
-/// Numbers of the records, each checked.
+/// The numbers of the journal's records, after a check of each payload.
 std::vector<std::uint64_t> numbers_in(const JournalReader& journal) {
   std::vector<std::uint64_t> numbers;
   journal.for_each([&numbers](JournalPayload payload) {

@@ -73,7 +73,7 @@ TEST_CASE("long lists and large objects of JSON are read in linear time", "[json
   const Stopwatch time;
   CHECK(parse_json(list + "]").size() == 300'001);
   CHECK(parse_json(object + "}").size() == 300'001);
-  CHECK(time.seconds() < 20);  // a minute where each one looks at all before it
+  CHECK(time.seconds() < 20);  // it takes a minute where each element looks at all before it
 }
 
 TEST_CASE("a reader of keys keeps its file's text alive, and counts before it reads", "[json]") {

@@ -37,7 +37,7 @@ TEST_CASE("parts share no vertex, vertices at one place are one") {
   const TriangleMesh other = unit_cube();
   for (const Vec3& v : other.vertices) mesh.vertices.push_back({v.x + 1, v.y + 1, v.z + 1});
   for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + 8, b + 8, c + 8});
-  CHECK(facts_of(mesh).parts == 1);  // they touch in a corner
+  CHECK(facts_of(mesh).parts == 1);  // the triangles touch in a corner
   for (std::size_t i = 8; i < 16; ++i) mesh.vertices[i].x += 0.5;
   CHECK(facts_of(mesh).parts == 2);
   CHECK(facts_of(mesh).watertight());

@@ -40,7 +40,7 @@ std::vector<Vec3> checked_samples(const TriangleMesh& mesh, double spacing, int 
   for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / 500) {
     off = std::max(off, surface_distance(points[i], mesh));
   }
-  CHECK(off <= 2 * rounding);  // of the sample, and of the distance computed here
+  CHECK(off <= 2 * rounding);  // the rounding of the sample and of the distance computed here
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {
       if (tree.nearest(mesh.vertices[corner]).squared_distance != 0) FAIL("a corner is missing");
@@ -60,7 +60,7 @@ TEST_CASE("a cube is covered at any spacing, with few points") {
     INFO(spacing);
     const auto points = checked_samples(unit_cube(), spacing);
     const double optimum = 6 * 2 / (3 * std::sqrt(3.0) * spacing * spacing);
-    // On the plane no cover has fewer than the optimum; the sides of 12 triangles cost more.
+    // No cover of a plane has fewer points than the optimum; the sides of 12 triangles cost more.
     CHECK(static_cast<double>(points.size()) <= 1.02 * optimum + 12 / spacing + 12);
   }
   CHECK(sample_mesh(unit_cube(), 1.5, "mesh").size() == 8);

@@ -76,5 +76,5 @@ TEST_CASE("samples find what touches the surface, but for a shell of one spacing
     }
   }
   CHECK(hits > 300);
-  CHECK((spacing < 0.1 || missed > 0));  // at such a spacing the shell is there
+  CHECK((spacing < 0.1 || missed > 0));  // at such a spacing some points are missed
 }

@@ -81,7 +81,7 @@ TEST_CASE("a writer refuses clearances that do not belong to its result") {
   CHECK_THROWS_AS(append(writer, 0, 1), std::logic_error);
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
   ResultWriter early(folder / "b.h5", header, 1, 1);
-  CHECK_THROWS_AS(append(early, 0, 1), std::logic_error);  // before the collisions
+  CHECK_THROWS_AS(append(early, 0, 1), std::logic_error);  // clearances before the collisions
 }
 
 TEST_CASE("clearances that no run can have found are faults") {

@@ -33,7 +33,7 @@ ProfileRows read_all(const ResultReader& reader) {
   return all;
 }
 
-/// NaN equals NaN.
+/// Whether two lists have the same bits, so that NaN equals NaN.
 bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
 }
@@ -93,7 +93,7 @@ TEST_CASE("a writer refuses a profile that does not belong to its result") {
   CHECK_THROWS_AS(append(writer, 2, 2), std::logic_error);
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
   ResultWriter early(folder / "b.h5", header, 1);
-  CHECK_THROWS_AS(append(early, 3, 3), std::logic_error);  // before the collisions
+  CHECK_THROWS_AS(append(early, 3, 3), std::logic_error);  // a profile before the collisions
 }
 
 TEST_CASE("a profile that no run can have found is a fault") {

@@ -14,14 +14,16 @@ using Catch::Contains;
 
 namespace {
 
-/// Reads everything. True when it is what was written; throws InputError when damage was seen.
+/// Reads the colliding points. True where they and the header are as written; throws InputError
+/// where damage is noticed.
 bool reads_as(const std::filesystem::path& path, const ResultHeader& header,
               const ResultRows& rows) {
   const ResultReader reader(path);
   return reader.header() == header && same_rows(read_rows(reader), rows);
 }
 
-/// Of every table.
+/// Reads every table. True where they and the header are as written; throws InputError where damage
+/// is noticed.
 bool reads_tables(const std::filesystem::path& path, const ResultHeader& header,
                   const ResultRows& rows, const ClearanceRows& clearances,
                   const ProfileRows& profile) {
@@ -45,7 +47,7 @@ void put_byte(const std::filesystem::path& path, std::size_t at, int byte) {
   file.put(static_cast<char>(byte));
 }
 
-/// Opens a written result for changing it behind the reader's back.
+/// Opens a written result to change it behind the reader's back.
 hdf5::Id open_to_change(const std::filesystem::path& path) {
   return {H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "open"};
 }
@@ -87,7 +89,8 @@ TEST_CASE("a flipped byte anywhere is noticed or changes nothing") {
   const LeaksOfHdf5 ignored;
   const ScratchFolder folder;
   ResultHeader header = sample_header(true);
-  // A CRS of several kilobytes: such attributes must be as well guarded as short ones.
+  // The CRS may have several kilobytes, because such attributes must be as well guarded as short
+  // ones.
   header.crs_wkt = GENERATE(std::string("EPSG"), std::string(6000, 'w'));
   header.poses = 6;
   header.clearance = header.profile = 0.5;

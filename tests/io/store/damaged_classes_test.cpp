@@ -22,7 +22,7 @@ TEST_CASE("damaged classes are refused, by who asks for them and by verify") {
     try {
       const StoreReader store(folder / "b.h5");
       if (!faults_of(store).empty()) continue;
-      // No change that is read.
+      // A change that is not noticed must not change what is read.
       unseen += !store.has_classes() ||
                 classes_by_source(store) != classes_by_source(StoreReader(folder / "a.h5"));
     } catch (const InputError&) {

@@ -35,7 +35,7 @@ struct SmallStore {
   std::filesystem::path path = folder / "a.h5";
 };
 
-/// A dataset of these extents, chunked as given, of which nothing is written.
+/// Adds a dataset of these extents, chunked as given, in which nothing is written.
 void put_empty_dataset(const hdf5::Id& file, const char* name, hid_t type, hsize_t rows,
                        hsize_t chunk_rows, bool checksum) {
   REQUIRE(H5Ldelete(file.get(), name, H5P_DEFAULT) >= 0);
@@ -178,7 +178,7 @@ TEST_CASE("rows of a result that turn to zeros, checksum and all, are noticed") 
       ClearanceRowStream clearances(reader);
       ClearanceRows near, none;
       clearances.read(near);
-      clearances.read(none);  // the end is where the hash is checked
+      clearances.read(none);  // the hash is checked at the end
       CHECK(near.pose == clearance_rows.pose);
       CHECK(near.xyz == clearance_rows.xyz);
       CHECK(same_rows(read, rows));

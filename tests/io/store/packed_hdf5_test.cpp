@@ -22,7 +22,7 @@ class PackedFile {
     file_ = {H5Fcreate("packed", H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose, "file"};
   }
 
-  /// One chunk of `count` values.
+  /// Makes a dataset of one chunk of `count` values.
   template <typename Value>
   hdf5::Id dataset(std::size_t count) {
     const std::array<hsize_t, 2> size{1, count};
@@ -77,8 +77,9 @@ std::vector<Value> unpacked_by_hdf5(PackedFile& file, const std::vector<std::byt
   return values;
 }
 
-/// The one byte that HDF5 1.10.8 may leave uninitialised: the payload has floor(n * minbits / 8) +
-/// 1 bytes, so where n * minbits is a multiple of 8 no bit falls into the last.
+/// Whether the payload's last byte holds no bit, so that HDF5 1.10.8 may leave it uninitialised:
+/// the payload has floor(n * minbits / 8) + 1 bytes, so where n * minbits is a multiple of 8 no bit
+/// falls into the last.
 template <typename Value>
 bool last_byte_is_unused(std::size_t count, unsigned minbits) {
   return minbits < kValueBits<Value> && count * minbits % 8 == 0;

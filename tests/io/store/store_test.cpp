@@ -17,7 +17,7 @@ using Catch::Contains;
 
 namespace {
 
-/// All that a store says, read and verified.
+/// The content of a store, read and verified.
 struct Content {
   explicit Content(const std::filesystem::path& path) {
     const StoreReader store(path);
@@ -68,7 +68,7 @@ std::string refusal(const std::filesystem::path& path) {
 class Patch {
  public:
   explicit Patch(const std::filesystem::path& path) : bytes_(bytes_of(path)) {
-    // In place: a file system may sync a file that is written anew.
+    // The file is changed in place, because a file system may sync a file that is written anew.
     file_ = std::fopen(path.c_str(), "r+b");
     if (file_ == nullptr) throw std::runtime_error("cannot open for patching");
   }

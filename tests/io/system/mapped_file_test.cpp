@@ -43,7 +43,7 @@ TEST_CASE("a file that shrinks under its map ends the program with its name") {
   std::string message(1000, '\0');
   message.resize(
       static_cast<std::size_t>(std::max<ssize_t>(0, ::read(ends[0], message.data(), 1000))));
-  while (true) {  // written in parts
+  while (true) {  // the system writes the text in parts
     char more[200];
     const ssize_t got = ::read(ends[0], more, sizeof more);
     if (got <= 0) break;

@@ -48,7 +48,7 @@ TEST_CASE("a separator within quotes is part of the name") {
       "path.csv");
   CHECK(labels.name == Names{"hall, north", "say \"a, b\"", "5\" pipe"});
   CHECK(labels.time == Times{3, 4, 5});
-  // Quotes that do not close, or close before more text, are text.
+  // Quotes that are not closed, or closed before more text, are text.
   CHECK(labels_of("x,y,z,qx,qy,qz,qw,name,end\n0,0,0,0,0,0,1,\"open,1\n", "path.csv").name.size() ==
         1);
 }

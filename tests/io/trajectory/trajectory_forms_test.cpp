@@ -1,4 +1,4 @@
-// Forms of poses beside the plain text formats: unit, lever arm, quaternions without time, 3DTK.
+// Forms of poses beyond the plain text formats: unit, lever arm, quaternions without time, 3DTK.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -42,10 +42,10 @@ TEST_CASE("a position and a quaternion without time: the order is to be named") 
   const std::string row = "7 8 9 0.8 0 0 0.6\n";
   CHECK_THAT(refusal(row), Contains("pose-xyzw") && Contains("pose-wxyz"));
   const Pose xyzw = poses_of(row, {.format = TrajectoryFormat::kPoseXyzw}).at(0);
-  CHECK(xyzw.rotation[8] == Approx(1 - 2 * 0.64));  // about x
+  CHECK(xyzw.rotation[8] == Approx(1 - 2 * 0.64));  // a turn about x
   CHECK(xyzw.rotation[0] == Approx(1));
   const Pose wxyz = poses_of(row, {.format = TrajectoryFormat::kPoseWxyz}).at(0);
-  CHECK(wxyz.rotation[8] == Approx(1));  // about z
+  CHECK(wxyz.rotation[8] == Approx(1));  // a turn about z
   CHECK(wxyz.rotation[0] == Approx(1 - 2 * 0.36));
   CHECK(wxyz.translation[2] == 9);
   CHECK_THAT(refusal("1 2 3\n", {.format = TrajectoryFormat::kPoseXyzw}),
@@ -78,7 +78,7 @@ TEST_CASE("positions of a known unit are converted into the environment's") {
   CHECK(poses_of(named, {.environment_unit = 0.3048}).at(0).translation[2] == Approx(30));
   const TrajectoryOptions arm{.environment_unit = 0.3048, .lever_arm = {0, 4, 0}};
   CHECK(poses_of(named, arm).at(0).translation[1] == Approx(16));
-  // 9 mm are the double nearest to 0.009, as for models.
+  // 9 mm become the double nearest to 0.009, as for models.
   CHECK(poses_of(row, {.metres_per_unit = 0.001}).at(0).translation[0] == 0.009);
   CHECK_THAT(refusal("x_ft,y_ft,z,qx,qy,qz,qw\n10,20,30,0,0,0,1\n"),
              Contains("some of the positions"));
@@ -106,7 +106,7 @@ TEST_CASE("a lever arm leads from the trajectory's point back to the model's ori
   CHECK(pose.translation[2] == 8);
   const Vec3 arm{0.3, -1.2, 0.7};
   const Pose moved = poses_of(kTurn, {.lever_arm = arm}).at(0);
-  for (int row = 0; row < 3; ++row) {  // the antenna is where the file has it
+  for (int row = 0; row < 3; ++row) {  // the antenna is at the file's position
     const double* r = moved.rotation + 3 * row;
     const double antenna = r[0] * arm.x + r[1] * arm.y + r[2] * arm.z + moved.translation[row];
     CHECK(antenna == Approx(7 + row));
@@ -114,12 +114,12 @@ TEST_CASE("a lever arm leads from the trajectory's point back to the model's ori
 }
 
 TEST_CASE("3DTK: a .pose is one pose, in our frame") {
-  // 3DTK: 100 to the right, 200 up, 300 ahead, a quarter turn about its y axis.
+  // A pose of 3DTK: 100 to the right, 200 up, 300 ahead, and a quarter turn about its y axis.
   const Pose pose = poses_of("100 200 300\n0 90 0\n", {}, "scan000.pose").at(0);
   CHECK(pose.translation[0] == Approx(3));
   CHECK(pose.translation[1] == Approx(-1));
   CHECK(pose.translation[2] == Approx(2));
-  // Left-handed about up: the front turns to the right, which is -y.
+  // The turn about up is left-handed, so the front turns to the right, which is -y.
   CHECK(pose.rotation[3] == Approx(-1));
   CHECK(pose.rotation[8] == Approx(1));
   CHECK_THAT(refusal("1 2 3\n", {}, "scan000.pose"), Contains("expected six"));

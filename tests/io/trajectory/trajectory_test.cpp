@@ -31,11 +31,11 @@ std::string refusal_of_text(const std::string& text,
   return {};
 }
 
-/// A quarter turn about z, to (7, 8, 9).
+/// The pose of a quarter turn about z at (7, 8, 9).
 const Pose kTurn{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {7, 8, 9}};
 const std::string kIdentity = "1 0 0 0 0 1 0 0 0 0 1 0";
 const std::string kTurnRow = "0 -1 0 7 1 0 0 8 0 0 1 9";
-const std::string kHalf = "0.70710678118654752";  // quaternion (0, 0, kHalf, kHalf)
+const std::string kHalf = "0.70710678118654752";  // element of the quaternion (0, 0, kHalf, kHalf)
 
 void check_turn(const std::vector<Pose>& poses) {
   REQUIRE(poses.size() == 1);

@@ -1,4 +1,4 @@
-// What the checks of several bodies say of the vehicle.
+// What the checks of several bodies together tell about the vehicle.
 #include "search/checks/body_messages.hpp"
 
 #include <catch2/catch.hpp>
@@ -50,7 +50,7 @@ TEST_CASE("the vehicle floats where all of its bodies do") {
   CHECK(told({{"roof", {floats}}, {"bogie", {}}}).empty());
   CHECK(codes(told({{"roof", {floats}}, {"bogie", {floats}}})) ==
         std::vector<std::string>{"floats"});
-  // Above the ground nothing is expected beside it.
+  // Nothing is expected beside a body that is above the ground.
   CHECK(codes(told({{"roof", {floats, beside}}, {"bogie", {floats, beside}}})) ==
         std::vector<std::string>{"floats"});
   CHECK(codes(told({{"roof", {beside}}, {"bogie", {floats, beside}}})) ==
@@ -86,7 +86,7 @@ TEST_CASE("a stretch without ground below one body is told, once, as the body wi
     CHECK(found[0].code == code);
     CHECK(found[0].text == "the vehicle, as its body rear: from 11");
   }
-  // A roof is above the ground everywhere: that does not hide what its bogie meets.
+  // That a roof is above the ground everywhere does not hide what its bogie meets.
   const auto found = told(
       {{"roof", {warning("floats", "everywhere")}}, {"bogie", {of_stretch("floats", 10, 16)}}});
   REQUIRE(found.size() == 1);

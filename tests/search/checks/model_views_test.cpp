@@ -8,7 +8,7 @@ using namespace clearway;
 
 namespace {
 
-/// Points 0.1 apart on the sides of a cube of 2, as far as `keep` holds.
+/// Points 0.1 apart on those parts of the sides of a cube of 2 for which `keep` holds.
 template <typename Keep>
 std::vector<Vec3> cube(Keep keep) {
   std::vector<Vec3> points;
@@ -60,7 +60,7 @@ TEST_CASE("a cube without two opposite sides is open along that axis alone") {
 }
 
 TEST_CASE("what is open to a side is no hole") {
-  // A gantry: two legs and a roof, seen from the front.
+  // The model is a gantry: two legs and a roof, seen from the front.
   const auto gantry = cube([](int, int j, int k) { return j % 20 == 0 || k == 20; });
   CHECK(view_of(gantry, 0).open_share() == 0);
   CHECK_FALSE(view_of(gantry, 2).encloses({1, 1, 1}, 0.1));

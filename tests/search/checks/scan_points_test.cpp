@@ -13,7 +13,7 @@ namespace {
 
 constexpr Quantisation kMillimetres{{0.001, 0.001, 0.001}, {0, 0, 0}};
 
-/// A ground of 40 m by 40 m at height 0, points 0.2 m apart, in cells of 1024.
+/// A cloud of a ground of 40 m by 40 m at height 0, with points 0.2 m apart, in cells of 1024.
 MemoryCloud ground_cloud() {
   std::vector<Quantum> points;
   for (std::int32_t i = 0; i < 200; ++i) {

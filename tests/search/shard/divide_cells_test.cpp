@@ -9,7 +9,7 @@ using namespace clearway;
 
 namespace {
 
-/// Of a few cells most of the work, as in real scenes; of some none.
+/// Random work of cells: as in real scenes, a few cells have most of it and some have none.
 std::vector<std::uint64_t> random_work(std::mt19937_64& draw, std::size_t cells) {
   std::vector<std::uint64_t> work(cells);
   for (std::uint64_t& one : work) one = draw() % 5 == 0 ? 0 : (draw() >> 54) * (draw() >> 54);

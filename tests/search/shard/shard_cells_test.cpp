@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kEnough = std::uint64_t{1} << 30;
 
-/// Points along a line, half of which a model passes.
+/// A store of points along a line, and a model that passes half of them.
 struct HalfALine {
   explicit HalfALine(std::uint32_t cell_points = 64) {
     std::vector<Quantum> points;

@@ -15,13 +15,13 @@ namespace clearway::test {
 struct E57Bytes {
   static constexpr std::size_t kHeaderBytes = 48;
 
-  /// One field of the points: its element, and the bits stored for each record.
+  /// One field of the points: its XML element, and the bits stored for each record.
   struct Field {
     std::string xml;
     unsigned bits = 0;
     std::vector<std::uint64_t> stored;
 
-    /// Least significant bit first, the last byte filled up with zeros.
+    /// The stored bits, least significant first, with the last byte filled up with zeros.
     std::string bytestream() const {
       std::string bytes((stored.size() * bits + 7) / 8, '\0');
       for (std::size_t bit = 0; bit < stored.size() * bits; ++bit) {
@@ -35,17 +35,17 @@ struct E57Bytes {
 
   struct Scan {
     std::vector<Field> fields;
-    std::string xml;  ///< of the scan, beside its points: pose, bounds
+    std::string xml;  ///< the scan's elements beside its points: pose, bounds
     std::string codecs;
     /// Bytes of each bytestream in each packet; what is left goes into the last one.
     std::vector<std::vector<std::size_t>> packets = {};
-    bool index_packets = false;  ///< an index and an ignored packet before each data packet
-    std::string padding;         ///< behind the first bytestream's end, as some writers fill words
+    bool index_packets = false;  ///< whether index and ignored packets precede data packets
+    std::string padding;  ///< bytes behind the first bytestream's end, as some writers fill words
 
     std::size_t records() const { return fields.empty() ? 0 : fields[0].stored.size(); }
   };
 
-  /// The content without checksums, and where things are in it.
+  /// The content of a file without checksums, and where its sections and its XML begin.
   struct Content {
     std::string bytes;
     std::vector<std::uint64_t> sections;
@@ -53,7 +53,7 @@ struct E57Bytes {
   };
 
   std::vector<Scan> scans;
-  std::string root_xml;  ///< of e57Root, beside data3D
+  std::string root_xml;  ///< elements of e57Root beside data3D
   std::string declaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   std::size_t page = 1024;
 
@@ -67,7 +67,7 @@ struct E57Bytes {
     for (const float value : values) field.stored.push_back(std::bit_cast<std::uint32_t>(value));
     return field;
   }
-  /// more: further attributes, a ScaledInteger's scale and offset.
+  /// A field of integers. more: the further attributes, scale and offset, of a ScaledInteger.
   static Field integer(const std::string& name, std::int64_t minimum, std::int64_t maximum,
                        const std::vector<std::int64_t>& values, const std::string& more = "") {
     const std::uint64_t range =
@@ -86,7 +86,7 @@ struct E57Bytes {
   static std::string number(const std::string& name, const std::string& value) {
     return "<" + name + " type=\"Float\">" + value + "</" + name + ">";
   }
-  /// Each a text of numbers, in the order w x y z and x y z.
+  /// The pose element. rotation and translation: texts of numbers, in the order w x y z and x y z.
   static std::string pose(const std::vector<std::string>& rotation,
                           const std::vector<std::string>& translation) {
     constexpr const char* kNames[] = {"w", "x", "y", "z"};
@@ -110,7 +110,7 @@ struct E57Bytes {
     return logical / (page - 4) * page + logical % (page - 4);
   }
 
-  /// CRC-32C byte by byte.
+  /// CRC-32C, computed byte by byte.
   static std::uint32_t checksum(const char* bytes, std::size_t count) {
     static const auto kTable = [] {
       std::array<std::uint32_t, 256> table{};
@@ -128,7 +128,7 @@ struct E57Bytes {
     }
     return ~remainder;
   }
-  /// Makes the checksum of every whole page right.
+  /// Corrects the checksum of every whole page.
   static void repair(std::string& file, std::size_t page = 1024) {
     for (std::size_t start = 0; start + page <= file.size(); start += page) {
       const std::uint32_t sum = checksum(file.data() + start, page - 4);
@@ -137,7 +137,7 @@ struct E57Bytes {
       }
     }
   }
-  /// The file of a content: pages with checksums, the size in its header.
+  /// The file of a content: pages with checksums, and the file's size in its header.
   static std::string paged(const std::string& content, std::size_t page = 1024) {
     std::string file;
     for (std::size_t at = 0; at < content.size(); at += page - 4) {

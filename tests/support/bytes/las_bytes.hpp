@@ -18,14 +18,14 @@ struct LasBytes {
 
   unsigned minor = 2;
   unsigned format = 0;
-  unsigned extra_bytes = 0;  ///< behind each point's standard fields
+  unsigned extra_bytes = 0;  ///< bytes behind each point's standard fields
   unsigned padding = 0;      ///< bytes between the last VLR and the first point
   std::uint16_t global_encoding = 0;
   std::array<double, 3> scale{0.001, 0.01, 0.1};
   std::array<double, 3> offset{100, -200, 0};
   std::vector<std::array<std::int32_t, 3>> points{
       {1, 2, 3}, {-4, 5, -6}, {2147483647, -2147483647 - 1, 0}};
-  std::vector<std::uint8_t> bytes_of_class{};  ///< of the points, flags included; empty: any
+  std::vector<std::uint8_t> bytes_of_class{};  ///< one for each point, flags included; empty: any
   std::vector<Record> vlrs;
   std::vector<Record> evlrs;  ///< 1.4: any number; 1.3: one
 
@@ -83,7 +83,8 @@ struct LasBytes {
     return bytes;
   }
 
-  /// header: 54 bytes of a variable length record, 60 of an extended one.
+  /// Appends a record. header: bytes of its header, 54 for a variable length record and 60 for an
+  /// extended one.
   static void append(std::string& bytes, const Record& record, unsigned header) {
     std::string head(header, '\0');
     head.replace(2, record.user.size(), record.user);

@@ -8,7 +8,7 @@
 
 namespace clearway::test {
 
-/// The cube from 0 to 1: 8 vertices, 12 triangles, outsides counter-clockwise.
+/// The cube from 0 to 1: 8 vertices, and 12 triangles that are counter-clockwise seen from outside.
 inline TriangleMesh unit_cube() {
   return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
           {{0, 3, 2},
@@ -29,7 +29,7 @@ inline std::string words(const Vec3& v) {
   return std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z);
 }
 
-/// Text STL.
+/// The mesh as text STL.
 inline std::string ascii_stl(const TriangleMesh& mesh) {
   std::string text = "solid made\n";
   for (const auto& triangle : mesh.triangles) {
@@ -47,7 +47,7 @@ void put(std::string& bytes, Value value) {
   bytes.append(raw, sizeof value);
 }
 
-/// Binary STL with the start of its header given.
+/// The mesh as binary STL whose header starts with `header`.
 inline std::string binary_stl(const TriangleMesh& mesh, std::string header = "made") {
   std::string bytes = std::move(header);
   bytes.resize(80, ' ');
@@ -82,7 +82,7 @@ inline std::string off_text(const TriangleMesh& mesh) {
   return text;
 }
 
-/// PLY with faces: "ascii" or "binary_little_endian".
+/// The mesh as PLY. format: "ascii" or "binary_little_endian".
 inline std::string ply_mesh(const TriangleMesh& mesh, const std::string& format) {
   std::string bytes = "ply\nformat " + format + " 1.0\nelement vertex " +
                       std::to_string(mesh.vertices.size()) +

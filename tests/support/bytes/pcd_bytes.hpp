@@ -8,7 +8,7 @@
 
 namespace clearway::test {
 
-/// The header of a PCD file; members hold what stands behind the keyword.
+/// The header of a PCD file; each member holds what stands behind its keyword.
 struct PcdHeaderText {
   std::string fields = "x y z";
   std::string size = "4 4 4";
@@ -39,7 +39,7 @@ std::string raw(Numbers... numbers) {
   return bytes;
 }
 
-/// LZF: greedy, with matches of 3 to 264 bytes up to 8192 bytes back.
+/// Compresses with LZF, greedily, with matches of 3 to 264 bytes up to 8192 bytes back.
 inline std::string lzf(std::string_view text) {
   std::string out, literals;
   const auto flush = [&] {
@@ -82,7 +82,7 @@ inline std::string lzf(std::string_view text) {
   return out;
 }
 
-/// What follows DATA binary_compressed.
+/// The bytes behind the line "DATA binary_compressed": both sizes and the compressed columns.
 inline std::string compressed(std::string_view columns) {
   const std::string packed = lzf(columns);
   return raw(static_cast<std::uint32_t>(packed.size()),

@@ -5,7 +5,7 @@
 
 namespace clearway::test {
 
-/// A record of an SBET; radians, metres, seconds.
+/// A record of an SBET, in radians, metres and seconds.
 struct SbetRecord {
   double time = 151631, latitude = 0.9, longitude = 0.15, altitude = 107.5;
   double roll = 0, pitch = 0, heading = 0, wander = 0;

@@ -11,7 +11,7 @@
 
 namespace clearway::test {
 
-/// What a writer wrote to a nameless file, byte for byte.
+/// The bytes that a writer wrote to a nameless file.
 class WrittenBytes {
  public:
   explicit WrittenBytes(const File& file) : bytes_(file.size_bytes()) { file.read_at(0, bytes_); }
@@ -26,7 +26,7 @@ class WrittenBytes {
     return value;
   }
 
-  /// Up to the first zero byte.
+  /// The text at `offset`, up to the first zero byte and at most `bytes` long.
   std::string text(std::size_t offset, std::size_t bytes) const {
     std::string out;
     for (std::size_t i = 0; i < bytes && at<char>(offset + i) != '\0'; ++i) {

@@ -9,7 +9,8 @@
 namespace clearway {
 namespace {
 
-/// The nearest point of every pose.
+/// Checks the nearest point of every pose that one engine finds. Returns how many poses have a
+/// point.
 std::uint64_t check_profile(const Engine& engine, const MemoryCloud& cloud,
                             const std::vector<NearestPoint>& expected, const Query& query) {
   static int runs = 0;

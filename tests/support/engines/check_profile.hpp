@@ -8,15 +8,16 @@
 
 namespace clearway {
 
-/// By brute force, of every pose, however far.
+/// The nearest point of every pose by brute force, however far it is.
 std::vector<NearestPoint> nearest_points(const std::vector<Vec3>& positions, Query query);
 
-/// The profile that the query asks for, of every engine that has profiles, against the nearest
-/// points. Returns how many poses have a point.
+/// Checks the profile that the query asks for, of every engine that has profiles, against the
+/// nearest points. Returns how many poses have a point.
 std::uint64_t check_profile(const MemoryCloud& cloud, std::vector<NearestPoint> nearest,
                             const Query& query);
 
-/// D of a profile, from far below the radius to far above it, beside other modes.
+/// The query with a profile distance from far below the radius to far above it, and with other
+/// modes, as `variant` chooses.
 Query with_profile(Query query, std::size_t variant);
 
 }  // namespace clearway

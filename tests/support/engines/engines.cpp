@@ -28,7 +28,8 @@ SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads) {
                    });
 }
 
-/// The bodies of the CUDA engine as loops, with lists of open work from ample to none.
+/// Runs the kernels' bodies of the CUDA sweep engine as loops, with lists of open work from ample
+/// to none.
 SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
   return run_sweep(cloud, query, threads,
                    []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
@@ -50,14 +51,15 @@ std::vector<Engine> under_test{{"kdtree", kdtree, true, false, false, false},
                                {"sweep as on CUDA", sweep_as_on_cuda, true, true, true, true},
                                {"grid", grid, false, false, false, false}};
 
-/// Three for every fifth run, else one: in scenes this small, threads mostly wait for each other.
-/// The runs of a scene are no multiple of five, so every engine and kind of query has its turn.
+/// The number of threads of the next run: three for every fifth run, otherwise one, because in
+/// scenes this small threads mostly wait for each other. The runs of a scene are no multiple of
+/// five, so every engine and kind of query has its turn.
 int next_threads() {
   static int runs = 0;
   return ++runs % 5 == 0 ? 3 : 1;
 }
 
-/// First poses by brute force, at poses and between them.
+/// The expected first poses by brute force, at poses and between them.
 struct Expected {
   Expected(const std::vector<Vec3>& positions, Query query) {
     query.between_poses = false;
@@ -102,7 +104,7 @@ std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uin
 
 using Oracle = std::vector<Clearance>;
 
-/// Every clearance and every hit, a set or with first poses.
+/// Checks every clearance and every hit of one engine, with and without first poses.
 std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, const Oracle& least,
                                const std::vector<std::uint32_t>& first_poses, const Query& query) {
   const double limit = query.clearance * query.clearance;
@@ -153,7 +155,7 @@ std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Q
   return colliding;
 }
 
-/// Which points a query ignores, by its own words.
+/// Which points a query ignores, by the definition of its classes and boxes.
 std::vector<bool> ignored_by(const Query& query, const std::vector<Vec3>& positions,
                              std::span<const std::uint8_t> classes) {
   std::vector<bool> ignored;
@@ -169,7 +171,7 @@ std::vector<bool> ignored_by(const Query& query, const std::vector<Vec3>& positi
   return ignored;
 }
 
-/// By brute force, as if the ignored points were not there.
+/// The nearest point of every pose by brute force, as if the ignored points were not there.
 std::vector<NearestPoint> nearest_of_searched(const std::vector<Vec3>& positions,
                                               const std::vector<bool>& ignored,
                                               const Query& query) {

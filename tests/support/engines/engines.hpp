@@ -14,25 +14,25 @@
 
 namespace clearway {
 
-/// An engine under test. Every one runs through the same cases, against brute force.
+/// An engine under test. Every engine runs through the same cases, against brute force.
 struct Engine {
   std::string name;
   SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads);
-  bool between_poses;  ///< whether it answers such queries
-  bool clearances;     ///< likewise, and profiles
-  bool tolerance;      ///< likewise
-  bool surfaces;       ///< likewise
+  bool between_poses;  ///< whether it answers queries between poses
+  bool clearances;     ///< whether it gives clearances and profiles
+  bool tolerance;      ///< whether it takes a tolerance
+  bool surfaces;       ///< whether it searches models of triangles
 };
 
 std::span<const Engine> engines();
 
-/// Makes a sweep engine, of points, of triangles and of solids; what it is given outlives it.
+/// Makes a sweep engine of points, of triangles or of solids. What the engine is given outlives it.
 struct MakeSweep {
   template <typename Element>
   using Of = std::function<std::unique_ptr<PageEngine>(
       const SweepFilterOf<Element>& filter, const PackedCloud& cloud, const SlotLayout& layout)>;
 
-  /// make: a generic function.
+  /// make: a function that takes filters of any element.
   template <typename Make>
   MakeSweep(Make make) : points(make), triangles(make), solids(make) {}  // NOLINT(*-explicit-*)
 
@@ -41,39 +41,43 @@ struct MakeSweep {
   Of<SolidTriangle> solids;
 };
 
-/// Plans the query, and runs it in an engine of as many slots and cells a page as the cloud's
-/// size makes them, so that all occur. whole_field: for an engine that cannot make parts of it.
+/// Plans the query, and runs it in an engine whose numbers of slots and of cells a page follow from
+/// the cloud's size, so that all of them occur. whole_field: for an engine that cannot make parts
+/// of the field.
 SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads,
                        const MakeSweep& make, bool whole_field = false);
 
-/// From now on engines() are these.
+/// Makes engines() return these from now on.
 void test_only(std::vector<Engine> engines);
 
-/// Runs every engine on the points, packed in several ways, as a set and with first poses, at
-/// poses and, with a model of points, between them, and checks the answers against brute force;
-/// likewise clearances below and above the radius, where an engine has them. Returns the number of
-/// points that collide at a pose.
+/// Runs every engine on the points, packed in several ways, as a set and with first poses, at poses
+/// and, with a model of points, between them, and checks the answers against brute force. Where an
+/// engine has clearances, those below and above the radius are checked in the same way. Returns the
+/// number of points that collide at a pose.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query);
 
-/// The same of points with classes, some of which the query ignores, by class or box. Returns the
-/// number of points that collide at a pose and are not ignored.
+/// Checks every engine, as the other check_engines do, on points with classes of which the query
+/// ignores some, by class or box. Returns the number of points that collide at a pose and are not
+/// ignored.
 std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
                             const Quantisation& quantisation, const Query& query);
 
-/// Only between poses, in one packing. Returns every point's first pose, or HitSet::kNever.
+/// Checks every engine between poses alone, with the points packed in one way. Returns every
+/// point's first pose, or HitSet::kNever.
 std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
                                                const Quantisation& quantisation, Query query);
 
-/// The same as check_engines above for one way of packing them.
+/// Checks every engine, as the other check_engines do, on points that are packed in one way.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query, const MemoryCloudOptions& packing);
 
-/// The clearances that the query asks for. Returns how many there are.
+/// Checks the clearances that the query asks for. Returns how many there are.
 std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
                                const Query& query);
 
-/// The profile that the query asks for, in several packings. Returns how many poses have a point.
+/// Checks the profile that the query asks for, with the points packed in several ways. Returns how
+/// many poses have a point.
 std::uint64_t check_profile(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query);
 

@@ -19,17 +19,18 @@ struct GridRun {
   int threads = 3;
 };
 
-/// The engine `grid` on the CPU over a whole cloud. Every cell is searched, with nodes of the
+/// Runs the engine `grid` on the CPU over a whole cloud. Every cell is searched, with nodes of the
 /// motion tree that together hold every pose: whole ranges for one cell, finer ones for the next.
-/// statistics: added to.
+/// statistics: the run's are added to them.
 HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 GridStatistics* statistics = nullptr);
 
-/// What an engine made for the scene answers to cells staged in its pages.
+/// Makes an engine for the scene and returns what run_in finds with it, from cells staged in pages
+/// of page_bytes.
 using RunPages = std::function<HitSet(const GridScene& scene, std::uint64_t page_bytes,
                                       const std::function<HitSet(PageEngine& engine)>& run_in)>;
 
-/// The same with another engine.
+/// Searches a whole cloud as the other run_grid does, with the engine that run_pages makes.
 HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 const RunPages& run_pages);
 

@@ -13,11 +13,12 @@
 
 namespace clearway {
 
-/// The CUDA sweep engine's bodies in the order of its kernels, with the lanes of a warp as a loop.
+/// Runs the bodies of the CUDA sweep engine's kernels in their order on the CPU, with a loop over
+/// the lanes of a warp.
 template <typename Element>
 class HostSweepOf final : public PageEngine {
  public:
-  /// entries: room on each list of open work.
+  /// entries: how many entries fit on each list of open work.
   HostSweepOf(const PackedCloud& cloud, const SweepRefOf<Element>& sweep, const SlotLayout& layout,
               std::uint32_t entries)
       : sweep_(sweep),
@@ -54,7 +55,8 @@ class HostSweepOf final : public PageEngine {
   }
 
  private:
-  /// As on a device, whose list may be too short.
+  /// Searches the profile as on a device, where the list of facts may be too short; then the host
+  /// searches the page anew.
   void search_profile(std::uint32_t slot, const SweepPageOf<Element>& job) {
     std::vector<ProfileFact>& facts = facts_[slot];
     facts.assign(entries_, {});
@@ -113,7 +115,7 @@ class HostSweepOf final : public PageEngine {
   std::uint32_t entries_;
   HostProfileOf<Element> profile_;
   ProfileBestValues bests_;
-  std::vector<std::vector<ProfileFact>> facts_;  ///< by slot
+  std::vector<std::vector<ProfileFact>> facts_;  ///< the facts of each slot
   std::mutex mutex_;
 };
 

@@ -6,8 +6,8 @@
 
 namespace clearway::test {
 
-/// The comparisons with brute force of a scene that has `points`, `quantisation`, `poses` and
-/// `query()`. Each returns how many were found.
+/// Compares a scene that has `points`, `quantisation`, `poses` and `query()` with brute force. Each
+/// check returns how many were found.
 template <typename Scene>
 struct SceneChecks {
   std::uint64_t check() const {

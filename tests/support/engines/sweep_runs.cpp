@@ -54,7 +54,8 @@ class PreparedModel {
  private:
   static double reach_of(const Query& query) { return std::max(query.clearance, query.profile); }
 
-  /// A field is the same only for the very same numbers, the sign of a zero included.
+  /// Whether two elements have the same bits, the sign of a zero included: only then are their
+  /// fields the same.
   static bool same_bits(const Element& a, const Element& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
   }
@@ -69,7 +70,8 @@ class PreparedModel {
   ModelField field_;
 };
 
-/// That of an earlier run, where one of the last four had the same. Valid until the next call.
+/// The prepared model of a query: that of one of the last four runs with another model where it is
+/// the same, otherwise a new one. Valid until the next call.
 template <typename Element>
 const PreparedModel<Element>& prepared_model(const Query& query, int threads, bool whole) {
   static std::list<PreparedModel<Element>> last;

@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-/// By index in the points given.
+/// Whether each point is a hit, by its index in the cloud's input.
 std::vector<bool> by_source(const MemoryCloud& cloud, const HitSet& hits) {
   std::vector<bool> out(cloud.point_count());
   for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
@@ -20,7 +20,8 @@ std::vector<bool> by_source(const MemoryCloud& cloud, const HitSet& hits) {
   return out;
 }
 
-/// |d - radius| of the wrong answers at the most, 0 without any; in more digits than the engines'.
+/// The largest |d - radius| of the wrong answers, rounded up, and 0 without any; computed with more
+/// digits than the engines use.
 double farthest_difference(const std::vector<bool>& answer, const std::vector<bool>& expected,
                            const std::vector<Clearance>& least, double radius) {
   long double farthest = 0;

@@ -63,7 +63,7 @@ TEST_CASE("wrong points are counted by the octave of their steps") {
   CHECK(right["misses"] == 0);
   CHECK(right["points"][0] == 129);
   CHECK(right["points"][30] == 128);
-  hits.pop_back();                    // of the last octave
+  hits.pop_back();                    // a hit of the last octave
   hits.insert(hits.begin(), {0, 1});  // 0 and 1 ulps
   const Json wrong = decided(folder, hits);
   CHECK(wrong["false_hits"] == 2);

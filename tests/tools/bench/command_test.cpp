@@ -1,4 +1,4 @@
-// The built program clearway-bench: its options, its files and where it goes on.
+// The built program clearway-bench: its options, its files, and how it continues an experiment.
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -54,7 +54,8 @@ TEST_CASE("what a smaller limit has stopped is measured anew, in its place") {
   REQUIRE(datasets.run(options + "20").exit_code == 0);
   Json figures = datasets.figures();
   CHECK(figures["parameters"]["limit"] == 20);
-  // The second case as it is kept now, the last one and the parameters as they were before.
+  // The second case is in the present form; the last one and the parameters are in the earlier
+  // form.
   figures["parameters"].erase("limit");
   for (const std::size_t i : {1, 2}) figures["cases"][i]["runs"] = Json::array();
   figures["cases"][1]["failed"] = {{"after_seconds", 21.5}, {"limit", 20}};
@@ -177,7 +178,7 @@ TEST_CASE("stages and peers print one JSON object") {
   REQUIRE(stages.exit_code == 0);
   CHECK(Json::parse(stages.out)["cells_read"] == 1);
   const Outcome help = run_program_at(CLEARWAY_BENCH_PROGRAM, folder, "--help");
-  if (help.out.find("nanoflann") == std::string::npos) return;  // not found by the build
+  if (help.out.find("nanoflann") == std::string::npos) return;  // the build did not find nanoflann
   const Outcome peers = run_program_at(CLEARWAY_BENCH_PROGRAM, folder, "peers" + query);
   CAPTURE(peers.err);
   REQUIRE(peers.exit_code == 0);

@@ -11,7 +11,7 @@ namespace clearway::test {
 
 using Json = nlohmann::ordered_json;
 
-/// An experiment of the built program clearway-bench, on scenes of a few thousand points.
+/// Runs an experiment of the built program clearway-bench, on scenes of a few thousand points.
 class Experiment {
  public:
   explicit Experiment(const std::string& name, int repetitions = 2)

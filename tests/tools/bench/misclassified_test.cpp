@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadius = 0.1, kClearance = 0.5;
 
-/// A distance for points 0, 1, ...; infinite where there is none.
+/// The distances of points 0, 1, ...; infinite where a point has none.
 using Distances = std::vector<double>;
 using Sources = std::vector<std::uint64_t>;
 
@@ -49,7 +49,7 @@ ResultReader truth_of(const ScratchFolder& folder, const Distances& distances,
   return ResultReader(folder / "truth.h5");
 }
 
-/// About the same points in another quantisation, and without clearances.
+/// An answer about the same points in another quantisation, without clearances.
 ResultReader answer_of(const ScratchFolder& folder, const Sources& hits, std::uint64_t points) {
   ResultHeader header = header_of(points, 0);
   header.environment_hash = 1;
@@ -87,9 +87,9 @@ TEST_CASE("wrong points are counted by their distance, first and last ones too")
   CHECK(out.beyond == 2);
   CHECK(out.largest_distance == kRadius);
   std::array<std::uint64_t, 18> histogram{};
-  histogram[0] = 2;   // at r, and the next double below it, 1.4e-17 away
-  histogram[15] = 2;  // 0.05 and 0.02
-  histogram[16] = 1;  // 0.1
+  histogram[0] = 2;   // distances at r and at the next double below it, 1.4e-17 away
+  histogram[15] = 2;  // distances 0.05 and 0.02
+  histogram[16] = 1;  // distance 0.1
   CHECK(out.histogram == histogram);
 }
 

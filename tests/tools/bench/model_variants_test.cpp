@@ -38,7 +38,7 @@ std::vector<Vec3> thinned(const ScratchFolder& folder, const std::vector<Vec3>& 
   return read_model_points(folder / "thin.ply");
 }
 
-/// Turns about slanted axes, far from the origin.
+/// Writes a trajectory of turns about slanted axes, far from the origin, and returns its poses.
 std::vector<Pose> put_trajectory(const fs::path& path, std::size_t count) {
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {

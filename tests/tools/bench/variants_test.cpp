@@ -27,7 +27,7 @@ using Quanta = std::vector<std::array<std::int32_t, 3>>;
 
 constexpr Quantisation kQuantisation{{1e-4, 1e-4, 1e-3}, {100, -200.5, 0}};
 
-/// More than one batch of any reader.
+/// Random points whose stored integers are within `reach`.
 Quanta some_points(std::size_t count, std::int32_t reach) {
   Quanta out(count);
   scene::Dice dice(7, 0);
@@ -164,7 +164,7 @@ TEST_CASE("a sample is spread evenly") {
   sample_environment(folder / "in.las", folder / "out.las", kPoints / 4, 9);
   std::array<int, kParts> taken{};
   for (const auto& q : read_las(folder / "out.las").quanta) ++taken[q[0] / (kPoints / kParts)];
-  // 2500 expected each, with a standard deviation of 42.
+  // Each point is expected 2500 times, with a standard deviation of 42.
   CHECK(*std::min_element(taken.begin(), taken.end()) > 2300);
   CHECK(*std::max_element(taken.begin(), taken.end()) < 2700);
 }
@@ -201,7 +201,7 @@ TEST_CASE("a stretched environment keeps its points, and its box is as long as a
   const ScratchFolder folder;
   const double factor = GENERATE(1.0, 2.5, 1000.0);
   Quanta points = some_points(20'000, 1'000'000);
-  points.push_back({1'000'001, 1'000'001, 1'000'001});  // so that the centre is no integer
+  points.push_back({1'000'001, 1'000'001, 1'000'001});  // makes the centre no integer
   points.push_back({-1'000'000, -1'000'000, -1'000'000});
   write_las(folder / "in.las", points);
   CHECK(stretch_environment(folder / "in.las", folder / "out.las", factor) == 1);

@@ -95,7 +95,7 @@ TEST_CASE("wrong usage exits with 2") {
                   2, "--radius");
   }
   check_refused(work.run_hall(site, "out.h5", "--engine magic"), 2, "--engine");
-  CHECK(std::filesystem::is_empty(work.folder / "") == false);  // the logs of the program alone
+  CHECK(std::filesystem::is_empty(work.folder / "") == false);  // only the program's logs are in it
   CHECK_FALSE(std::filesystem::exists(work.folder / "a.h5"));
   CHECK_FALSE(std::filesystem::exists(work.folder / "out.h5"));
 }

@@ -1,4 +1,4 @@
-// The options of `convert` on inputs that are not as they should be.
+// The options of `convert` on faulty inputs.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 

@@ -9,8 +9,8 @@ using Catch::Contains;
 
 namespace {
 
-/// a.h5 and b.h5 about one environment; b lacks a's second point, has another first pose for its
-/// third, and another radius.
+/// Results a.h5 and b.h5 about one environment. b lacks a's second point, has another first pose
+/// for its third, and another radius.
 struct Pair {
   Pair() {
     ResultHeader header = sample_header(true);

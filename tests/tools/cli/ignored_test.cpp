@@ -1,4 +1,4 @@
-// Ignored classes and boxes as a person sees them.
+// Ignored classes and boxes as a user sees them.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -157,14 +157,14 @@ TEST_CASE("what ignoring points hides is warned of, and what is sound is not") {
   CHECK_THAT(warned("--ignore-class 6 ").out,
              Contains("2,000 points ignored (class 6), none of which would collide"));
   const Outcome finished = garden.run(kPlant + "-o out.h5 --resume --json");
-  CHECK(finished.exit_code == 2);  // the result of another question
+  CHECK(finished.exit_code == 2);  // it is the result of another question
   REQUIRE(warned(kPlant).exit_code == 0);
   const json again = json::parse(garden.run(kPlant + "-o out.h5 --resume --json").out);
   CHECK(again["was_finished"] == true);
   CHECK(again["ignored"]["colliding"] == 40);
   CHECK_THAT(again["warnings"].dump(), Contains("ignored-collide"));
 
-  // A lamp above the path, and a model that is a metre high.
+  // A lamp hangs above the path, and the model is a metre high.
   put_bytes(garden.folder / "car.xyz", "0 0 0\n0 0 1\n");
   for (std::int32_t i = 0; i < 5; ++i) garden.add({3000 + i, 0, 1000}, 14);
   put_bytes(garden.folder / "all.las", garden.las.build());
@@ -174,7 +174,7 @@ TEST_CASE("what ignoring points hides is warned of, and what is sound is not") {
                                 "m above the model's lowest point"));
   CHECK_THAT(lamp.err, !Contains("but only"));
 
-  // A class that nearly all points have leaves a few.
+  // Ignoring a class that nearly all points have leaves a few.
   CHECK_THAT(garden.run("--ignore-class 3,6 -o few.h5", "lamp.h5").err,
              Contains("2,040 of 2,045 points of the environment are ignored, so that only 5 are "
                       "searched"));

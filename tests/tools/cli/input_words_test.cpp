@@ -1,4 +1,5 @@
-// What the program says of a file in the wrong place, of lengths with units, and of mistyped words.
+// What the program says about a file in the wrong place, about lengths with units, and about
+// mistyped words.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -13,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A file of each kind.
+/// A folder with a file of each kind.
 struct Files {
   Files() {
     std::string points;

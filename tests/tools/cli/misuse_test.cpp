@@ -14,7 +14,7 @@ using Catch::Contains;
 
 namespace {
 
-/// A few points as text, a store of them and one pose.
+/// A folder with a few points as text, a store of them and one pose.
 struct Site {
   Site() {
     std::string points;
@@ -155,7 +155,7 @@ TEST_CASE("info --json prints names that are not UTF-8") {
 }
 
 TEST_CASE("a regular layout cuts at the faces of its cubes only") {
-  const Site site;  // 25 x 20 m: cubes of 10 m are 3 x 2
+  const Site site;  // 25 x 20 m, so cubes of 10 m are 3 x 2
   REQUIRE(site.run("convert " + site.path("scan.xyz") +
                    " --layout regular:10 --cell-points 128 -o " + site.path("cubes.h5"))
               .exit_code == 0);

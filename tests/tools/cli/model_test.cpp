@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A box of the hall's vehicle's size, millimetres.
+/// A box of the size of the hall's vehicle, in millimetres.
 std::string vehicle() {
   TriangleMesh mesh = unit_cube();
   for (Vec3& v : mesh.vertices) v = {4000 * v.x - 2000, 1800 * v.y - 900, 1400 * v.z};
@@ -28,7 +28,7 @@ struct Meshes {
   Outcome model(const std::string& options) const {
     return work.run("model " + work.path("car.stl") + " " + options);
   }
-  /// A run in the hall at a radius of 0.4 m.
+  /// Runs a search in the hall at a radius of 0.4 m.
   Outcome run(const std::string& model, const std::string& output,
               const std::string& options) const {
     return work.run("run --env " + (work.hall / "site.h5") + " --model " + work.path(model) +
@@ -64,7 +64,7 @@ TEST_CASE("run of a mesh is run of the points that model wrote") {
   const auto points = read_model_points(meshes.work.folder / "car.ply");
   CHECK(points == read_model_points(meshes.work.folder / "car.stl",
                                     {.spacing = 0.1, .unit = kMetresPerMillimetre}));
-  // A quarter of the radius is the default.
+  // The default spacing is a quarter of the radius.
   const Outcome mesh = meshes.run("car.stl", "mesh.h5", "--model-as points --model-unit mm --json");
   REQUIRE(mesh.exit_code == 0);
   CHECK(json::parse(mesh.out)["model_points"] == points.size());
@@ -72,7 +72,7 @@ TEST_CASE("run of a mesh is run of the points that model wrote") {
   CHECK_THAT(mesh.err, Contains("a mesh of 12 triangles, sampled to"));
   const json told = json::parse(mesh.out);
   for (const json& warning : told["warnings"]) {
-    CHECK(warning["code"] != "");  // that is a note
+    CHECK(warning["code"] != "");  // an empty code would be a note's
   }
   REQUIRE(meshes.run("car.ply", "points.h5", "").exit_code == 0);
   CHECK(meshes.work.bytes("mesh.h5") == meshes.work.bytes("points.h5"));
@@ -93,7 +93,8 @@ TEST_CASE("run of a mesh searches its surface") {
       json::parse(meshes.work.run("info " + meshes.work.path("surface.h5") + " --json").out);
   CHECK(info["model_as"] == "surface");
   CHECK(info["model_triangles"] == 12);
-  // Samples lie on the surface: what touches one touches it. And no sample is far.
+  // Samples lie on the surface, so what touches a sample touches the surface. No place of the
+  // surface is far from a sample.
   const auto count = [&](const std::string& output, const std::string& options) {
     const Outcome points = meshes.run("car.stl", output, "--model-unit mm --json " + options);
     REQUIRE(points.exit_code == 0);
@@ -105,7 +106,7 @@ TEST_CASE("run of a mesh searches its surface") {
   const std::uint64_t fine = count("fine.h5", "--model-spacing 0.02");
   CHECK(hits >= fine);
   CHECK(hits - fine < hits / 20);
-  // The same again, in parts and on the same journal's identity.
+  // The same search gives the same result in parts, and with the same identity of its journal.
   REQUIRE(meshes.run("car.stl", "part1.h5", "--model-unit mm --first-pose --shard 1/2").exit_code ==
           0);
   REQUIRE(meshes.run("car.stl", "part2.h5", "--model-unit mm --first-pose --shard 2/2").exit_code ==
@@ -150,7 +151,7 @@ TEST_CASE("run of a solid finds what is inside") {
   CHECK(info["model_as"] == "solid");
   CHECK(info["points_inside"] == inside);
   CHECK(info["greatest_depth"] == depth);
-  // In parts too.
+  // The search gives the same in parts.
   const std::string shard = "--model-as solid " + options + "--shard ";
   REQUIRE(meshes.run("car.stl", "part1.h5", shard + "1/2").exit_code == 0);
   REQUIRE(meshes.run("car.stl", "part2.h5", shard + "2/2").exit_code == 0);
@@ -220,7 +221,7 @@ TEST_CASE("what has no surface is refused and points are named") {
   }
   put_bytes(meshes.work.folder / "car.xyz", "1 0 0\n0 1 0\n1 0 0\n");
   check_refused(meshes.run("car.xyz", "no.h5", "--model-as surface"), 3, "has no triangles");
-  // Points, asked for in any way, are searched by every engine.
+  // Points are searched by every engine, in whatever way they are asked for.
   for (const char* points : {"--model-as points", "--model-spacing 0.1", "--model-vertices"}) {
     for (const char* options :
          {"--engine kdtree", "--engine grid --device cpu", "--between-poses"}) {
@@ -319,7 +320,7 @@ TEST_CASE("the spacing of a sampled mesh goes with its points and its parts") {
                                   " -o " + work.path("merged.h5"));
   CHECK_THAT(merged.out, Contains("clear") && Contains("farther than 0.025 m"));
   CHECK(work.bytes("merged.h5") == work.bytes("sampled.h5"));
-  // The report samples as the run did, and says so.
+  // The report samples the model as the run did, and says so.
   REQUIRE(plate.run("--model-spacing 0.03 --first-pose", "three.h5").exit_code == 0);
   const Outcome report =
       work.run("report " + work.path("three.h5") + " --env " + work.path("site.h5") + " --model " +

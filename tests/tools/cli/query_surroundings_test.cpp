@@ -1,5 +1,5 @@
-// Questions whose answer would be a silent 0: the path is too low or too high, the scan lacks what
-// could be met, or the model lets things through.
+// Questions whose answer would be a silent 0, because the path is too low or too high, the scan
+// lacks what could be met, or the model has gaps.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -22,8 +22,9 @@ double bottom_of(const std::vector<Vec3>& model) {
   return bottom;
 }
 
-/// A place of the hall from its nearest pose: how high above the model's lowest point, how far in
-/// plan, how far to its left, and how far along the path of 80 m.
+/// A place of the hall relative to its nearest pose, in metres: the height above the model's lowest
+/// point, the distance in plan, the distance to the left, and how far the pose is along the path of
+/// 80 m.
 struct Relative {
   double height, away, left, along;
 };
@@ -45,7 +46,7 @@ Relative relative_to_path(const Vec3& p) {
   return {p.z - t[2] - bottom, std::sqrt(least), r[1] * (p.x - t[0]) + r[4] * (p.y - t[1]), along};
 }
 
-/// Asks where only a part of the hall was scanned.
+/// Asks the question where only a part of the hall was scanned.
 Outcome ask_part(const std::function<bool(const Relative&)>& keep) {
   const ScratchFolder folder;
   const std::string store =
@@ -57,7 +58,7 @@ std::string codes_of_part(const std::function<bool(const Relative&)>& keep) {
   return codes_of(ask_part(keep));
 }
 
-/// Asks where a part of the hall was registered too high, or too low.
+/// Asks the question where a part of the hall was registered too high or too low.
 Outcome ask_raised(double by, const std::function<bool(const Relative&)>& is_wrong) {
   const ScratchFolder folder;
   const std::string store = Scene::hall().moved_store(folder, [&](const Vec3& p) {
@@ -75,7 +76,7 @@ std::string codes_at_height(double above) {
   return codes_of(asked.ask());
 }
 
-/// A box with points 5 cm apart on its six sides, or without those across x.
+/// Points 5 cm apart on the six sides of a box, or on the four that are not across x.
 std::vector<Vec3> shell(const Vec3& lo, const Vec3& hi, bool with_ends) {
   constexpr double kStep = 0.05;
   std::vector<Vec3> points;
@@ -107,7 +108,7 @@ TEST_CASE("a path below the ground or above the roof is warned of") {
   CHECK(codes_at_height(-3) == "nothing-below");
   CHECK(codes_at_height(7) == "nothing-beside");  // 0.49 m above the roof
   CHECK(codes_at_height(8) == "floats");
-  Asked up_and_down;  // at no steady height above the roof
+  Asked up_and_down;  // the path's height above the roof varies
   double i = 0;
   up_and_down.move_path([&](const Vec3& p) {
     return Vec3{p.x, p.y, p.z + 8.5 + 5 * std::sin(i++ / 600)};
@@ -123,7 +124,7 @@ TEST_CASE("a scan that lacks what the model could meet is warned of") {
 }
 
 TEST_CASE("a scan from which only part was taken away on purpose is not warned of") {
-  // What is beside the wheels, and the roof.
+  // The scan lacks what is beside the wheels, or everything above 1 m.
   CHECK(codes_of_part([](const Relative& p) { return p.away < 0.7 || p.away > 1.3; }).empty());
   CHECK(codes_of_part([](const Relative& p) { return p.height < 1; }).empty());
 }
@@ -144,7 +145,7 @@ TEST_CASE("a hole in the scan is warned of, with its place") {
   CHECK(codes_of_part([](const Relative& p) { return !is_in_hole(p) || p.away > 8; }) ==
         "nothing-below");
   CHECK(codes_of_part([](const Relative& p) { return !is_in_hole(p); }) == "nothing-below");
-  // The shadow of a scanner is none.
+  // The shadow of a scanner is no hole.
   CHECK(codes_of_part([](const Relative& p) {
           return p.height > 0.5 || p.along < 30 || p.along > 33;
         }).empty());

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kClearance = 0.4;
 
-/// The small hall's inputs, read back.
+/// The inputs of the small hall, read back.
 struct Inputs {
   Inputs() {
     const Hall& hall = Hall::small();
@@ -69,7 +69,7 @@ ClearanceRows clearances_of(const std::filesystem::path& path) {
   return rows;
 }
 
-/// A CSV without its columns x, y and z.
+/// The CSV without its columns x, y and z.
 std::string without_places(const std::string& csv) {
   std::string text;
   std::istringstream lines(csv);
@@ -82,7 +82,7 @@ std::string without_places(const std::string& csv) {
   return text;
 }
 
-/// As `export --what clearance` writes them, but for their places.
+/// The CSV that `export --what clearance` writes, without the places.
 std::string csv_of(const ClearanceRows& rows) {
   std::string text = "source,distance,pose\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -119,7 +119,7 @@ TEST_CASE("clearances are those of brute force, beside the same collisions") {
   CHECK_THAT(run.err, Contains("points are within the clearance of 0.4 m"));
   CHECK(work.run("verify " + work.path("out.h5")).exit_code == 0);
 
-  // The set is kdtree's; compare says that only one side has clearances.
+  // The set comes from kdtree; compare says that only one side has clearances.
   REQUIRE(work.run_hall(work.hall / "site.h5", "set.h5",
                         std::string("--engine kdtree") + (first_pose ? " --first-pose" : ""))
               .exit_code == 0);
@@ -241,7 +241,7 @@ TEST_CASE("a result of version 0.1.0 with first poses between poses is told apar
     CHECK_FALSE(reader.header().ways_without_ends);
     ResultHeader header = reader.header();
     header.ways_without_ends = true;
-    header.last_pose = false;  // it did not know them
+    header.last_pose = false;  // that version did not know last poses
     write_result(work.folder / "earlier.h5", header, read_rows(reader));
   }
   CHECK_THAT(work.run("info " + now).out, Contains("first_pose_of") && Contains("closed way"));

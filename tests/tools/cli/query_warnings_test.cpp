@@ -19,7 +19,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Leaves every n-th.
+/// Keeps every n-th value.
 template <typename Value>
 void thin(std::vector<Value>& values, std::size_t n) {
   std::vector<Value> few;
@@ -165,7 +165,7 @@ TEST_CASE("a model that leans along its whole path is warned of") {
     CHECK_THAT(outcome.err, Contains(degrees > 0 ? "to the right by" : "to the left by") &&
                                 Contains("degrees, also where it does not turn"));
   }
-  Asked road;  // as roads bank
+  Asked road;  // a road that banks
   road.turn([](double* r) { roll(r, 4); });
   CHECK(codes_of(road.ask()).empty());
   Asked changing;
@@ -245,7 +245,7 @@ TEST_CASE("a radius in another unit, and gaps that let things through, are warne
 
 namespace {
 
-/// Without the poses from `first` on and before `last`.
+/// The poses without those from `first` on and before `last`.
 std::vector<Pose> without(std::vector<Pose> poses, std::ptrdiff_t first, std::ptrdiff_t last) {
   poses.erase(poses.begin() + first, poses.begin() + last);
   return poses;
@@ -297,7 +297,7 @@ TEST_CASE("poses that are missing on a straight path are warned of between poses
 
 TEST_CASE("a turn in one step is warned of, at poses and between them") {
   Asked asked;
-  // The model's place stays, and its heading jumps.
+  // The model stays in its place while its heading jumps.
   for (std::size_t i = 1200; i < asked.poses.size(); ++i) {
     double* r = asked.poses[i].rotation;
     for (int row = 0; row < 3; ++row) {

@@ -1,4 +1,4 @@
-// What a run may take of the machine: memory, devices, and how it reports them.
+// The memory and devices that a run may use, and how it reports them.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -100,7 +100,7 @@ TEST_CASE("CUDA where there is none exits with 4 and says what to do") {
   for (const char* options : {"--device cuda", "--gpus 900,901", "--device cuda --gpus 1000"}) {
     CAPTURE(options);
     const Outcome outcome = hall.search(options);
-    if (outcome.exit_code == 0) continue;  // a machine with a GPU
+    if (outcome.exit_code == 0) continue;  // the machine has a GPU
     check_refused(outcome, 4, "--device cpu");
   }
   CHECK(hall.search("--device auto").exit_code == 0);

@@ -1,4 +1,4 @@
-// `clearway run --shard` and `clearway merge` as a person sees them.
+// `clearway run --shard` and `clearway merge` as a user sees them.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 

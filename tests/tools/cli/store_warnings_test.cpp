@@ -1,4 +1,4 @@
-// What a conversion warned of, told again by the commands that read its store.
+// Warnings of a conversion, repeated by the commands that read its store.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
@@ -136,7 +136,7 @@ TEST_CASE("zeros and points beyond the header's bounds are told of small files t
   const auto codes = [&](const std::vector<std::array<std::int32_t, 3>>& points) {
     las.points = points;
     std::string bytes = las.build();
-    for (unsigned k = 0; k < 3; ++k) {  // 0 to 10 m beside the offset
+    for (unsigned k = 0; k < 3; ++k) {  // bounds of 0 to 10 m from the offset
       LasBytes::put(bytes, 179 + 16 * k, las.offset[k] + 10);
       LasBytes::put(bytes, 187 + 16 * k, las.offset[k]);
     }

@@ -22,8 +22,8 @@ namespace {
 
 std::filesystem::path street(const std::string& name) { return data_folder() / "street" / name; }
 
-/// FNV-1a, 64 bits, over the indices as 8 little-endian bytes each; from the starting value with
-/// which the known answers were recorded, a tenth of the usual one.
+/// FNV-1a with 64 bits over the indices as 8 little-endian bytes each. The starting value is that
+/// with which the known answers were recorded, a tenth of the usual one.
 std::uint64_t fnv1a(const std::vector<std::uint64_t>& indices) {
   std::uint64_t hash = 1469598103934665603;
   for (const std::uint64_t index : indices) {
@@ -50,7 +50,7 @@ void check_street(const ScratchFolder& folder, const std::string& radius, std::s
   CHECK(fnv1a(rows.source) == hash);
 }
 
-/// Every n-th of a list.
+/// Every n-th value of a list.
 template <typename Value>
 std::vector<Value> thinned(const std::vector<Value>& all, std::size_t n) {
   std::vector<Value> out;

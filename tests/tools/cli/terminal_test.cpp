@@ -13,7 +13,7 @@ using namespace clearway::test;
 
 namespace {
 
-/// What the program writes to a terminal of so many columns.
+/// What the program writes to a terminal with this number of columns.
 std::string output_on_terminal(unsigned short columns, const std::string& arguments) {
   winsize size{};
   size.ws_col = columns;
@@ -38,7 +38,8 @@ std::string output_on_terminal(unsigned short columns, const std::string& argume
   return text;
 }
 
-/// The progress lines: what stands between a carriage return and the clearing of the line's rest.
+/// The progress lines, each of which stands between a carriage return and the clearing of the rest
+/// of the line.
 std::vector<std::string> progress_lines(const std::string& text) {
   const std::string clear = "\033[K";
   std::vector<std::string> lines;
@@ -58,7 +59,7 @@ TEST_CASE("the progress line fits the terminal") {
   const ScratchFolder folder;
   const auto longest = [&](unsigned short columns) {
     std::vector<std::string> lines;
-    // Slow machines draw more often, fast ones not at all where there is too little to do.
+    // Slow machines draw often, but fast ones do not draw at all where there is too little to do.
     for (int points = 2; lines.empty() && points <= 32; points *= 4) {
       lines = progress_lines(output_on_terminal(
           columns, "scene hall --force --threads 1 --model-points 100 --poses 10 --points " +

@@ -102,7 +102,7 @@ TEST_CASE("with a tolerance neither threads, memory nor the store's cells change
               .exit_code == 0);
   REQUIRE(work.run_hall(work.path("other.h5"), "out.h5", options).exit_code == 0);
   CHECK((work.bytes("out.h5") == expected));
-  // The field is not made coarser to fit, since the answer depends on it.
+  // The field is not made coarser to fit into memory, because the answer depends on it.
   check_refused(work.run_hall(work.hall / "site.h5", "out.h5", options + "--memory 1M"), 4,
                 "--memory");
 }

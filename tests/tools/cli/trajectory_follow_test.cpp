@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kRadius = 150;
 
-/// path.txt: along a circle, a pose every 0.1 m.
+/// A folder with path.txt, which goes along a circle with a pose every 0.1 m.
 struct Circle {
   Circle() {
     std::vector<Pose> poses;

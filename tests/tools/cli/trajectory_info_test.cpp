@@ -15,7 +15,8 @@ using Catch::Contains;
 
 namespace {
 
-/// path.csv, a quarter of a circle of 100 m about (0, 0), entered along x; model.xyz; site.h5.
+/// A folder with path.csv, a quarter of a circle of 100 m about (0, 100) that begins along x, with
+/// scans and model.xyz.
 struct Files {
   Files() {
     std::string path = "t,x,y,z,roll_deg,pitch_deg,heading_deg\n";
@@ -33,7 +34,7 @@ struct Files {
     put_bytes(folder / "model.xyz", "-1 -1 0\n3 1 1\n");
   }
 
-  /// Words with a dot and a letter behind it are names of files in the folder.
+  /// Runs the program. Words with a dot and a letter behind it are names of files in the folder.
   Outcome run(const std::string& words) const {
     std::istringstream in(words);
     std::string all;
@@ -171,7 +172,7 @@ TEST_CASE("run takes a trajectory's latitudes in the CRS of the store") {
   const std::string command =
       "run --env site.h5 --model model.xyz --trajectory path.sbet -o o.h5 "
       "--radius 0.1 ";
-  CHECK(files.run(command).exit_code == 3);  // the store has none
+  CHECK(files.run(command).exit_code == 3);  // the store has no CRS
   const Outcome named = files.run(command + "--trajectory-crs EPSG:32632");
   CHECK(named.exit_code == 0);
   CHECK_THAT(named.err, Contains("heights are ellipsoidal"));

@@ -17,7 +17,7 @@ namespace {
 
 const Box kModel{{-1, -2, 0}, {3, 2, 1}};
 
-/// model.xyz, whose box is kModel, and path.txt.
+/// A folder with model.xyz, whose box is kModel, and path.txt.
 struct Files {
   Files() {
     put_bytes(folder / "model.xyz", "-1 -2 0.5\n3 1 0\n0 2 1\n");
@@ -202,7 +202,7 @@ TEST_CASE("resample takes the meaning of ft from the store") {
   const std::string feet = "--trajectory-unit ft --max-motion 0.5";
   REQUIRE(files.run("resample", "path.txt", "feet.txt", feet + " --env " + at("s.h5")).exit_code ==
           0);
-  // The file counts in the store's own foot, so its positions stay as they are.
+  // The file is in the store's own foot, so its positions stay as they are.
   CHECK(has_in_order(files.read("feet.txt"), files.poses));
   const Outcome told =
       run_program(files.folder, "convert --resume " + at("scan.xyz") + " -o " + at("s.h5"));

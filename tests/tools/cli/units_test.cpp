@@ -22,8 +22,8 @@ std::string text_of(double number) {
   return digits;
 }
 
-/// A path along x through state plane coordinates, and posts at growing distances beside it. In
-/// feet of 1,200 / 3,937 m and in those of 0.3048 m it would be 4 m apart.
+/// A path along x through state plane coordinates, with posts at growing distances beside it.
+/// Between feet of 1,200 / 3,937 m and feet of 0.3048 m it would move by 4 m.
 struct StatePlane {
   static constexpr double kEast = 6'500'000, kNorth = 2'100'000, kHeight = 100;
 
@@ -33,7 +33,8 @@ struct StatePlane {
     put_bytes(folder / name, text);
   }
 
-  /// unit: what the header says. size: how many of that unit a foot of the scene is.
+  /// Writes a scan. unit: the unit in the header. size: how many of that unit a foot of the scene
+  /// is.
   void write_scan(const std::string& name, const std::string& unit, double size) const {
     std::string text = "x[" + unit + "],y[" + unit + "],z[" + unit + "]\n";
     for (int i = 0; i < 200; ++i) {
@@ -42,7 +43,7 @@ struct StatePlane {
     }
     write(name, text);
   }
-  /// unit: "" for none.
+  /// Writes the path, with arguments as for write_scan. unit: "" for none.
   void write_path(const std::string& name, const std::string& unit, double size) const {
     const std::string in = unit.empty() ? "" : "[" + unit + "]";
     std::string text = "x" + in + ",y" + in + ",z" + in + ",qx,qy,qz,qw\n";
@@ -138,7 +139,7 @@ TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names
     CHECK(StatePlane::found(scene.run("ft.csv", "--vehicle " + quoted(scene.folder / "car.json"),
                                       "--radius 1.004")) == expected);
   }
-  // Metres are still converted, and so is the other foot, which is warned of.
+  // Metres are still converted, and so is the other foot, which causes a warning.
   CHECK(StatePlane::found(scene.run("metres_path.csv", scene.model("metres.xyz"),
                                     "--model-unit m --radius " + text_of(1.004 * metres) + "m")) ==
         expected);

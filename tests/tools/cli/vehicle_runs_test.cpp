@@ -1,4 +1,4 @@
-// Vehicles as a person runs them: devices, shards, ignored points, and what is warned of.
+// Vehicles as a user runs them: devices, shards, ignored points, and warnings.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -149,7 +149,7 @@ TEST_CASE("a vehicle above the ground is warned of and one on it is not") {
   for (int i = 0; i <= 180; ++i) {
     high += "1 0 0 " + std::to_string(2 + i * 0.1) + " 0 1 0 0 0 0 1 9\n";
   }
-  // The trailer alone is on the ground: the truck is as a load on a crane.
+  // Only the trailer is on the ground; the truck is like a load on a crane.
   put_bytes(yard.folder / "high.txt", high);
   yard.put_vehicle(R"({"name": "truck", "model": "box.xyz", "trajectory": "high.txt"})");
   CHECK(codes(yard.run("--radius 0.2 -o out.h5 --json")).count("floats") == 0);

@@ -1,4 +1,4 @@
-// run --vehicle --model-as solid: what is inside a body, as far as conflicts and report tell it.
+// run --vehicle --model-as solid: what conflicts and report tell about points inside a body.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -12,7 +12,8 @@ using nlohmann::json;
 
 namespace {
 
-/// A closed box from x = -0.5 to 0.5 and z = 0.3 to 1.1, in OFF.
+/// A box from x = -0.5 to 0.5, -half_width to half_width along y, and z = 0.3 to 1.1, in OFF.
+/// is_open: one triangle is left out.
 std::string box_off(double half_width, bool is_open = false) {
   std::string text = is_open ? "OFF\n8 11 0\n" : "OFF\n8 12 0\n";
   for (int corner = 0; corner < 8; ++corner) {
@@ -26,8 +27,8 @@ std::string box_off(double half_width, bool is_open = false) {
   return is_open ? text : text + "3 3 7 5\n";
 }
 
-/// Ground, and a post at x = 5, 0.6 m beside a path along x. The truck is as wide as to swallow
-/// the post by 0.2 m, the trailer passes it.
+/// Ground, and a post at x = 5, 0.6 m beside a path along x. The truck is so wide that the post is
+/// up to 0.2 m inside it; the trailer passes the post.
 struct Yard {
   Yard() {
     std::string scan, path;
@@ -118,7 +119,7 @@ TEST_CASE("a vehicle of solids tells what is inside and which body it is") {
   CHECK(facts["inside"]["points"] == 4);
   CHECK(facts["inside"]["depth"] == told["greatest_depth"]);
   for (const json& body : facts["inputs"]["model"]["bodies"]) CHECK(body["solids"] == 1);
-  // As a surface it is another answer.
+  // As a surface the model gives another answer.
   const json surface = json::parse(yard.run("--vehicle wagon.json --clearance 0.3").out);
   CHECK(surface["model_as"] == "surface");
   CHECK(surface["greatest_depth"].is_null());

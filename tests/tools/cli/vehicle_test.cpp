@@ -16,7 +16,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Half of the model's width, and how far beside it the points stand: metres.
+/// Half the model's width, and the gap between the model's side and the points beside it, metres.
 constexpr double kSide = 1.4, kGap = 0.12;
 
 /// The tunnel scene's path, and points on both sides of it. The wagon is a line across its middle,
@@ -113,7 +113,7 @@ TEST_CASE("each body of a vehicle has its own motion and its own name in the res
   CHECK(result.bodies() == std::vector<std::string>{"bogie", "middle", "end"});
   const auto first = result.first_body();
   const Clearances clearance = result.clearance();
-  // A bogie stays on the path.
+  // A bogie stays on the path and touches nothing.
   CHECK(std::ranges::count(first, 0u) == 0);
   CHECK(std::ranges::count(first, 1u) > 0);
   CHECK(std::ranges::count(clearance.body, 0u) > 0);

@@ -26,7 +26,7 @@ struct Street {
     REQUIRE(program("convert wall.xyz -o site.h5").exit_code == 0);
   }
 
-  /// arguments: names of files are those of the folder.
+  /// Runs the program. arguments: names of files are those in the folder.
   Outcome program(std::string arguments) const {
     for (const char* name : {"wall.xyz", "site.h5", "car.xyz", "path.csv", "out.h5", "p.csv"}) {
       const auto at = arguments.find(name);

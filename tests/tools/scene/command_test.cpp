@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of its own, removed at the end.
+/// A temporary folder that is removed when its owner ends.
 class Folder {
  public:
   Folder() {

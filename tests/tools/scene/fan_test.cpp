@@ -10,7 +10,7 @@ using namespace clearway::scene;
 
 namespace {
 
-/// Distance along a ray to a prism of a straight path, by slabs in three dimensions.
+/// The distance along a ray to a prism of a straight path, by slabs in three dimensions.
 std::optional<double> distance_to(const Prism& prism, const PathPoint& from, double s, double v,
                                   double w) {
   const double c = prism.turn.cosine, d = prism.turn.sine;

@@ -22,8 +22,8 @@ struct Frozen {
   std::uint64_t environment, model, trajectory;
 };
 
-// The generator is frozen: these change only with a scene's definition, and every measurement on
-// the scenes with them.
+// Hashes of the scenes' files. The generator is frozen: they change only with a scene's definition,
+// and with them every measurement on the scenes.
 constexpr Frozen kFrozen[] = {
     {Kind::kHall, 0x1fc61bcc10917536, 0x9e45b7c30bc4204f, 0x17d995d53450bfdd},
     {Kind::kPlant, 0x40f398c01bf56a75, 0xe94a9fb348c4f1e, 0x98a873e342b5d507},

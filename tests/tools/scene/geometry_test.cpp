@@ -94,9 +94,9 @@ TEST_CASE("a pose along a direction keeps its model upright") {
   CHECK(ahead.y == Approx(2.8));
   CHECK(above.z == Approx(4));
   const Pose turned = pose_along({0, 0, 0}, {1, 0, 0}, {.yaw = 0.1, .pitch = 0.2, .roll = 0.3});
-  CHECK(turned.rotation[3] > 0);  // to the left
+  CHECK(turned.rotation[3] > 0);  // turned to the left
   CHECK(turned.rotation[6] > 0);  // nose up
-  CHECK(turned.rotation[7] > 0);  // left side up
+  CHECK(turned.rotation[7] > 0);  // the left side is up
 }
 
 TEST_CASE("a mesh is sampled by area and density") {

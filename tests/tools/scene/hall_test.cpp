@@ -77,7 +77,7 @@ TEST_CASE("the car bodies have a car's size and are hollow") {
     CHECK(extent.high.x - extent.low.x == Approx(length).margin(0.1));
     CHECK(extent.high.y - extent.low.y == Approx(kind == Kind::kHall ? 1.9 : 2.0).margin(0.1));
     CHECK(extent.high.z - extent.low.z == Approx(kind == Kind::kHall ? 1.5 : 1.75).margin(0.1));
-    for (const Vec3& p : model) {  // the passengers' room
+    for (const Vec3& p : model) {  // the passenger compartment
       CHECK_FALSE((std::abs(p.x + 0.3) < 0.4 && std::abs(p.y) < 0.5 && p.z > 0.4 && p.z < 1.2));
     }
   }

@@ -49,7 +49,7 @@ inline Bytes trajectory_bytes(const scene::Scene& made) {
   return written([&](const File& file) { scene::write_trajectory(made, file); });
 }
 
-/// Positions of a LAS 1.2 file with point format 0.
+/// The positions of a LAS 1.2 file with point format 0.
 inline std::vector<Vec3> las_positions(const Bytes& bytes) {
   Quantisation quantisation{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -65,7 +65,7 @@ inline std::vector<Vec3> las_positions(const Bytes& bytes) {
   return out;
 }
 
-/// Float positions behind the header of a binary PLY.
+/// The positions, as float, behind the header of a binary PLY.
 inline std::vector<Vec3> ply_positions(const Bytes& bytes) {
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::string end = "end_header\n";
@@ -101,7 +101,7 @@ struct MadeScene {
   std::vector<Pose> poses;
 };
 
-/// A scene as its files say.
+/// A scene as its files describe it.
 inline MadeScene made_scene(scene::Kind kind, const scene::Sizes& sizes, std::uint64_t seed = 1) {
   const auto made = scene::make_scene(kind, sizes, seed);
   return {las_positions(environment_bytes(*made, seed, 2)), ply_positions(model_bytes(*made)),

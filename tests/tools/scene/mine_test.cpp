@@ -36,7 +36,7 @@ TEST_CASE("one station sees the rock around it, ever thinner with the range") {
   const auto mine = make_scene(Kind::kMine, {points, 1, 1}, 1);
   const auto positions = test::las_positions(test::environment_bytes(*mine, 1, 2));
   const Vec3 station = mine->path.to_world({mine->stations[0], 0, 1.5});
-  int within[4] = {};  // 0-5, 5-10, 10-15, 15-20 m
+  int within[4] = {};  // number at distances of 0-5, 5-10, 10-15, 15-20 m
   for (std::size_t i = 0; i < points / mine->stations.size() - 2000; ++i) {
     const double range = length(positions[i] - station);
     CHECK(range > 0.5);

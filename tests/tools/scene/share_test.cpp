@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRadius = 0.1;
 
-/// Model points by cubes of side kRadius, in the model's own frame.
+/// The model's points sorted into cubes of side kRadius, in the model's own frame.
 class ModelCubes {
  public:
   explicit ModelCubes(const std::vector<Vec3>& model) {
@@ -70,7 +70,7 @@ double colliding_share(const test::MadeScene& made) {
 
 }  // namespace
 
-// Few poses and few points: the share is a little lower and less certain than at full size.
+// With few poses and few points, the share is a little lower and less certain than at full size.
 TEST_CASE("as many points collide as in the paper's table 1, about") {
   CHECK(colliding_share(test::made_scene(Kind::kHall, {8000, 20000, 1000})) ==
         Approx(0.045).margin(0.014));

@@ -11,7 +11,7 @@ using namespace clearway::scene;
 
 namespace {
 
-/// Distance of a point from the track's centreline, near arc length `around`.
+/// The distance of a point from the track's centreline, near arc length `around`.
 double offset_from_track(const Path& path, const Vec3& p, double around) {
   double least = 1e30;
   for (double s = around - 15; s < around + 15; s += 0.05) {

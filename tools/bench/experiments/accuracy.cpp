@@ -7,8 +7,8 @@
 namespace clearway::bench {
 namespace {
 
-/// A whole UTM coordinate, and the farthest that int32 at 0.1 mm and offsets in metres are used
-/// for.
+/// A UTM coordinate in whole metres, the farthest from the origin for which int32 at 0.1 mm and
+/// offsets in metres are used.
 constexpr Vec3 kUtm{450'000, 5'400'000, 0};
 constexpr Vec3 kFar{10'000'000, 10'000'000, 0};
 
@@ -72,7 +72,7 @@ class Accuracy {
     }
   }
 
-  /// Throws Error where an exact engine decided points wrongly on the files as they are.
+  /// Throws Error where an exact engine decided points wrongly on the unchanged files.
   void finish() const { wrong_.refuse(); }
 
  private:

@@ -27,7 +27,7 @@ bool use_cuda(const std::string& device) {
   return found && device != "cpu";
 }
 
-/// Of the measured program: as of this one, where they were built together.
+/// The description of the measured program; that of this program where they were built together.
 Json description_of(const BenchOptions& options, const Program& program) {
   if (options.program.empty()) return program_description();
   std::string version = program.output_of({"--version"});
@@ -35,7 +35,8 @@ Json description_of(const BenchOptions& options, const Program& program) {
   return {{"version", version}, {"commit", "unknown"}, {"build", program.path().string()}};
 }
 
-/// Options of later versions are there only where they are used, as in older files.
+/// The header of an experiment's file. Options that came with later versions are in it only where
+/// they are used, so that older files stay comparable.
 Json header_of(const std::string& experiment, const BenchOptions& options, bool cuda,
                const Json& program) {
   Json parameters{{"device", cuda ? "cuda" : "cpu"},
@@ -59,7 +60,7 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
   return a;
 }
 
-/// Locked, and noted as of this program.
+/// The locked work folder, with a note of the program that it belongs to.
 WorkFolder work_folder_at(const std::filesystem::path& path, const Json& program) {
   WorkFolder folder(path);
   const auto remark = folder.note_program({{"version", program["version"]},
@@ -69,10 +70,10 @@ WorkFolder work_folder_at(const std::filesystem::path& path, const Json& program
   return folder;
 }
 
-/// A case that has taken so long is not repeated.
+/// Seconds after which a case is not repeated.
 constexpr double kEnoughSeconds = 30;
 
-/// Beyond the radius by more than any method is expected to err, metres.
+/// The clearance of a truth, metres: beyond the radius by more than any method is expected to err.
 constexpr const char* kTruthClearance = "0.3";
 
 }  // namespace

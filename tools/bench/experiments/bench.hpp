@@ -15,47 +15,47 @@
 
 namespace clearway::bench {
 
-/// A query to be asked: a store, a model and a trajectory.
+/// The files of a query: a store, a model and a trajectory.
 struct SceneFiles {
-  std::filesystem::path environment;  ///< LAS
+  std::filesystem::path environment;  ///< the LAS file of the store's points
   std::filesystem::path store, model, trajectory;
 };
 
 struct BenchOptions {
-  std::filesystem::path program;  ///< that is measured; empty: clearway beside this one
+  std::filesystem::path program;  ///< the measured program; empty: clearway beside this one
   std::filesystem::path output, work;
   std::string size = "small";   ///< "smoke", "small" or "full"
   std::string device = "auto";  ///< "auto", "cpu" or "cuda"
   int repetitions = 3;
   std::vector<std::string> scenes{"mine", "hall", "plant", "tunnel"};
   std::string memory = "4G", device_memory = "2G";
-  std::string gpus;           ///< of every run on a GPU: "0,1"; empty: the first with room
-  bool cold = false;          ///< every run reads its store from the disk
-  SceneFiles also;            ///< a query of the user's, for equality and choice; may be empty
-  double limit_seconds = 60;  ///< of one run; one that takes longer is stopped, and has failed
+  std::string gpus;   ///< --gpus of every run on a GPU, such as "0,1"; empty: the first with room
+  bool cold = false;  ///< whether every run reads its store from the disk
+  SceneFiles also;    ///< the user's own query, for equality and choice; may be empty
+  double limit_seconds = 60;  ///< limit of one run; a longer run is stopped and has failed
   bool resume = false, force = false;
 };
 
-/// size: that of the options; "tenth" of the points of the paper's; "hard" or "equality", the small
-/// sizes of those experiments.
+/// The sizes of a scene. size: a size of the options; "tenth", a tenth of the paper's points; or
+/// "hard" or "equality", the small sizes of those experiments.
 scene::Sizes scene_size(const std::string& name, const std::string& size);
 
 /// An engine on a device, with options of `clearway run`.
 struct EngineChoice {
-  std::string name;  ///< of the choice, for charts: "sweep cuda"
+  std::string name;  ///< the name in charts: "sweep cuda"
   std::vector<std::string> options;
   bool exact = true;
 
-  /// The same engine with more options.
+  /// This engine with more options.
   EngineChoice with(const std::vector<std::string>& more) const;
 };
 
-/// Runs `clearway` again and again, and keeps what it reports. The work folder is its own as long
+/// Runs `clearway` again and again, and records what it reports. It holds the work folder as long
 /// as it lives.
 class Bench {
  public:
-  /// Throws as WorkFolder and Record do, and ResourceError for a GPU that is not there. Warns of
-  /// what they say of the program.
+  /// Throws as WorkFolder and Record do, and ResourceError where a GPU is asked for and there is
+  /// none. Logs the warnings that they give about the program.
   Bench(const std::string& experiment, const BenchOptions& options);
 
   const BenchOptions& options() const { return options_; }
@@ -64,60 +64,63 @@ class Bench {
   bool cuda() const { return cuda_; }
   const std::filesystem::path& work() const { return work_.path(); }
 
-  /// Made on the first call, kept in the work folder, at the size of the options or another one.
+  /// A scene at the size of the options or another one; made on the first call and kept in the work
+  /// folder.
   SceneFiles scene(const std::string& name);
   SceneFiles scene(const std::string& name, const std::string& size);
   /// The scene's environment with a model and a trajectory of other sizes.
   SceneFiles resized(const std::string& name, SceneFiles files, std::uint64_t model_points,
                      std::uint64_t poses);
-  /// A store of an environment, made on the first call; `name` is that of its file.
+  /// A store of an environment, made on the first call. `name` is the name of its file.
   std::filesystem::path store(const std::string& name, const std::filesystem::path& environment,
                               const std::vector<std::string>& options = {});
 
-  /// Runs `clearway` into a file that is replaced; no case.
+  /// Runs `clearway` into a file that is replaced, and records no case.
   void run(const SceneFiles& files, const std::filesystem::path& result,
            const std::vector<std::string>& run_options) const;
 
-  /// A result, made on the first call and kept; no case.
+  /// A result, made on the first call and kept; records no case.
   std::filesystem::path answer(const std::string& name, const SceneFiles& files,
                                const std::vector<std::string>& run_options);
 
-  /// The exact set of these files with exact distances of all points nearer than 0.3 m.
+  /// The exact result of these files, with exact distances of all points nearer than 0.3 m.
   std::filesystem::path truth(const std::string& name, const SceneFiles& files);
 
-  /// The scene moved by whole metres: environment and poses.
+  /// A scene moved by whole metres: its environment and its poses.
   SceneFiles shifted(const std::string& name, const SceneFiles& files, const Vec3& shift);
 
-  /// `convert` into a store that replaces one of that name; its wall clock, peak memory and size,
-  /// or that it failed for want of time or memory. Throws where it failed otherwise. `key` is that
-  /// of the case, for messages.
+  /// Converts into a store that replaces one of that name. Returns wall clock, peak memory and
+  /// size, or that the conversion failed for want of time or memory; throws where it failed
+  /// otherwise. `key` names the case in messages.
   Json convert(const std::string& key, const std::filesystem::path& environment,
                const std::filesystem::path& store, const std::vector<std::string>& convert_options);
 
-  /// The engines of this machine: those on the GPU where there is one, and the CPU's.
+  /// The exact engines of this machine: those on the GPU where there is one, and the CPU's.
   std::vector<EngineChoice> exact_engines() const;
   EngineChoice engine(const std::string& name) const;
-  /// "sweep", "grid" or "grid float" on the GPU where there is one, else on the CPU.
+  /// The engine "sweep", "grid" or "grid float", on the GPU where there is one, otherwise on the
+  /// CPU.
   EngineChoice engine_here(const std::string& name) const;
 
-  /// What is said of a result, added to the case as "findings".
+  /// Judges a result; what it returns is added to the case as "findings".
   using Judge = std::function<Json(const std::filesystem::path& result)>;
 
-  /// The case of that key, where it need not be measured.
+  /// The recorded case with that key; nullptr where it has yet to be measured.
   const Json* find(const std::string& key) const { return record_.find(key); }
 
-  /// `run` on these files, `repetitions` times (those of the options where it is not given), unless
-  /// the file has the case already; not again after half a minute. Every report, with wall clock
-  /// and peak memory, goes to "runs". A run that exceeds the limit or ends with `expected` goes to
-  /// "failed" instead, with a warning; one that fails otherwise throws ResourceError.
+  /// Measures a case, unless the file has it already: `run` on these files, `repetitions` times (as
+  /// in the options where it is not given), but not again after half a minute. Every report, with
+  /// wall clock and peak memory, goes to "runs". A run that exceeds the limit or ends with
+  /// `expected` goes to "failed" instead, with a warning; one that fails otherwise throws
+  /// ResourceError.
   Json measure(const std::string& key, Json parameters, const SceneFiles& files,
                const std::vector<std::string>& run_options, const Judge& judge = {},
                std::optional<int> repetitions = {}, Refusal expected = Refusal::kNone);
 
-  /// Any other case.
+  /// Records a case whose findings come from elsewhere, unless the file has it already.
   Json keep(const std::string& key, Json parameters, const std::function<Json()>& findings);
 
-  /// The case "all", made anew: what is found of all cases together.
+  /// Replaces the case "all", which holds what is found of all cases together.
   void conclude(Json findings);
 
  private:
@@ -127,21 +130,21 @@ class Bench {
   std::vector<std::string> command(const SceneFiles& files, const std::filesystem::path& result,
                                    const std::vector<std::string>& run_options) const;
 
-  /// The failure, where it is a finding; throws ResourceError where it is not.
+  /// What is recorded of a failed run that is a finding; throws ResourceError where it is none.
   Json finding(const std::string& key, const ProgramRun& failed, Refusal expected) const;
 
   BenchOptions options_;
   Program program_;
-  Json description_;  ///< of the program
+  Json description_;  ///< the description of the measured program
   WorkFolder work_;
   bool cuda_;
   Record record_;
 };
 
-/// The radius of all experiments that do not vary it, metres (the paper's).
+/// The radius of all experiments that do not vary it, metres; it is the paper's.
 inline constexpr const char* kRadius = "0.1";
 
-// One an experiment (docs/design/evaluation.md).
+// Each function runs one experiment (docs/design/evaluation.md).
 void bench_table(Bench& bench);
 void bench_threads(Bench& bench);
 void bench_grid(Bench& bench);

@@ -10,7 +10,7 @@
 namespace clearway::bench {
 namespace {
 
-/// Least of the runs: what others do on the machine only adds.
+/// The least value among the runs of a case, because other load on the machine only adds to it.
 double least(const Json& of_case, const char* name) {
   double least = of_case["runs"][0][name];
   for (const Json& run : of_case["runs"]) least = std::min(least, run[name].get<double>());

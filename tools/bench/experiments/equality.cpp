@@ -10,7 +10,7 @@ namespace {
 struct Mode {
   const char* name;
   std::vector<std::string> options;
-  bool kdtree = true, grid = false;  ///< whether these engines have it too
+  bool kdtree = true, grid = false;  ///< whether these engines have the mode too
 };
 
 const std::vector<Mode>& modes() {

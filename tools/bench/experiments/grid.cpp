@@ -8,7 +8,8 @@ constexpr const char* kGridCells[] = {"0.04", "0.05", "0.07", "0.1", "0.14", "0.
 constexpr const char* kCellPoints[] = {"1024", "4096", "16384", "65536", "262144"};
 /// Edge of a regular cell, metres.
 constexpr const char* kCellSizes[] = {"0.7", "1", "1.5", "2", "3", "5", "8", "12", "20"};
-/// Points of a chunk of the regular layout: a cell has as many as it needs, the last one padded.
+/// Points of a chunk of the regular layout. A cell has as many chunks as it needs, the last one
+/// padded.
 constexpr int kRegularChunk = 4096;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Cases that are hard for the sweep; it and the k-d tree have to give the same bytes.
+// Cases that are hard for the sweep. The sweep and the k-d tree have to give the same bytes.
 #include "bench/experiments/bench.hpp"
 #include "bench/measure/scoring.hpp"
 #include "bench/variants/variants.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t kTurns = 10'000;
 constexpr int kPasses = 20;
-constexpr double kPassNoise = 0.005;  // metres
+constexpr double kPassNoise = 0.005;  // metres; noise of the passes
 constexpr std::uint64_t kPassSeed = 1;
 
 class Hard {
@@ -64,7 +64,7 @@ class Hard {
   void finish() const { wrong_.refuse(); }
 
  private:
-  /// `of_sweep`: options of the sweep alone.
+  /// Runs both engines and compares their results. `of_sweep`: options for the sweep alone.
   void compare(const std::string& name, const SceneFiles& files,
                const std::vector<std::string>& options = {},
                const std::vector<std::string>& of_sweep = {}) {

@@ -6,8 +6,8 @@ namespace clearway::bench {
 namespace {
 
 constexpr int kSamples = 111;
-constexpr int kSlowEvery = 10;  ///< forward engines: every tenth sample
-constexpr int kStride = 40;     ///< order of the samples: a part of them covers the range
+constexpr int kSlowEvery = 10;  ///< the engines that search forwards take every tenth sample
+constexpr int kStride = 40;     ///< step through the samples; the first part covers the range
 constexpr std::uint64_t kSampleSeed = 4;
 
 }  // namespace

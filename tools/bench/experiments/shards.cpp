@@ -1,4 +1,4 @@
-// How evenly the work is divided: of 16 shards the largest over the mean.
+// How evenly work is divided among 16 shards: the largest shard's work over the mean.
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
@@ -17,7 +17,7 @@ struct ShardMode {
   std::vector<std::string> options;
 };
 
-/// The largest over the mean; 1 where nothing is to be divided.
+/// The largest value over the mean; 1 where there is nothing to divide.
 double unevenness(const std::vector<double>& of_shards) {
   const double sum = std::accumulate(of_shards.begin(), of_shards.end(), 0.0);
   return sum > 0 ? *std::ranges::max_element(of_shards) * kShards / sum : 1;
@@ -40,8 +40,8 @@ class ShardBalance {
   }
 
  private:
-  /// Work is the time in which the engine computes, of the fastest of the runs. One thread: with
-  /// more, the last cell of a shard would count as work of all.
+  /// Measures the work of each shard: the time in which the engine computes, of the fastest run.
+  /// One thread, because with more the last cell of a shard would count as work of all.
   void measure(const std::string& scene, const ShardMode& mode, const SceneFiles& files) {
     std::vector<double> estimated, computed;
     for (int shard = 1; shard <= kShards; ++shard) {

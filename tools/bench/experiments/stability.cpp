@@ -15,9 +15,9 @@ namespace {
 /// The paper's grid: cells along the longest side of the environment's box.
 constexpr double kRegularCells = 50;
 
-/// Points of a chunk of the regular layouts, to which every cell is padded: few, since a cell of 2
-/// m holds some 40 points at size small. There 4096 make the store 13 times as large and its
-/// conversion take twice as long; 64 make it half as large, and no faster.
+/// Points of a chunk of the regular layouts, to which every cell is padded. They are few because a
+/// cell of 2 m holds some 40 points at size small: there 4096 make the store 13 times as large and
+/// its conversion take twice as long; 64 make it half as large, and no faster.
 constexpr int kSmallChunk = 256;
 
 class Stability {
@@ -106,12 +106,12 @@ class Stability {
     }
   }
 
-  /// Throws Error where an exact engine decided points wrongly on the files as they are, or
-  /// otherwise than another one.
+  /// Throws Error where an exact engine decided points wrongly on the unchanged files, or otherwise
+  /// than another one.
   void finish() const { wrong_.refuse(); }
 
  private:
-  static constexpr double kTunnelLength = 1335;  // metres, at the size of the paper
+  static constexpr double kTunnelLength = 1335;  // metres, in the paper's size
 
   Bench::Judge judge() const {
     return [this](const std::filesystem::path& result) { return judged(result, truth_); };
@@ -134,8 +134,8 @@ class Stability {
     return bench_.find(key + "/" + fast_.name) && bench_.find(key + "/" + grid_.name);
   }
 
-  /// Converts and runs; the conversion's figures are a case of their own. side: of a regular
-  /// layout's cells, metres.
+  /// Converts and runs; the conversion's figures are a case of their own. side: the side of a
+  /// regular layout's cells, metres.
   void layout(SceneFiles files, double factor, const std::string& name,
               std::optional<double> side) {
     const Json value = factor;
@@ -160,7 +160,7 @@ class Stability {
     bench_.keep(key, parameters, [&] { return Json(converted); });
   }
 
-  /// Where the tree has no answer the others are not asked.
+  /// Compares the other engines with the k-d tree; where that has no answer they are not asked.
   void against_kdtree(const std::string& vary, double value, const SceneFiles& files,
                       const std::vector<std::string>& more) {
     const Json tree = measure(vary, value, kdtree_, files, more, {}, 1);
@@ -174,7 +174,7 @@ class Stability {
     }
   }
 
-  /// "this run needs ... (--memory N)": the smallest budget that works.
+  /// The smallest budget that works, from a refusal such as "this run needs ... (--memory N)".
   static std::uint64_t least_of(const std::string& log, const std::string& option) {
     std::smatch found;
     if (!std::regex_search(log, found, std::regex("\\(" + option + " (\\d+)\\)"))) {

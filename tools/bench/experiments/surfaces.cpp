@@ -11,9 +11,9 @@
 namespace clearway::bench {
 namespace {
 
-constexpr double kSurfaceRadius = 0.1;  ///< kRadius
-/// A spacing is the radius over one of these. The third gives ten points a triangle on the hall's
-/// body.
+constexpr double kSurfaceRadius = 0.1;  ///< the radius kRadius as a number
+/// The radius is divided by each of these to give a spacing. The third gives ten points a triangle
+/// on the hall's body.
 constexpr int kParts[] = {4, 8, 12, 16, 64};
 constexpr std::uint64_t kTriangles = 20'000, kTrianglesOfSmoke = 2'000;
 
@@ -52,10 +52,11 @@ class Surfaces {
         [&](const std::filesystem::path& result) { return judged(result, truth_); });
   }
 
-  /// A sample lies on the surface, and no place of the surface is farther than the spacing from
-  /// one. Both distances are rounded, and so are the samples.
+  /// Throws where a distance to the samples contradicts the surface's: a sample lies on the
+  /// surface, and no place of the surface is farther from a sample than the spacing. Both distances
+  /// are rounded, and so are the samples.
   static void check(const Json& sampled, double spacing) {
-    if (!sampled.contains("findings")) return;  // took too long
+    if (!sampled.contains("findings")) return;  // the run took too long
     const Json& found = sampled["findings"];
     constexpr double kRounding = 1e-9;
     const bool beyond = found["largest_distance"].get<double>() > spacing + kRounding;

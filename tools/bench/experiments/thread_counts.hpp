@@ -4,7 +4,7 @@
 
 namespace clearway::bench {
 
-/// One thread, all cores and twice as many, and some sixteen steps between them.
+/// Thread counts to measure: one, all cores and twice as many, and some sixteen steps between them.
 inline std::set<int> thread_counts(int cores) {
   std::set<int> counts{1, cores, 2 * cores};
   const int step = cores > 8 ? cores / 8 : 1;

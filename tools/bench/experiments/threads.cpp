@@ -6,7 +6,7 @@
 
 namespace clearway::bench {
 void bench_threads(Bench& bench) {
-  // Large enough to keep all threads busy.
+  // The scene is large enough to keep all threads busy.
   const bool small = bench.options().size == "small";
   const SceneFiles files = bench.scene("hall", small ? "tenth" : bench.options().size);
   for (const std::string name : {"kdtree cpu", "sweep cpu"}) {

@@ -5,21 +5,21 @@
 
 namespace clearway::bench {
 
-/// A refusal that says something of the method, so that a case may end with it.
+/// A refusal that says something about the method, so that a case may end with it.
 enum class Refusal {
   kNone,
   kMemory,        ///< more than --memory or --device-memory is needed
   kNonRigidPoses  ///< without --allow-non-rigid
 };
 
-/// Whether a run that failed was stopped by the limit or ended with this refusal. All else, such as
-/// a full disk, says nothing of the method.
+/// Whether a failed run was stopped by the limit or ended with this refusal. Any other failure,
+/// such as a full disk, says nothing about the method.
 bool is_finding(const ProgramRun& failed, Refusal expected);
 
-/// What is kept of it. limit_seconds: that of the run.
+/// What is recorded of a failed run. limit_seconds: the limit of the run.
 Json failure_of(const ProgramRun& failed, double limit_seconds);
 
-/// In a line, from what is kept.
+/// The reason of a recorded failure, in one line.
 std::string reason_of(const Json& failure);
 
 }  // namespace clearway::bench

@@ -46,7 +46,7 @@ nlohmann::ordered_json gpus() {
 
 nlohmann::ordered_json machine_description() {
   return {{"processor", value_in("/proc/cpuinfo", "model name", ':')},
-          {"cores", tbb::info::default_concurrency()},  // those that this process may use
+          {"cores", tbb::info::default_concurrency()},  // the cores that this process may use
           {"memory_bytes", static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                                static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))},
           {"gpus", gpus()},

@@ -32,14 +32,14 @@ class Distances {
  public:
   explicit Distances(const ResultReader& truth) : rows_(truth) {}
 
-  /// None where the point has no clearance below D.
+  /// The distance of a point; nullopt where the point has no clearance below D.
   std::optional<double> of(std::uint64_t source) {
     while (!rows_.at_end() && rows_.source() < source) rows_.advance();
     if (rows_.at_end() || rows_.source() != source) return std::nullopt;
     return rows_.distance();
   }
 
-  /// The rows' hash is checked at their end.
+  /// Reads the rows that are left, because their hash is checked at the end.
   void read_rest() {
     while (!rows_.at_end()) rows_.advance();
   }

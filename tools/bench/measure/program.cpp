@@ -22,10 +22,10 @@
 namespace clearway::bench {
 namespace {
 
-/// How often a signal to this program, and the limit, are looked at.
+/// Milliseconds between checks for a signal to this program and for the limit.
 constexpr int kLookMilliseconds = 50;
 
-/// Of a system call that gave `descriptor`. Throws ResourceError where it failed.
+/// The file of a descriptor that a system call gave. Throws ResourceError where the call failed.
 File opened(int descriptor, const char* name) {
   if (descriptor < 0) throw ResourceError(std::string(name) + ": " + std::strerror(errno));
   return File::adopt(descriptor, name);
@@ -45,8 +45,8 @@ std::string joined(const std::vector<std::string>& arguments) {
   return line;
 }
 
-/// In the child: that program, with these files as standard output and error. Asked to stop when
-/// its parent dies. Does not return.
+/// Turns the child into the program at `path`, with these files as standard output and error. It is
+/// asked to stop when its parent dies. Does not return.
 [[noreturn]] void become_program(const char* path, char** words, int output, int log) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(log, STDERR_FILENO) >= 0) {
@@ -55,8 +55,8 @@ std::string joined(const std::vector<std::string>& arguments) {
   ::_exit(tool::kResource);
 }
 
-/// Waits for the end of the process that `handle` is of, or until it has taken longer than the
-/// limit or this program is to stop; then it is asked to stop. Whether the limit was it.
+/// Waits until the process of `handle` ends, and asks it to stop once it exceeds the limit or this
+/// program is to stop. Returns whether it exceeded the limit.
 bool wait_within(pid_t process, const File& handle, double limit_seconds, const Stopwatch& wall) {
   pollfd ended{.fd = handle.descriptor(), .events = POLLIN, .revents = 0};
   for (;;) {

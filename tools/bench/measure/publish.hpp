@@ -8,7 +8,7 @@
 namespace clearway::bench {
 
 /// Has write(const File&) fill a file that replaces `out` once it is complete. Throws UsageError
-/// where `out` is `in`, and what PendingFile, File and `write` throw; then `out` is as it was.
+/// where `out` is `in`, and what PendingFile, File and `write` throw; `out` then stays as it was.
 template <typename Write>
 void publish(const std::filesystem::path& in, const std::filesystem::path& out, Write write) {
   refuse_overwriting(out, {in});

@@ -23,7 +23,8 @@ Json read(const std::filesystem::path& path) {
   return all;
 }
 
-/// Of a parameter that may differ; that of each case it has stopped is kept with it.
+/// The parameter that may differ between the runs of an experiment; each case that a limit stopped
+/// keeps that limit.
 constexpr const char* kLimit = "limit";
 
 std::string plain_text(const Json& value) {
@@ -40,7 +41,7 @@ std::string option_of(std::string parameter) {
   return "--" + parameter;
 }
 
-/// Throws UsageError with the first value of that name, or within it, that is not the same.
+/// Throws UsageError with the first value, of that name or within it, that differs.
 void check_same(const std::filesystem::path& path, const std::string& name, const Json& earlier,
                 const Json& now) {
   if (earlier == now) return;
@@ -57,8 +58,8 @@ void check_same(const std::filesystem::path& path, const std::string& name, cons
   }
 }
 
-/// Whether a smaller limit has stopped the case, or the conversion that it is. Where the limit was
-/// not kept, the case counts as if it had been what it took.
+/// Whether a smaller limit has stopped the case, or the conversion that it describes. Where the
+/// limit was not recorded, it is taken to be the time after which the case was stopped.
 bool stopped_earlier(const Json& one, double limit_seconds) {
   for (const char* place : {"/failed", "/findings/failed"}) {
     const Json::json_pointer failed(place);

@@ -6,30 +6,31 @@
 #include "bench/measure/record.hpp"
 #include "clearway/error.hpp"
 
-/// What is said of a result.
+/// Judgements of results for the records of experiments.
 namespace clearway::bench {
 
 /// Whether two files have the same bytes.
 bool same_bytes(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// How its set differs from a reference's, about the same environment.
+/// How the colliding points of a result differ from a reference's in the same environment.
 Json compared(const std::filesystem::path& result, const std::filesystem::path& reference);
 
-/// How many points it decides wrongly, and how far from the boundary (misclassified.hpp).
+/// How many points a result decides wrongly, and how far from the boundary they lie
+/// (misclassified.hpp).
 Json judged(const std::filesystem::path& result, const std::filesystem::path& truth);
 
-/// Results that must be equal are not.
+/// Thrown where results that must be equal are not.
 class ResultsDiffer : public Error {
  public:
   using Error::Error;
 };
 
-/// Notes which cases are wrong of engines that decide exactly.
+/// Collects the cases that an exact engine decided wrongly.
 class WrongCases {
  public:
-  /// Looks at the findings of compared() or judged(), where the case has them.
+  /// Checks the findings of compared() or judged(), where the case has them.
   void look_at(const Json& of_case);
-  /// Throws ResultsDiffer with the keys of the wrong ones.
+  /// Throws ResultsDiffer with the keys of the wrong cases, if there are any.
   void refuse() const;
 
  private:

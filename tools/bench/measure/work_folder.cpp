@@ -25,7 +25,8 @@ fs::path made(fs::path path) {
   return path;
 }
 
-/// The lock's file stays: removing it would let another process lock one without a name.
+/// Locks a folder. The lock's file stays, because removing it would let another process lock a file
+/// that has no name any more.
 File locked(const fs::path& folder) {
   const fs::path path = folder / "bench.lock";
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -51,7 +52,7 @@ std::string text_of(const Json& program) {
   return text;
 }
 
-/// Whether it holds folders or stores.
+/// Whether a work folder holds folders or stores.
 bool holds_inputs(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.is_directory() || entry.path().extension() == ".h5") return true;
@@ -82,7 +83,7 @@ std::optional<std::string> WorkFolder::note_program(const Json& program) const {
     return path_.string() + ": scenes and stores of an unknown program are used";
   }
   const Json earlier = noted ? Json::parse(std::ifstream(note), nullptr, false) : Json();
-  if (!(earlier == program)) {  // != is false too for what is no JSON
+  if (!(earlier == program)) {  // != is false also for text that is no JSON
     throw UsageError(path_.string() + ": made by " + text_of(earlier) + "; this program is " +
                      text_of(program) + ": take another --work or remove the folder (or its " +
                      kMadeBy + " and answers, to use its scenes and stores nevertheless)");

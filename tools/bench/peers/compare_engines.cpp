@@ -36,7 +36,7 @@ nlohmann::json timing(const std::vector<double>& seconds, std::uint64_t searches
           {"searches_per_second", static_cast<double>(searches) / median(seconds)}};
 }
 
-/// Calls visit(slot, index) for the used slots in order, index counting them.
+/// Calls visit(slot, index) for the used slots in order; index counts them from 0.
 template <typename Visit>
 void for_each_point(const PackedCloud& cloud, Visit visit) {
   std::uint64_t index = 0;
@@ -119,7 +119,7 @@ nlohmann::json compare(const PackedCloud& cloud, const Query& query,
 nlohmann::json compare_engines(const CompareOptions& options) {
   const StoreReader store(options.environment);
   const std::vector<Vec3> model =
-      read_model_points(options.model, {.spacing = options.radius / 4});  // as clearway run
+      read_model_points(options.model, {.spacing = options.radius / 4});  // as in clearway run
   const std::vector<Pose> all = read_trajectory(options.trajectory, {});
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < all.size(); i += options.every_pose) poses.push_back(all[i]);

@@ -9,11 +9,11 @@ namespace clearway::bench {
 struct CompareOptions {
   std::filesystem::path environment, model, trajectory;
   double radius = 0.1;
-  std::uint64_t every_pose = 1;  ///< takes every N-th pose only
-  bool first_pose = false;       ///< also finds first poses, the kdtree engine alone
-  int threads = 0;               ///< 0: all
+  std::uint64_t every_pose = 1;  ///< N: only every N-th pose is taken
+  bool first_pose = false;       ///< whether the kdtree engine also finds first poses
+  int threads = 0;               ///< 0: all cores
   int repetitions = 3;
-  bool peer = true;  ///< also nanoflann
+  bool peer = true;  ///< whether nanoflann is timed too
 };
 
 /// Times run_kdtree and nanoflann's radiusSearch on the same points and query, `repetitions`

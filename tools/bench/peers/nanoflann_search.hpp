@@ -9,8 +9,8 @@
 
 namespace clearway::bench {
 
-/// The peer: one nanoflann radiusSearch for every pose and model point, in double, unsorted, poses
-/// in parallel, results marked in an atomic bit set.
+/// The search with nanoflann that engines are compared with: one radiusSearch for every pose and
+/// model point, in double, unsorted, poses in parallel, results marked in an atomic bit set.
 class NanoflannSearch {
  public:
   /// Builds the tree; `points` must outlive it.

@@ -23,13 +23,13 @@
 namespace clearway::bench {
 namespace {
 
-/// Finds nothing, at once.
+/// An engine that answers at once and finds nothing, so that only reading is timed.
 class NoEngine final : public PageEngine {
  public:
   NoEngine(const PackedCloud& cloud, const Query& query, const SlotLayout& layout)
       : pool_(cloud, query, layout), shapes_(layout.slots) {
     for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
-      std::ranges::fill(pool_.page(slot), std::byte{0});  // touched, as page-locked memory is
+      std::ranges::fill(pool_.page(slot), std::byte{0});  // touched once, as page-locked memory is
       std::ranges::fill(pool_.hits(slot), 0);
     }
   }
@@ -54,8 +54,8 @@ double seconds_between(Clock::time_point begin, Clock::time_point end) {
   return std::chrono::duration<double>(end - begin).count();
 }
 
-/// All pages, staged beforehand, are started at once; seconds on the device's clock, the best of
-/// several. Where their number exceeds the slots, the first ones stand for all.
+/// Times pages that are staged beforehand and all started at once; seconds on the device's clock,
+/// the best of several runs. Where there are more pages than slots, the first ones stand for all.
 nlohmann::ordered_json time_device(const StoreReader& store, const SweepFilter& filter,
                                    std::span<const PlannedCell> cells,
                                    std::span<const PlannedPage> pages, SlotLayout layout) {
@@ -97,7 +97,7 @@ nlohmann::ordered_json time_stages(const StageOptions& options) {
   if (options.cold) drop_from_page_cache(options.environment);
   const StoreReader store(options.environment);
   const std::vector<Vec3> model =
-      read_model_points(options.model, {.spacing = options.radius / 4});  // as clearway run
+      read_model_points(options.model, {.spacing = options.radius / 4});  // as in clearway run
   const std::vector<Pose> poses = read_trajectory(options.trajectory, {});
   const Query query{model, poses, {.radius = options.radius}};
   const QueryTrees trees(query);

@@ -12,7 +12,7 @@
 namespace clearway::bench {
 namespace {
 
-/// Of n meridians, with n + 1 steps from pole to pole.
+/// The mesh of a superellipsoid with n meridians and n + 1 steps from pole to pole.
 class BodyMesh {
  public:
   BodyMesh(const Box& box, std::uint64_t n) : box_(box), n_(n) {}
@@ -29,7 +29,7 @@ class BodyMesh {
   std::uint64_t top() const { return n_ * n_; }
   std::uint64_t bottom() const { return top() + 1; }
 
-  /// Row by row, then both poles.
+  /// Writes the corners row by row, then both poles.
   void write_corners(TextWriter& out) const {
     const auto n = static_cast<double>(n_);
     for (std::uint64_t row = 1; row <= n_; ++row) {
@@ -67,7 +67,8 @@ class BodyMesh {
     }
   }
 
-  /// Of sines and cosines, of which squares add up to 1: of these then fourth powers do.
+  /// The square root with the sign of x. Squares of sine and cosine add up to 1, so fourth powers
+  /// of their roots do.
   static double root(double x) { return std::copysign(std::sqrt(std::abs(x)), x); }
 
   Box box_;

@@ -16,7 +16,7 @@ namespace clearway::bench {
 namespace {
 
 constexpr int kOctaves = 31;
-constexpr int kPointsAnOctave = 64;  // and as many of the other sign
+constexpr int kPointsAnOctave = 64;  // for each sign
 
 std::size_t octave_of(std::int32_t step) {
   return static_cast<std::size_t>(std::bit_width(static_cast<std::uint32_t>(std::abs(step)) | 1u)) -

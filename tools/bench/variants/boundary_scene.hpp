@@ -10,16 +10,17 @@
 /// that leaves it there, and points on the x axis that are `radius` and a few ulps away, exactly.
 namespace clearway::bench {
 
-/// By how many ulps of the radius each point lies beyond it: 0, and random numbers of every octave
-/// from 1 to 2^31, of both signs.
+/// The number of ulps of the radius by which each point lies beyond it: 0, and random numbers of
+/// every octave from 1 to 2^31, of both signs.
 std::vector<std::int32_t> steps_beside_boundary();
 
-/// Existing files are replaced. radius: such that radius + k ulps is a double for all those k.
+/// Writes the scene; existing files are replaced. radius: such that radius + k ulps is a double for
+/// every k of steps_beside_boundary().
 void write_boundary_scene(const std::filesystem::path& las, const std::filesystem::path& model,
                           const std::filesystem::path& trajectory, double radius);
 
-/// How a result about that scene decides: false hits and misses and, element i of "points" and
-/// "wrong", how many points there are 2^i to 2^(i+1) - 1 ulps beside the boundary (0 among the
+/// How a result for the boundary scene decides: false hits and misses and, as element i of "points"
+/// and "wrong", how many points lie 2^i to 2^(i+1) - 1 ulps beside the boundary (0 counts among the
 /// first), and how many of them are decided wrongly.
 Json decided_at_boundary(const std::filesystem::path& result);
 

@@ -86,7 +86,8 @@ class HeaderBytes {
   std::vector<std::byte> bytes_;
 };
 
-/// Source of the rounding error: Knuth, The Art of Computer Programming 2, section 4.2.2 (TwoSum).
+/// The sum of two numbers; throws UsageError unless a double holds it exactly. Source of the
+/// rounding error: Knuth, The Art of Computer Programming 2, section 4.2.2 (TwoSum).
 double exact_sum(double a, double b) {
   const double sum = a + b;
   const double from_b = sum - a;
@@ -108,7 +109,7 @@ void shift_header(HeaderBytes& header, const Vec3& shift) {
   }
 }
 
-/// The counts of all points and of the first returns, the others' are 0.
+/// Sets the counts of all points and of first returns; those of later returns become 0.
 void set_counts(HeaderBytes& header, const LasPublicHeader& before, std::uint64_t points) {
   if (header.at<std::uint32_t>(kCountByte) != 0) {
     header.put(kCountByte, static_cast<std::uint32_t>(points));
@@ -153,7 +154,7 @@ QuantumBox box_of(PointReader& reader) {
   return box;
 }
 
-/// A box of integers made longer about its centre, not rounded yet.
+/// A box of integers, stretched about its centre and not rounded yet.
 struct StretchedBox {
   StretchedBox(const QuantumBox& box, double factor) {
     for (int k = 0; k < 3; ++k) {
@@ -181,7 +182,7 @@ QuantumBox rounded(const StretchedBox& box, int multiple) {
 
 /// The least power of ten that makes the box's integers fit 32 bits.
 int fitting_multiple(const StretchedBox& box) {
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max() - 1.0;  // with its rounding
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max() - 1.0;  // 1 for rounding
   double reach = 0;
   for (int k = 0; k < 3; ++k) reach = std::max({reach, -box.lo[k], box.hi[k]});
   int multiple = 1;

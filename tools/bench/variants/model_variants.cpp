@@ -19,7 +19,7 @@ struct Candidate {
   double squared_distance;  ///< to the voxel's centre
 };
 
-/// Whether the point of this index is to be kept, for every point.
+/// For every point, whether it is kept as the one of its voxel.
 std::vector<bool> one_a_voxel(const std::vector<Vec3>& points, double voxel) {
   std::map<std::array<double, 3>, Candidate> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -25,7 +25,7 @@ void write_poses(const fs::path& in, const fs::path& out, const std::vector<Pose
   publish(in, out, [&](const File& file) { write_trajectory(poses, file, progress); });
 }
 
-/// Writes the poses after change(pose, index) of each.
+/// Applies change(pose, index) to each pose and writes the poses.
 template <typename Change>
 void write_changed(const fs::path& in, const fs::path& out, Change change) {
   auto poses = read_trajectory(in, {.allow_non_rigid = true});

@@ -16,7 +16,7 @@
 namespace clearway::tool {
 namespace {
 
-/// False where it cannot.
+/// Opens `path` as `descriptor`. False where that fails.
 bool open_as(int descriptor, const char* path, int flags) {
   const int opened = ::open(path, flags | O_CLOEXEC, 0666);
   if (opened < 0) return false;
@@ -28,7 +28,7 @@ bool open_as(int descriptor, const char* path, int flags) {
 
 bool take_place(const ChildCommand& command, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) return false;  // it died before
+  if (::getppid() != parent) return false;  // the parent died before prctl
   ::setpgid(0, 0);
   for (const int descriptor : command.foreign) ::close(descriptor);
   constexpr int kAppend = O_WRONLY | O_CREAT | O_APPEND, kReplace = O_WRONLY | O_CREAT | O_TRUNC;
@@ -64,7 +64,7 @@ pid_t start_child(const ChildCommand& command) {
   int code = kResource;
   try {
     if (take_place(command, parent)) code = call_program(command);
-  } catch (const std::exception&) {  // nothing of it may reach the caller's code
+  } catch (const std::exception&) {  // no exception of the child may reach the caller's code
     code = kResource;
   }
   std::fflush(nullptr);

@@ -9,19 +9,20 @@
 
 namespace clearway::tool {
 
-/// A command of this program, in a process of its own.
+/// A command of this program that is to run in a process of its own.
 struct ChildCommand {
-  std::vector<std::string> words;  ///< without the program's name
-  std::filesystem::path folder;    ///< that it works in
-  std::filesystem::path log;       ///< appended to: what it prints and tells
-  std::filesystem::path output;    ///< standard output instead, replaced; empty: to the log
-  std::vector<int> foreign;        ///< descriptors that are not for it
-  sigset_t signals{};              ///< blocked signals, as they were
+  std::vector<std::string> words;  ///< the command line, without the program's name
+  std::filesystem::path folder;    ///< the folder that the command works in
+  std::filesystem::path log;       ///< appended to: standard error, and output if `output` is empty
+  std::filesystem::path output;    ///< replaced by standard output; empty: that goes to the log
+  std::vector<int> foreign;        ///< the caller's descriptors that the child closes
+  sigset_t signals{};              ///< the signal mask of the child
 };
 
-/// Forks; the child calls the program's entry, without loading the program again. The calling
-/// process has one thread. Where that dies, the child is killed. Signals of the terminal reach the
-/// caller alone. Throws ResourceError.
+/// Forks a child that calls the program's entry, without loading the program again, and returns its
+/// process id. The calling process must have one thread. The child is killed when the caller dies,
+/// and has a process group of its own, so that signals of the terminal reach the caller alone.
+/// Throws ResourceError.
 pid_t start_child(const ChildCommand& command);
 
 }  // namespace clearway::tool

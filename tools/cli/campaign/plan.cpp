@@ -28,7 +28,7 @@ struct CampaignPlanOptions {
   bool force = false;
 };
 
-/// The value of one of the limits, or "".
+/// The value of `option` among the limits; empty where it is not among them.
 std::string limit_of(const campaign::Arguments& limits, const std::string& option) {
   for (const campaign::Argument& one : limits) {
     if (one.option == option) return one.text.substr(option.size() + 1);
@@ -67,7 +67,7 @@ void write_script(const fs::path& path, const std::string& text) {
   fs::permissions(path, fs::perms::owner_exec, fs::perm_options::add);
 }
 
-/// Each vehicle on each route and radius, and a message from time to time.
+/// Plans a run for each vehicle, route and radius, and shows its progress.
 campaign::Plan plan_of(const campaign::Campaign& asked, const fs::path& file) {
   ConsoleProgress progress;
   const std::size_t tasks = asked.vehicles.size() * asked.routes.size() * asked.radii.size();

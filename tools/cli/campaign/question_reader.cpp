@@ -28,7 +28,8 @@ using campaign::Argument;
 using campaign::Arguments;
 using campaign::PlannedRun;
 
-/// What the command line says of an argument, said of the key that it stands for.
+/// Throws InputError with `what`, the command line's error about an option, worded for the key of
+/// campaign.json that the option stands for.
 [[noreturn]] void refuse_argument(const std::filesystem::path& file, const Arguments& arguments,
                                   const std::string& what) {
   for (const auto& [key, option, text] : arguments) {
@@ -68,7 +69,8 @@ void tell(const std::string& key, const std::vector<Message>& messages) {
 
 }  // namespace
 
-/// The same kind of error, with file and key in front.
+/// Calls `call`; its errors are thrown again with file and key in front, ResourceError and
+/// Interrupted as they are and all others as InputError.
 template <typename Call>
 decltype(auto) QuestionReader::named(const std::string& key, const Call& call) const {
   const auto text = [&](const Error& error) {
@@ -113,7 +115,7 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
   return {campaign::question_of(header), store.unit, shards, store.fingerprint};
 }
 
-/// Returns the number of shards.
+/// Adds the model of a run to `header`. Returns the number of shards.
 std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions& options,
                                         const ReadTrajectory& path, ResultHeader& header) {
   const ReadModel& points = model(run, options);
@@ -129,7 +131,8 @@ std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions&
   });
 }
 
-/// Where the bodies are depends on the route, so each run reads them anew. Likewise.
+/// Adds the bodies of a run's vehicle to `header`. Each run reads them anew, because where they are
+/// depends on the route. Returns the number of shards.
 std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions& options,
                                          const ReadTrajectory& path, ResultHeader& header) {
   std::vector<Message> messages;
@@ -174,7 +177,7 @@ void QuestionReader::check_outputs(const PlannedRun& run) {
     add_conflicts(program);
     add_report(program);
     for (CLI::App* one : program.get_subcommands({})) {
-      one->parse_complete_callback([] { throw CLI::Success(); });  // it is not to be run
+      one->parse_complete_callback([] { throw CLI::Success(); });  // parsed only, not run
     }
     try {
       program.parse(reversed(command, arguments));
@@ -185,7 +188,7 @@ void QuestionReader::check_outputs(const PlannedRun& run) {
   }
 }
 
-/// What a report would refuse.
+/// Throws InputError for classes that a report would refuse.
 void QuestionReader::check_classes(const PlannedRun& run, const RunOptions& options,
                                    double metres) const {
   for (const auto& [command, arguments] : run.outputs) {
@@ -259,7 +262,7 @@ const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRu
                                                                  const RunOptions& options) {
   const bool needs_poses = estimate_.is_asked_for() || !options.vehicle.empty();
   const TrajectoryOptions& how = options.trajectory_options;
-  // Into which unit and onto which map a file is read depends on the environment.
+  // The unit and the map that a file is read into depend on the environment.
   const std::string id =
       run.route.name + '\n' + format_number(how.environment_unit) + '\n' + how.default_crs;
   const auto known = trajectories_.find(id);

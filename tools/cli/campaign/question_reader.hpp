@@ -13,11 +13,11 @@
 
 namespace clearway::tool {
 
-/// Reads the inputs of a campaign's runs as their tasks will, each once. Errors name the key of
-/// campaign.json.
+/// Reads the inputs of a campaign's runs as their tasks will, each environment, model and
+/// trajectory once. Errors name the key of campaign.json that they come from.
 class QuestionReader {
  public:
-  /// shard_seconds: of Campaign.
+  /// shard_seconds: as in Campaign.
   QuestionReader(std::filesystem::path campaign_file, double shard_seconds)
       : file_(std::move(campaign_file)), estimate_(shard_seconds) {}
 
@@ -26,9 +26,9 @@ class QuestionReader {
 
  private:
   struct Environment {
-    ResultHeader header;           ///< what a store says in it
-    double metres = 1;             ///< of its unit of length
-    bool unit_is_assumed = false;  ///< it names none
+    ResultHeader header;           ///< the fields that describe the store
+    double metres = 1;             ///< metres per unit of the store's coordinates
+    bool unit_is_assumed = false;  ///< whether the store names no unit
     std::string unit, fingerprint;
   };
   struct ReadModel {
@@ -37,7 +37,7 @@ class QuestionReader {
   };
   struct ReadTrajectory {
     std::uint64_t count = 0, hash = 0;
-    std::vector<Pose> poses{};  ///< where they are needed again
+    std::vector<Pose> poses{};  ///< kept only where they are needed again
   };
 
   void parse(const campaign::PlannedRun& run, RunOptions& options) const;

@@ -35,7 +35,7 @@ campaign::Plan plan_to_run(const CampaignRunOptions& options) {
   return campaign::read_plan(options.folder, *tasks);
 }
 
-/// Of the runs among these tasks, also of those that were done before.
+/// Counts the outcomes of the runs among these tasks, those that were done before included.
 campaign::OutcomeCounts outcomes_of(const campaign::Plan& plan,
                                     const std::filesystem::path& folder) {
   std::vector<campaign::TaskLook> looks;

@@ -31,7 +31,8 @@ std::size_t count_of(const std::vector<TaskLook>& looks, TaskStatus status) {
   return static_cast<std::size_t>(std::ranges::count(looks, status, &TaskLook::status));
 }
 
-/// What another try may finish; or what it will not.
+/// The tasks that another try may finish; with `failed`, those that failed and that no further try
+/// would finish.
 campaign::TaskList tasks_to_do(const std::vector<TaskLook>& looks, bool failed) {
   campaign::TaskList tasks;
   for (std::size_t i = 0; i < looks.size(); ++i) {
@@ -46,7 +47,7 @@ campaign::TaskList tasks_to_do(const std::vector<TaskLook>& looks, bool failed) 
   return tasks;
 }
 
-/// A shard whose run is done may have none.
+/// Whether a task has no facts, as may be for a shard whose run is done.
 bool state_is_empty(const TaskLook& look) { return !look.state || look.state->facts.is_null(); }
 
 nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector<TaskLook>& looks) {
@@ -82,7 +83,7 @@ nlohmann::ordered_json status_json(const campaign::Plan& plan, const std::vector
   return out;
 }
 
-/// Verdicts with what has to be said beside them, each once with its tasks.
+/// Verdicts with their caveats, each once with its tasks, in lines.
 std::string caveats_text(const campaign::Plan& plan, const std::vector<TaskLook>& looks) {
   std::map<std::string, campaign::TaskList> tasks_of;
   for (std::size_t i = 0; i < looks.size(); ++i) {

@@ -48,7 +48,7 @@ void remove_if_there(const fs::path& path) {
   if (failed) throw ResourceError(path.string() + ": cannot remove: " + failed.message());
 }
 
-/// Of a log that many tries made long, the end stays.
+/// Cuts a log that many tries have made long to its end.
 void cut_log(const fs::path& log) {
   std::error_code unknown;
   const std::uintmax_t bytes = fs::file_size(log, unknown);
@@ -91,8 +91,10 @@ TaskFolder::TaskFolder(const campaign::Task& task, const fs::path& campaign)
   cut_log(log());
 }
 
-/// What an earlier try left that read other inputs than the planned ones: they may have been put
-/// back since, and nothing else tells. So may the store, which only the run can say of a journal.
+/// Removes a result or journal that an earlier try made from other inputs than the planned ones;
+/// the inputs may have been put back since, so nothing else tells. Whether a journal belongs to
+/// another store only a run can tell, so the journal of a try that failed for its inputs is removed
+/// too.
 void TaskFolder::remove_of_other_inputs(const std::optional<campaign::TaskState>& earlier) {
   const fs::path result = path_ / task_.result(), journal = journal_of(result);
   if (campaign::answers_another(result, task_.question)) remove_if_there(result);
@@ -140,7 +142,7 @@ const campaign::TaskState& TaskFolder::end(int code) {
     state_.message =
         code > kSignalled ? "killed by signal " + std::to_string(code - kSignalled) : last_error();
     judge_refusal(code);
-    if (code == kSignalled + SIGKILL) {  // where memory ran out, the system does so
+    if (code == kSignalled + SIGKILL) {  // the system kills so where memory has run out
       state_.exit_code = kResource;
       state_.message += ", as where memory runs out";
     }
@@ -149,7 +151,8 @@ const campaign::TaskState& TaskFolder::end(int code) {
   return state_;
 }
 
-/// The inputs may have changed since they were planned.
+/// Takes the facts of the result, or fails the try where the result answers another question
+/// because the inputs have changed since they were planned.
 void TaskFolder::judge_result() {
   if (campaign::answers(path_ / task_.result(), task_.question)) {
     state_.facts = campaign::task_facts(run_output(), task_.question);
@@ -159,8 +162,8 @@ void TaskFolder::judge_result() {
   refuse_changed_inputs("");
 }
 
-/// A run that is done again refuses its own result where that answers the planned question, and the
-/// inputs of now ask another one.
+/// Recognises changed inputs behind a refusal: a run that is done again refuses its own result
+/// where that answers the planned question and the present inputs ask another one.
 void TaskFolder::judge_refusal(int code) {
   const bool runs = task_.commands[command_][0] == "run";
   if (code != kWrongUsage || !runs) return;

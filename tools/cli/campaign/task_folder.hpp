@@ -12,33 +12,36 @@
 
 namespace clearway::tool {
 
-/// What a shell says of a process that a signal ended, beside the signal.
+/// Added to the number of the signal that ended a process, to make an exit code as a shell does.
 inline constexpr int kSignalled = 128;
 
-/// A task that this process is at work on: its folder, locked, and the state that is told there.
+/// The locked folder of a task that this process works on, and the state that is written there.
 class TaskFolder {
  public:
-  /// Makes the folder, and takes its lock; removes what is there of other questions and inputs.
-  /// Throws ResourceError where another process is at work on the task, InputError where the file
-  /// of the result is damaged.
+  /// Makes the folder and takes its lock; removes what earlier tries left of other questions and
+  /// inputs. Throws ResourceError where another process works on the task, InputError where the
+  /// file of the result is damaged.
   TaskFolder(const campaign::Task& task, const std::filesystem::path& campaign);
 
   const campaign::Task& task() const { return task_; }
   const std::filesystem::path& path() const { return path_; }
   int lock_descriptor() const { return lock_.descriptor(); }
-  /// Whether another process finished it before the lock was taken: nothing is to be done.
+  /// Whether another process finished the task before the lock was taken, so that nothing is to be
+  /// done.
   bool is_done() const { return done_; }
 
   std::filesystem::path log() const { return path_ / "log.txt"; }
-  /// What clearway run prints.
+  /// The file for what `clearway run` prints.
   std::filesystem::path run_output() const { return path_ / "run.json"; }
 
-  /// To be called before each command: what it then tells is its own.
+  /// To be called before each command, so that errors in the log can be told from those of earlier
+  /// commands. number: from 0.
   void begin_command(std::size_t number);
   std::size_t command() const { return command_; }
 
-  /// How the try ended, for status and report; the lock goes with the object. code: an exit code,
-  /// or 128 and the signal that killed. Gives the state as written.
+  /// Writes how the try ended, for status and report, and returns the state as written. The lock is
+  /// held as long as the object lives. code: an exit code, or kSignalled plus the signal that
+  /// killed.
   const campaign::TaskState& end(int code);
 
  private:

@@ -14,7 +14,7 @@
 namespace clearway::tool {
 namespace {
 
-constexpr int kMostFailures = 3;  ///< a task that failed for the machine's sake is tried twice more
+constexpr int kMostFailures = 3;  ///< a task that fails with kResource is tried twice more
 
 bool ignores(int signal) {
   struct sigaction action {};
@@ -27,7 +27,8 @@ int code_of(int status) {
   return signal == SIGTERM || signal == SIGINT ? int{kInterrupted} : kSignalled + signal;
 }
 
-/// Several tasks share the cores, unless the campaign says how many threads they have.
+/// The command line with --threads, where several tasks share the cores and the campaign does not
+/// say how many threads they have.
 std::vector<std::string> with_threads(std::vector<std::string> words, std::size_t jobs) {
   const bool said = std::ranges::any_of(
       words, [](const std::string& word) { return word.starts_with("--threads="); });
@@ -67,7 +68,7 @@ int TaskQueue::run() {
   return interrupted_ || (stopping_ && !waiting_.empty()) ? int{kInterrupted} : code_;
 }
 
-/// They are waited for, so that none comes between two looks.
+/// Blocks the signals that the queue waits for, so that none is lost between two looks.
 void TaskQueue::block_signals() {
   ::signal(SIGCHLD, SIG_DFL);
   ::sigemptyset(&waited_);
@@ -78,7 +79,8 @@ void TaskQueue::block_signals() {
   ::sigprocmask(SIG_BLOCK, &waited_, &before_);
 }
 
-/// The first one that waits for no other of this queue. The tasks before a merge are its shards.
+/// The first waiting task that needs no other unfinished task of this queue. The tasks before a
+/// merge are its shards.
 std::deque<const campaign::Task*>::iterator TaskQueue::next_task() {
   return std::ranges::find_if(waiting_, [this](const campaign::Task* task) {
     const auto first = unfinished_.lower_bound(task->number - task->shards);
@@ -86,7 +88,8 @@ std::deque<const campaign::Task*>::iterator TaskQueue::next_task() {
   });
 }
 
-/// Of a merge. To ask for it too early is wrong usage: to try again does not help by itself.
+/// Throws UsageError where a shard that the merge `task` needs is not done. It is wrong usage to
+/// ask for the merge too early, because trying again does not help by itself.
 void TaskQueue::check_shards(const campaign::Task& task) const {
   for (std::uint32_t number = 1; number <= task.shards; ++number) {
     const campaign::Task shard = campaign::shard_of(task, number);
@@ -104,7 +107,7 @@ void TaskQueue::begin(const campaign::Task& task) {
       const std::string changed = campaign::changed_since(earlier->inputs);
       if (!changed.empty()) spdlog::info("{}: {}; it runs again", task.name(), changed);
     }
-    // A run that has its result needs no parts.
+    // A merge that already has its result needs no parts.
     const bool merged = task.shards > 0 && campaign::has_result(task, campaign_);
     if (!merged) check_shards(task);
     const auto work = working_.emplace(working_.end(), TaskFolder(task, campaign_));
@@ -147,7 +150,7 @@ void TaskQueue::wait() {
   heed(signal);
 }
 
-/// Without waiting.
+/// Heeds a pending signal, without waiting for one.
 void TaskQueue::look() {
   siginfo_t info{};
   const timespec none{};

@@ -14,17 +14,16 @@
 
 namespace clearway::tool {
 
-/// Works through tasks, so many at a time, each command in a process of its own. To be made once,
-/// while this process has one thread.
+/// Works through tasks, `jobs` at a time, each command in a process of its own. To be constructed
+/// once, while this process has one thread.
 class TaskQueue {
  public:
-  /// campaign: absolute. All outlive it.
+  /// campaign: the absolute path of its folder. The plan outlives the queue. tries_again: whether
+  /// to queue tasks again that were interrupted or that failed with kResource.
   TaskQueue(const campaign::Plan& plan, std::filesystem::path campaign, int jobs, bool tries_again);
 
-  /// Does them. Where tries_again, those that were interrupted, or failed for the machine's sake,
-  /// are queued again.
-  /// SIGINT and SIGTERM end the commands, and it. Gives the exit code: kInterrupted, or the largest
-  /// of those of the tasks.
+  /// Does the tasks. SIGINT and SIGTERM end the running commands and the queue. Returns the exit
+  /// code: kInterrupted, or the most urgent one of the tasks.
   int run();
 
  private:
@@ -54,7 +53,7 @@ class TaskQueue {
   std::filesystem::path campaign_;
   std::size_t jobs_;
   std::deque<const campaign::Task*> waiting_;
-  std::set<std::size_t> unfinished_;  ///< numbers of those that wait or are worked on
+  std::set<std::size_t> unfinished_;  ///< numbers of the tasks that wait or are worked on
   std::list<Work> working_;
   std::map<const campaign::Task*, int> failures_;
   std::size_t ended_ = 0;

@@ -27,7 +27,7 @@
 namespace clearway::tool {
 namespace {
 
-/// One of the results that are compared.
+/// One of the two results that are compared.
 struct ComparedSide {
   ComparedSide(ConflictComparison& options, const std::filesystem::path& file,
                const std::filesystem::path& trajectory, const std::filesystem::path& vehicle)
@@ -60,7 +60,7 @@ struct ComparedSide {
   std::vector<std::uint32_t> conflict_of;
 };
 
-/// Of what is the same: where b comes nearer, or deeper, by more than `by`.
+/// The pairs of the same conflict in which b comes nearer, or deeper, by more than `worse_by`.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> worse_ones(const ComparedConflicts& found) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
   for (const auto& pair : found.match.same) {

@@ -60,12 +60,12 @@ ordered_json json_of_small(const SmallGroup& group) {
           {"chainage_to", group.chainage_to}};
 }
 
-/// A row of the table, in CSV and HTML.
+/// A row of the table that is written as CSV or HTML.
 struct Row {
   std::string status;
   const Conflict* a = nullptr;
   const Conflict* b = nullptr;
-  const SmallGroup* small = nullptr;  ///< of b
+  const SmallGroup* small = nullptr;  ///< a group of b that is too small to be listed
   std::string note = {};
 };
 
@@ -98,7 +98,7 @@ constexpr const char* kColumns[] = {
     "side",   "points_a", "points_b", "least_distance_a", "least_distance_b", "x",
     "y",      "z",        "note"};
 
-/// As many as there are columns. number: for a coordinate or a length.
+/// The texts of a row, one for each of kColumns. number: makes the text of a coordinate or length.
 template <typename Number>
 std::vector<std::string> cells_of(const Row& row, Number number) {
   const Conflict* const shown = row.b != nullptr ? row.b : row.a;
@@ -222,7 +222,7 @@ std::string json_of(const ComparedConflicts& found) {
                          {"distances_known", found.distances_known},
                          {"gone", json_of_list(found.a.conflicts, found.match.gone)},
                          {"same", json_of_pairs(found, found.match.same)}};
-  // Names of files need not be UTF-8.
+  // File names need not be UTF-8.
   return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -11,7 +11,7 @@
 
 namespace clearway::tool {
 
-/// The listed conflict of this id.
+/// The listed conflict with this id; ids count from 1.
 inline const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
   return conflicts.listed[id - 1];
 }
@@ -24,35 +24,37 @@ struct ComparedResult {
   Conflicts conflicts;
 };
 
-/// What comparing the conflicts of two results found.
+/// The outcome of a comparison of two results' conflicts.
 struct ComparedConflicts {
   ComparedResult a, b;
   std::vector<QueryDifference> questions;
   bool other_question_allowed = false;
-  bool distances_known = false;  ///< of both: otherwise nothing can be called worse
+  bool distances_known = false;  ///< whether both results have distances; if not, none is worse
   double worse_by = 0;
-  ConflictMatch match;                                         ///< the same ones, worse or not
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> worse;  ///< of the same ones
-  std::vector<std::size_t> new_small;  ///< of b.conflicts.small, those that a has nothing near
+  ConflictMatch match;  ///< which conflicts are new, gone and the same, worse or not
+  /// Ids of the same conflict in a and b where b's is worse.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> worse;
+  /// Indices into b.conflicts.small of the groups that a has nothing near.
+  std::vector<std::size_t> new_small;
 
   bool same_question() const { return questions.empty() || other_question_allowed; }
-  /// Whether b is no worse than a.
+  /// Whether b is no worse than a, and answers the same question or an allowed one.
   bool holds() const {
     return same_question() && match.added.empty() && worse.empty() && new_small.empty();
   }
 };
 
-/// The last line of the text: what was found, in a sentence.
+/// What the comparison found, in one sentence: the last line of the text.
 std::string sentence_of(const ComparedConflicts& found);
 
-/// One JSON object, with a line break at its end.
+/// The comparison as one JSON object, with a line break at its end.
 std::string json_of(const ComparedConflicts& found);
 
-/// The endings of the files that a comparison is written to: .csv, .json, .html. Throws UsageError
-/// for another one.
+/// Throws UsageError unless `output` ends in .csv, .json or .html, the forms in which a comparison
+/// is written.
 void check_comparison_ending(const std::filesystem::path& output);
 
-/// Writes the form that the ending of `output` names to `path`.
+/// Writes the comparison to `path`, in the form that the ending of `output` names.
 void write_comparison(const ComparedConflicts& found, const std::filesystem::path& output,
                       const std::filesystem::path& path);
 

@@ -18,41 +18,42 @@ class Option;
 
 namespace clearway::tool {
 
-/// What commands that find conflicts take beside the results.
+/// The options that commands which find conflicts take beside the results.
 struct ConflictCommand {
   ConflictOptions find;
   TrajectoryOptions trajectory_options;
   LengthOptions lengths;
 };
 
-/// --gap, --min-points, --split, --memory, --threads and the options of trajectories.
+/// Adds --gap, --min-points, --split, --memory, --threads and the options of trajectories.
 void add_conflict_options(CLI::App& command, ConflictCommand& options);
 
-/// --forward and --up.
+/// Adds --forward and --up.
 void add_axis_options(CLI::App& command, ConflictOptions& options);
 
-/// The option --vehicle of commands that take --model.
+/// Adds --vehicle to a command that takes --model, which is the option `model`.
 void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
                         const std::string& description, CLI::Option* model);
 
-/// The poses of a result. Warnings are told.
+/// Reads the poses of a result's trajectory and logs the warnings.
 std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
                              const Result& result);
 
-/// How the model of a result is read again: as it was for the search.
+/// Options that read the model of a result again as it was read for the search.
 ModelOptions model_options_of(const Result& result, ModelOptions options);
 
-/// Throws InputError where a result is of one model, and a vehicle is given, or the other way
-/// round.
+/// Throws InputError where a vehicle is given for the result of one model, or a model for the
+/// result of a vehicle.
 void check_kind_of_model(const Result& result, const std::filesystem::path& model,
                          const std::filesystem::path& vehicle);
 
-/// The bodies of the vehicle that a result is of, at the poses of its path. Throws as read_vehicle.
+/// Reads the bodies of the vehicle that a result is of, at the poses of its path. Throws as
+/// read_vehicle.
 std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const ModelOptions& model,
                                  const ConflictCommand& options, const std::vector<Pose>& path,
                                  const Result& result, std::vector<Message>& warnings);
 
-/// The model that a result is of. Throws InputError for another model.
+/// Reads the model that a result is of. Throws InputError for another model.
 Model read_model_of(const std::filesystem::path& path, const ModelOptions& options,
                     const Result& result);
 

@@ -23,7 +23,8 @@ bool has_depths(const Conflicts& conflicts) {
                              [](const Conflict& c) { return c.points_inside.value_or(0) > 0; });
 }
 
-/// Without distances along the path.
+/// The worst conflicts, at most `most`: by least distance, or along the path where distances are
+/// not known.
 std::vector<Conflict> worst_of(const Conflicts& conflicts, std::size_t most) {
   std::vector<Conflict> out = conflicts.listed;
   const bool shifts = has_shifts(conflicts);
@@ -60,7 +61,7 @@ std::string row_text(const Conflict& c, bool distances, bool depths, bool shifts
   return row + fmt::format("  {:.3f} {:.3f} {:.3f}\n", c.centroid.x, c.centroid.y, c.centroid.z);
 }
 
-/// The groups that are not listed, and where the first of them is.
+/// A line about the groups that are not listed, and where the first of them is.
 std::string small_text(const ConflictFile& file) {
   const Conflicts& c = file.conflicts;
   if (c.small_groups == 0) return "";

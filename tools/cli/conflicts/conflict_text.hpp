@@ -7,8 +7,8 @@
 
 namespace clearway::tool {
 
-/// A table of the worst conflicts: by their least distance where that is known, otherwise along the
-/// path. At most `most` of them; what is left out is counted.
+/// A table of the worst conflicts, ordered by least distance where that is known and otherwise
+/// along the path. At most `most` are shown; the others are counted.
 std::string conflict_text(const ConflictFile& file, std::size_t most);
 
 }  // namespace clearway::tool

@@ -49,7 +49,7 @@ struct ConflictsCommand : ConflictCommand {
   bool json = false;
 };
 
-/// An output that is not there yet.
+/// An output that does not exist yet.
 struct ConflictOutput {
   ConflictOutput(const std::filesystem::path& path, bool overwrite)
       : format(conflict_format_of(path)), pending(path, overwrite) {}
@@ -72,7 +72,7 @@ Outputs open_outputs(const ConflictsCommand& options) {
   return out;
 }
 
-/// Places of a surface that a picture shows.
+/// The number of places of a surface that a picture shows.
 constexpr double kDrawnPlaces = 20'000;
 
 /// What is drawn of a model: its points, or places of its triangles.
@@ -81,7 +81,7 @@ std::vector<Vec3> drawn(const Model& model) {
   return drawn_points({model.vertices, model.triangles}, kDrawnPlaces);
 }
 
-/// What conflicts are seen from: the model, or the bodies of the vehicle.
+/// What the pictures of conflicts show beside them: the model, or the bodies of the vehicle.
 struct SeenFrom {
   Model model;
   std::vector<Body> bodies;
@@ -169,7 +169,7 @@ void run_conflicts(ConflictsCommand& options) {
   }
 }
 
-/// A day, or a time in UTC, as ISO 8601 has them.
+/// A day, or a time in UTC, in the form of ISO 8601.
 std::string full_date(const std::string& text) {
   std::string full = text.size() == 10 ? text + "T00:00:00Z" : text;
   constexpr std::string_view kForm = "0000-00-00T00:00:00Z";

@@ -7,7 +7,7 @@
 namespace clearway::tool {
 namespace {
 
-/// A size that the options take, exactly.
+/// An option with a size in a form that it takes, without rounding.
 std::string size_option(const std::string& name, double bytes) {
   return name + " " + std::to_string(static_cast<std::uint64_t>(bytes));
 }

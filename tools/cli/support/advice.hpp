@@ -7,11 +7,12 @@
 
 namespace clearway::tool {
 
-/// What the user can do about an error, in terms of the command line: "; --force overwrites it".
-/// Empty where the error says all.
+/// Advice on an error in terms of the command line, such as "; --force overwrites it". Empty where
+/// the error says all.
 std::string advice_on(const Error& error);
 
-/// The same of a note or a warning, as a sentence behind it: ". --between-poses ...".
+/// Advice on a note or a warning, as a sentence to append: ". --between-poses ...". Empty where the
+/// message says all.
 std::string advice_on(const Message& message);
 
 }  // namespace clearway::tool

@@ -36,7 +36,7 @@ std::string short_time(double seconds) {
   return text;
 }
 
-/// Of the terminal at standard error, now: it can be made narrower at any time.
+/// The width of the terminal at standard error, asked anew because it can change at any time.
 std::size_t terminal_columns() {
   winsize size{};
   if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
@@ -46,8 +46,8 @@ std::size_t terminal_columns() {
   return static_cast<std::size_t>(number > 0 ? number : kUsual);
 }
 
-/// The first text that leaves the last column free, where some terminals wrap; the last one cut
-/// where none does.
+/// The first text that leaves the terminal's last column free, because some terminals wrap there.
+/// Where none does, the last text, cut.
 std::string first_that_fits(std::initializer_list<std::string> texts) {
   const std::size_t room = terminal_columns() - 1;
   for (const std::string& text : texts) {
@@ -59,7 +59,7 @@ std::string first_that_fits(std::initializer_list<std::string> texts) {
 }  // namespace
 
 void start_log() {
-  spdlog::drop("clearway");  // of a process that was forked by one that has a log
+  spdlog::drop("clearway");  // a forked process may have inherited a log
   auto logger = spdlog::stderr_logger_mt("clearway");
   logger->set_pattern("%l: %v");
   spdlog::set_default_logger(std::move(logger));

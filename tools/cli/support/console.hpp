@@ -13,8 +13,8 @@ namespace clearway::tool {
 /// Sends the log to standard error: plain lines with a level.
 void start_log();
 
-/// A progress bar with rate and time left on standard error where that is a terminal; nothing
-/// elsewhere. Asks to stop when a signal did (cli/signals.hpp).
+/// Shows progress with rate and time left on standard error where that is a terminal, and nothing
+/// elsewhere. Asks to stop when a signal did (cli/support/signals.hpp).
 class ConsoleProgress final : public Progress {
  public:
   ConsoleProgress();
@@ -22,7 +22,7 @@ class ConsoleProgress final : public Progress {
   void advance(std::uint64_t units) override;
   void end() override;
   bool stop_requested() const override;
-  /// Of a library call that tells how far it is by callbacks.
+  /// Shows the progress that a library call reports by callbacks.
   void update(const ProgressUpdate& update);
 
  private:
@@ -40,7 +40,8 @@ class ConsoleProgress final : public Progress {
 /// Logs a note or a warning of the library.
 void log_message(const Message& message);
 
-/// Progress and messages of a library call go to the terminal; it stops when a signal asks to.
+/// Sends progress and messages of a library call to the terminal and makes the call stop when a
+/// signal asks to.
 template <typename Options>
 void watch_call(Options& call, ConsoleProgress& progress) {
   call.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };

@@ -4,8 +4,8 @@
 
 namespace clearway::tool {
 
-/// Of the program. `run`, `merge`, `compare` and `verify` set kDiffers themselves, `run` and
-/// `merge` kUndecided too.
+/// The exit codes of the program. `run`, `merge`, `compare`, `verify` and `campaign run` set
+/// kDiffers themselves; `run`, `merge` and `campaign run` also set kUndecided.
 enum ExitCode {
   kDone = 0,
   kDiffers = 1,
@@ -16,7 +16,8 @@ enum ExitCode {
   kUndecided = 6
 };
 
-/// What --fail-on-collision makes of a verdict. One part alone never says that nothing collides.
+/// The exit code of a verdict under --fail-on-collision. One part alone never says that nothing
+/// collides.
 inline int exit_code_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::kClear:
@@ -30,8 +31,8 @@ inline int exit_code_of(Verdict verdict) {
   return kUndecided;
 }
 
-/// The exit code of several tasks of which `a` and `b` are two: failures before conflicts, and
-/// these before undecided ones: 5, 4, 3, 2, 1, 6, 0.
+/// The more urgent of two tasks' exit codes. Failures come before conflicts, and these before
+/// undecided ones: 5, 4, 3, 2, 1, 6, 0.
 inline int more_urgent(int a, int b) {
   const auto rank = [](int code) { return code == kUndecided ? 1 : code == kDone ? 0 : code + 1; };
   return rank(a) < rank(b) ? b : a;

@@ -16,7 +16,8 @@
 namespace clearway::tool {
 namespace {
 
-/// expected: for the error.
+/// Reads kCount lengths with commas between them. expected: for the error, what the text should be.
+/// Throws CLI::ValidationError.
 template <std::size_t kCount>
 std::array<ParsedLength, kCount> parse_lengths(const std::string& option, const std::string& text,
                                                const char* expected) {
@@ -33,7 +34,7 @@ std::array<ParsedLength, kCount> parse_lengths(const std::string& option, const 
   throw CLI::ValidationError(option, text + ": expected " + expected);
 }
 
-/// Metres of the unit that well-known text names; 1 where it names none.
+/// Metres per unit of the CRS that well-known text describes; 1 where it names no unit.
 double metres_of_crs(const std::string& wkt) {
   const double metres = metres_of(units_of_wkt(wkt).horizontal);
   return metres > 0 ? metres : 1;

@@ -14,7 +14,7 @@
 namespace clearway::tool {
 namespace {
 
-/// Letters to add, to drop, to change, or to swap with the next, from a to b.
+/// The number of letters to add, drop, change, or swap with the next, to make b of a.
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before, last(b.size() + 1), now(b.size() + 1);
   std::iota(last.begin(), last.end(), 0);
@@ -42,8 +42,8 @@ class WordCheck {
   WordCheck(const CLI::App& program, const char* name) : command_(&program), name_(name) {}
 
   /// The option at the front of the words and its value as one word, where the parser would not see
-  /// that they belong together: the value begins with a minus, or it is a length whose unit stands
-  /// apart, as in --radius 10 cm. How many words these are is added to `taken`.
+  /// that they belong together because the value begins with a minus, or is a length whose unit
+  /// stands apart, as in --radius 10 cm. Adds the number of joined words to `taken`.
   std::string joined(std::span<const std::string> words, std::size_t& taken) const {
     const std::string& word = words[0];
     const CLI::Option* option = word.starts_with('-') && word.find('=') == std::string::npos
@@ -57,7 +57,7 @@ class WordCheck {
     return "--" + option->get_lnames().front() + "=" + words[1] + (values > 1 ? words[2] : "");
   }
 
-  /// False where the rest is not to be looked at.
+  /// Checks one word. False where the words behind it are not to be checked.
   bool accepts(const std::string& word) {
     if (word == "--") return false;
     if (word.size() > 2 && word.starts_with("--")) {
@@ -74,7 +74,7 @@ class WordCheck {
  private:
   static unsigned char uchar(char c) { return static_cast<unsigned char>(c); }
 
-  /// How many of the words that follow an option are to be joined to it.
+  /// The number of words behind an option that are to be joined to it.
   std::size_t words_of_value(const CLI::Option& option, std::span<const std::string> words) const {
     if (option.get_items_expected_max() == 0 || words.empty()) return 0;
     const std::string& value = words[0];
@@ -106,7 +106,7 @@ class WordCheck {
         name_ += " " + word;
         return;
       }
-      if (command->get_group().empty()) continue;  // hidden
+      if (command->get_group().empty()) continue;  // hidden commands have no group
       known.push_back(command->get_name());
       list += (list.empty() ? "" : ", ") + command->get_name();
     }

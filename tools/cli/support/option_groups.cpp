@@ -16,9 +16,9 @@ constexpr std::array kTitles{"Inputs and output", "What is asked",    "What is i
                              "Units and frames",  "Conflicts",        "The page",
                              "Speed and memory",  "Files and resume", "Messages and exit code"};
 
-constexpr std::string_view kNoGroup = "Options";  // CLI11's own
+constexpr std::string_view kNoGroup = "Options";  // CLI11's default group
 
-/// A help with no more options than this is one list.
+/// The number of options up to which a help text is one list without groups.
 constexpr std::size_t kShortHelp = 10;
 
 constexpr std::array<std::pair<std::string_view, OptionGroup>, 15> kCommonOptions{
@@ -38,7 +38,7 @@ constexpr std::array<std::pair<std::string_view, OptionGroup>, 15> kCommonOption
      {"--fail-on-collision", OptionGroup::kOutput},
      {"--help", OptionGroup::kOutput}}};
 
-/// Where a group stands in a help text; CLI11's own group behind the first.
+/// The place of a group in a help text; CLI11's own group stands behind the first.
 std::size_t place_of(const std::string& title) {
   if (title == kNoGroup) return 1;
   const auto at = std::ranges::find(kTitles, title);

@@ -27,8 +27,8 @@ enum class OptionGroup {
 /// The heading of a group, for example "The model". For CLI::Option::group.
 const char* title_of(OptionGroup group);
 
-/// Options that are added to the command during its lifetime are of this group, unless they say
-/// otherwise.
+/// Puts the options that are added to the command during its lifetime into one group, unless they
+/// name another.
 class GroupScope {
  public:
   GroupScope(CLI::App& command, OptionGroup group);
@@ -41,12 +41,13 @@ class GroupScope {
   std::string before_;
 };
 
-/// Makes the help of the program and of all commands that are added to it later show the groups in
-/// their order, those without options left out. Options without a group come behind the inputs.
+/// Makes the help of the program, and of all commands that are added later, show the groups in
+/// their order, without empty groups. Options without a group come behind the inputs.
 void show_groups_in_order(CLI::App& program);
 
-/// Gives the options that many commands have, such as --force and --json, their groups in every
-/// command whose help is long enough to need them. To be called when all commands are there.
+/// Puts the options that many commands have, such as --force and --json, into their groups, in
+/// every command whose help is long enough to need groups. To be called after all commands are
+/// added.
 void group_common_options(CLI::App& program);
 
 }  // namespace clearway::tool

@@ -25,7 +25,8 @@
 namespace clearway::tool {
 namespace {
 
-/// Of CLI11's own messages the one that says too little.
+/// CLI11's message on an error; the one on a repeated option is reworded, because it says too
+/// little.
 std::string failure_text(const CLI::App* program, const CLI::Error& error) {
   constexpr std::string_view kOnce = ": At Most 1 required but received ";
   std::string text = CLI::FailureMessage::simple(program, error);
@@ -35,7 +36,7 @@ std::string failure_text(const CLI::App* program, const CLI::Error& error) {
   return text;
 }
 
-/// Help goes to standard output too: a disk that is full there is an error.
+/// Prints help, version or the error. Help goes to standard output, where a full disk is an error.
 int finish(const CLI::App& program, const CLI::ParseError& error) {
   if (program.exit(error) != 0) return kWrongUsage;
   if (!std::cout.flush()) throw ResourceError("standard output: cannot write");
@@ -62,14 +63,15 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   return exit_code;
 }
 
-/// What belongs to the process, and is not for a library to change.
+/// Sets what belongs to the process as a whole and is not for a library to change.
 void prepare_process() {
   start_log();
   hdf5::silence_for_good();
   install_map_fault_handler(kResource);
-  ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error like a full disk
-  ::signal(SIGPIPE, SIG_IGN);  // and so is a pipe that nobody reads
-  // Large blocks go back to the system when freed, so that --memory bounds what it sees.
+  ::signal(SIGXFSZ, SIG_IGN);  // exceeding the limit of file sizes becomes a write error
+  ::signal(SIGPIPE, SIG_IGN);  // a closed pipe becomes a write error
+  // Large blocks go back to the system when they are freed, so that --memory bounds what the system
+  // sees.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
 }
 

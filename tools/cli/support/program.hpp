@@ -11,11 +11,11 @@ struct ProgramText {
   const char* description;
 };
 
-/// Adds the subcommands. Their callbacks set `exit_code` where success is not 0.
+/// A function that adds the subcommands, whose callbacks set `exit_code` where success is not 0.
 using AddCommands = void (*)(CLI::App& program, int& exit_code);
 
-/// The whole of a main function. Errors go to standard error; the exit codes are those of
-/// cli/exit_code.hpp.
+/// Parses the command line and runs the subcommand. Errors go to standard error. Returns an exit
+/// code of cli/support/exit_code.hpp.
 int run_program(const ProgramText& text, int argc, char** argv, AddCommands add_commands);
 
 }  // namespace clearway::tool

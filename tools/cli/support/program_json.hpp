@@ -8,11 +8,11 @@
 
 namespace clearway::tool {
 
-/// What every report in JSON begins with: "version", of the program, and "files".
+/// The object that every report in JSON begins with: "version", of the program, and "files".
 nlohmann::ordered_json program_json(
     std::initializer_list<std::pair<const char*, std::filesystem::path>> files);
 
-/// Text of one JSON object; bytes of names that are no UTF-8 are replaced.
+/// The text of one JSON object, in which bytes of names that are no UTF-8 are replaced.
 std::string text_of_json(const nlohmann::ordered_json& object);
 
 }  // namespace clearway::tool

@@ -37,7 +37,8 @@ void install(int signal, void (*handler)(int)) {
   ::sigaction(signal, &action, nullptr);
 }
 
-/// A command in the background of a shell without job control keeps ignoring SIGINT.
+/// Whether a signal is ignored. Commands in the background of a shell without job control start
+/// with SIGINT ignored, and keep ignoring it.
 bool is_ignored(int signal) {
   struct sigaction action {};
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;

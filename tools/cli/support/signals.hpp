@@ -8,19 +8,19 @@
 namespace clearway::tool {
 
 bool stop_requested();
-/// What it tells.
+/// The flag that stop_requested() reads.
 const std::atomic<bool>& stop_flag();
 
-/// The work of a command on `output`. SIGINT and SIGTERM ask it to stop (stop_requested()); where
-/// it then throws Interrupted, the message names the output and gives `advice`. Where it has not
-/// come to an end kGraceSeconds later, the advice goes to standard error and the process ends with
-/// exit code 5, as if killed. A second signal ends it so at once. To be called once.
+/// Does the work of a command on `output`. SIGINT and SIGTERM ask it to stop (stop_requested());
+/// where it then throws Interrupted, the message names the output and gives `advice`. Where it has
+/// not ended kGraceSeconds later, the advice goes to standard error and the process ends with exit
+/// code 5, as if killed. A second signal ends it at once in the same way. To be called once.
 void run_stoppable(const std::filesystem::path& output, const std::string& advice,
                    const std::function<void()>& work);
 
 inline constexpr unsigned kGraceSeconds = 4;
 
-/// Advice of the commands that keep nothing of what they began.
+/// The advice of commands that keep nothing of what they began.
 inline constexpr const char* kStartsAgain = "the same command starts it again";
 
 }  // namespace clearway::tool

@@ -6,8 +6,8 @@
 
 namespace clearway::tool {
 
-/// The files that a store was made of: "name", "bytes", "xxh64", and which source indices are
-/// theirs: "first_source" and "points"; both null where the store does not say.
+/// The files that a store was made of: "name", "bytes", "xxh64", and "first_source" and "points",
+/// which say which source indices are theirs and are null where the store does not tell.
 nlohmann::ordered_json sources_json(const StoreMetadata& store);
 
 }  // namespace clearway::tool

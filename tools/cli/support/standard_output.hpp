@@ -4,11 +4,12 @@
 
 namespace clearway::tool {
 
-/// Writes to standard output, through to the system. Throws ResourceError where that fails.
+/// Writes to standard output and flushes. Throws ResourceError where that fails.
 void print(std::string_view text);
 
-/// A standard descriptor that is closed would become an output's, and what is printed would be
-/// written into it. What is then read or printed fails, but for messages, which are lost.
+/// Opens standard descriptors that are closed, because otherwise an output file would get such a
+/// descriptor, and what is printed would be written into it. Reading and printing through them then
+/// fail, but messages are lost silently.
 void occupy_standard_descriptors();
 
 }  // namespace clearway::tool

@@ -13,7 +13,8 @@ class LengthOptions;
 inline constexpr const char* kTrajectoryHelp =
     "The poses: 12 or 16 numbers a line, TUM, EuRoC, CSV with a header, SBET, or 3DTK";
 
-/// What every command that reads a trajectory takes: --trajectory-format, --angles and so on.
+/// Adds the options of every command that reads a trajectory: --trajectory-format, --angles and so
+/// on.
 void add_trajectory_options(CLI::App& command, TrajectoryOptions& options, LengthOptions& lengths);
 
 }  // namespace clearway::tool

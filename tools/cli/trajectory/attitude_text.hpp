@@ -6,8 +6,8 @@
 
 namespace clearway::tool {
 
-/// The angles of a model with x forward, y left and z up, in a world with y north and z up.
-/// Degrees.
+/// The angles, in degrees, of a model with x forward, y left and z up, in a world with y north and
+/// z up.
 struct PoseAngles {
   double heading;  ///< clockwise from y, 0 to 360
   double pitch;    ///< nose up
@@ -16,7 +16,8 @@ struct PoseAngles {
 
 PoseAngles angles_of(const Pose& pose);
 
-/// "heading 90.0 degrees (along x), nose 1.4 degrees down, right side 0.2 degrees up".
+/// The attitude in words: "heading 90.0 degrees (along x), nose 1.4 degrees down, right side 0.2
+/// degrees up".
 std::string attitude_text(const Pose& pose);
 
 }  // namespace clearway::tool

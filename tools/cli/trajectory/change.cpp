@@ -38,7 +38,7 @@ struct ChangeOptions {
   FileUnit model_unit = {};
   LengthOptions lengths;
   TrajectoryOptions trajectory;
-  std::string unit = "m";  ///< of lengths, for messages
+  std::string unit = "m";  ///< the symbol of the unit of lengths, for messages
   bool force = false;
   bool json = false;
 };
@@ -47,7 +47,7 @@ struct Change {
   std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Box& model,
                                   double max_motion, Progress& progress)>
       make;
-  const char* consequence;  ///< what it means for the output that poses may be missing
+  const char* consequence;  ///< what missing poses mean for the output
 };
 
 std::vector<Pose> resample(const std::vector<Pose>& poses, const Box& model, double max_motion,
@@ -71,7 +71,7 @@ std::vector<Pose> changed(const std::vector<Pose>& poses, const Box& model,
   }
 }
 
-/// A gap of the recording is not seen any more in what is written.
+/// Warns of gaps in the recording, which can no longer be seen in the output.
 void warn_of_jumps(const std::vector<Pose>& poses, const Box& model, const ChangeOptions& options,
                    const std::string& consequence) {
   std::vector<double> motions;
@@ -84,7 +84,7 @@ void warn_of_jumps(const std::vector<Pose>& poses, const Box& model, const Chang
                            consequence));
 }
 
-/// Lengths and files without a unit of their own are in that of the store.
+/// Takes the store's unit for lengths and for files without a unit of their own.
 void take_unit_of_environment(ChangeOptions& options) {
   if (options.environment.empty()) return;
   const Store store(options.environment);

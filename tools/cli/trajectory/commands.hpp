@@ -4,10 +4,10 @@ namespace CLI {
 class App;
 }
 
-/// The subcommands of `clearway trajectory`.
+/// The functions below add the subcommands of `clearway trajectory`.
 namespace clearway::tool {
 
-/// resample and thin.
+/// Adds resample and thin.
 void add_trajectory_changes(CLI::App& trajectory);
 void add_trajectory_follow(CLI::App& trajectory);
 void add_trajectory_info(CLI::App& trajectory);

@@ -12,13 +12,13 @@
 
 namespace clearway::tool {
 
-/// Cosine from which on an axis is said to point somewhere.
+/// The least cosine between an axis and a direction at which the axis is said to point there.
 inline constexpr double kClearAxis = 0.9;
 
 /// How far the model moves from pose to pose.
 struct StepMotion {
   double largest = 0;
-  std::optional<std::size_t> above_radius;  ///< steps, where a radius was given
+  std::optional<std::size_t> above_radius;  ///< number of steps longer than the radius, if given
 };
 
 /// All that `clearway trajectory info` prints.
@@ -30,11 +30,11 @@ struct Description {
   std::optional<StepMotion> motion;
 };
 
-/// "x", "-x", ...
+/// The name of an axis: "x", "-x" and so on.
 std::string axis_name(const BodyAxis& axis);
 
 nlohmann::ordered_json json_of(const Description& what);
-/// A line a fact.
+/// The description in words, with one fact on each line.
 std::string text_of(const Description& what);
 
 }  // namespace clearway::tool

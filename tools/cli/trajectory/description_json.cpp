@@ -19,7 +19,7 @@ ordered_json pose_json(const Pose& pose) {
           {"roll_degrees", angles.roll}};
 }
 
-/// A pose with its time and its name, where the file has them.
+/// A pose's number with its time and its name, where the file has them.
 ordered_json labelled_json(const TrajectoryFile& file, std::size_t pose) {
   ordered_json out = pose_json(file.poses[pose]);
   if (!file.times.empty()) out["time"] = file.times[pose];

@@ -67,7 +67,7 @@ std::vector<Pose> read_path(const FollowOptions& options) {
   return poses;
 }
 
-/// What went wrong on the path names its file.
+/// Does `work`; an InputError that it throws about the path is given the name of the path's file.
 template <typename Work>
 auto on_path(const FollowOptions& options, const Work& work) {
   try {
@@ -86,7 +86,7 @@ void refuse_nowhere(const FollowOptions& options, const FollowedPath& followed,
       options.input.string(), format_number(std::round(path.length() * 1e3) / 1e3)));
 }
 
-/// The first and last of each run of poses.
+/// The first and last pose of each run of consecutive poses.
 nlohmann::ordered_json ranges_of(const std::vector<std::uint64_t>& poses) {
   auto ranges = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < poses.size(); ++i) {

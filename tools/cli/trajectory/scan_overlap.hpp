@@ -8,13 +8,13 @@
 
 namespace clearway::tool {
 
-/// Where a path is, seen from the box of a scan.
+/// How a path lies with respect to the box of a scan.
 struct ScanOverlap {
-  double distance = 0;     ///< between the box of the positions and that of the scan, metres
-  std::size_t inside = 0;  ///< poses whose position is in the scan's box
+  double distance = 0;     ///< metres between the box of the positions and that of the scan
+  std::size_t inside = 0;  ///< number of poses in the scan's box
 };
 
-/// poses: at least one.
+/// Relates a path to a scan. poses: at least one. path: the box of their positions.
 ScanOverlap overlap_of(std::span<const Pose> poses, const Box& path, const Box& scan);
 
 }  // namespace clearway::tool

@@ -6,8 +6,8 @@
 
 namespace clearway::tool {
 
-/// Reads model or vehicle, and trajectory. Warnings of the inputs are told at once, and go into the
-/// report with those of the search.
+/// Reads the query of a run: model or vehicle, and trajectory. Warnings of the inputs are logged at
+/// once, and go into the report with those of the search.
 Query read_query(RunOptions& options, const Store& store, PoseLabels& labels);
 
 }  // namespace clearway::tool

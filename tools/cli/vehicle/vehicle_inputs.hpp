@@ -7,11 +7,11 @@
 
 namespace clearway::tool {
 
-/// `others`, and all files that the vehicle's file names, with itself.
+/// `others`, the vehicle's file, and all files that it names.
 std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& file,
                                                   std::vector<std::filesystem::path> others);
 
-/// Throws UsageError, before large inputs are read, for what the library would refuse after that.
+/// Throws UsageError for options that the library would refuse only after it has read large inputs.
 void check_vehicle_search(const SearchOptions& options);
 
 }  // namespace clearway::tool

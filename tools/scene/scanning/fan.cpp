@@ -16,7 +16,7 @@ struct Interval {
   bool empty() const { return !(low < high); }
 };
 
-/// The h for which |start + h * direction| < half.
+/// The interval of h in which |start + h * direction| < half.
 Interval within_slab(double start, double direction, double half) {
   if (std::abs(direction) < 1e-12) {
     return std::abs(start) < half ? Interval{-kFar, kFar} : Interval{0, 0};
@@ -45,8 +45,8 @@ Interval cut(const Prism& prism, const PathPoint& scanner, const SineCosine& azi
   return {std::max(a.low, b.low), std::min(a.high, b.high)};
 }
 
-/// Angle of a corner from straight down, 0 to 2 pi; straight down is 2 pi for the left half.
-/// Only good for choosing rays to test, with a margin: atan2 may differ between machines.
+/// The angle of a corner from straight down, 0 to 2 pi; straight down is 2 pi for the left half.
+/// Only good for choosing rays to test, with a margin, because atan2 may differ between machines.
 double corner_angle(double h, double w, bool left) {
   const double angle = std::atan2(h, -w);
   return angle < 0 || (left && angle == 0) ? angle + 2 * kPi : angle;
@@ -77,7 +77,7 @@ void Fan::aim(double begin, double end, std::size_t count, const Random& random,
   inverse_distance_.assign(count, 0);
   wall_.assign(count, -1);
   prism_.assign(count, nullptr);
-  constexpr double kLeast = 1e-9;  // keeps the inverses finite
+  constexpr double kLeast = 1e-9;  // keeps the inverses of directions finite
   for (std::size_t k = 0; k < count; ++k) {
     const double at = static_cast<double>(k) + random.unit(first_counter + k);
     const SineCosine angle = sine_cosine(begin + at * step_);

@@ -9,14 +9,15 @@
 
 namespace clearway::scene {
 
-/// What a prism shows in an upright plane through the scanner: a rectangle, from the scanner.
-/// Never around the scanner, and never across the line straight down from it.
+/// The rectangle in which an upright plane through the scanner cuts a prism, relative to the
+/// scanner. It never lies around the scanner, nor across the line straight down from it.
 struct Rectangle {
   double near_h, far_h, low_w, high_w;  ///< h along the plane's direction, near_h < far_h
   const Prism* prism;
 };
 
-/// The rectangles of all `prisms` that the plane through `scanner` in direction `azimuth` cuts.
+/// Finds the rectangles of all `prisms` that the plane through `scanner` in direction `azimuth`
+/// cuts.
 void cut_prisms(std::span<const Prism> prisms, const PathPoint& scanner, const SineCosine& azimuth,
                 std::vector<Rectangle>& out);
 
@@ -33,7 +34,7 @@ class Fan {
   std::size_t size() const { return ray_h_.size(); }
   double ray_h(std::size_t k) const { return ray_h_[k]; }  ///< unit direction
   double ray_w(std::size_t k) const { return ray_w_[k]; }
-  /// 0 where nothing was met.
+  /// The inverse of the distance at which ray k meets something; 0 where it meets nothing.
   double inverse_distance(std::size_t k) const { return inverse_distance_[k]; }
   const Wall* wall(std::size_t k) const { return wall_[k] < 0 ? nullptr : &room_->walls[wall_[k]]; }
   const Prism* prism(std::size_t k) const { return prism_[k]; }

@@ -7,8 +7,8 @@
 
 namespace clearway::scene {
 
-/// How a surface departs from its nominal shape: two scales of value noise (random numbers at the
-/// nodes of a lattice, blended trilinearly). All metres; amplitude 0: smooth.
+/// How a surface departs from its nominal shape, by two scales of value noise (random numbers at
+/// the nodes of a lattice, blended trilinearly). Everything is in metres; amplitude 0 is smooth.
 struct Roughness {
   double coarse_amplitude = 0;
   double coarse_size = 1;
@@ -18,13 +18,13 @@ struct Roughness {
   bool none() const { return coarse_amplitude == 0 && fine_amplitude == 0; }
 };
 
-/// Value noise in [-1, 1] at (x, y, z), lattice spacing 1.
+/// The value noise, in [-1, 1], at (x, y, z) with lattice spacing 1.
 inline double value_noise(std::uint64_t key, double x, double y, double z) {
   const double fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
   const auto ix = static_cast<std::int64_t>(fx), iy = static_cast<std::int64_t>(fy),
              iz = static_cast<std::int64_t>(fz);
   const auto node = [&](int dx, int dy) {
-    // One hash gives both nodes of an edge along z: its halves, of even and odd z.
+    // One hash gives both nodes of an edge along z: its halves are for even and odd z.
     const auto edge = [&](std::int64_t pair) {
       return Random::mix(key ^ (static_cast<std::uint64_t>(ix + dx) * 0x8da6b343ULL) ^
                          (static_cast<std::uint64_t>(iy + dy) * 0xd8163841ULL << 16) ^

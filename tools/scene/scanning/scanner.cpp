@@ -12,17 +12,17 @@ namespace {
 
 enum Stream : std::uint64_t { kJitter = 1, kRangeNoise = 2, kRoughness = 3 };
 
-/// Beyond where the nominal surfaces are, by what roughness and noise may add.
+/// Added to the bounds of the nominal surfaces for what roughness and noise may add, metres.
 constexpr double kBoundsMargin = 2;
 constexpr double kAnyDistance = 1e9;
 constexpr double kMetresToQuanta = 10000;
-constexpr double kDownAngle = 1.43;  // of the rays that replace those lost to the sky
+constexpr double kDownAngle = 1.43;  // radians, for rays that replace those lost to the sky
 
 std::int32_t quantum(double metres) {
   return static_cast<std::int32_t>(std::floor(metres * kMetresToQuanta + 0.5));
 }
 
-/// How far from the path a hit may be, sideways or in height.
+/// The farthest that a hit may be from the path, sideways or in height.
 double greatest_offset(const World& world, const ScanPlan& plan) {
   double out = plan.open_reach;
   for (const Room& room : world.rooms()) {

@@ -17,11 +17,11 @@ namespace clearway::scene {
 /// straight down (0) over the plane's direction (pi / 2) and straight up (pi) around to 2 pi.
 struct Sweep {
   PathPoint scanner;
-  SineCosine azimuth;  ///< of the plane's direction, from the path's direction to the left
+  SineCosine azimuth;  ///< the angle from the path's direction to the plane's, positive to the left
   double begin_angle, end_angle;
 };
 
-/// What the scanner does over time: sweeps of equally many rays, the last one cut short.
+/// A scanner's motion over time: sweeps of equally many rays, the last one cut short.
 struct ScanPlan {
   std::uint64_t points;
   std::uint64_t rays_a_sweep;
@@ -33,8 +33,8 @@ struct ScanPlan {
   std::uint64_t sweeps() const { return (points + rays_a_sweep - 1) / rays_a_sweep; }
 };
 
-/// Rays in a sweep, so that `points` rays in all lie `aspect` times as far apart between sweeps as
-/// within one (in steps of sweep and ray, at one ray and one sweep).
+/// The number of rays in a sweep for which `points` rays in all lie `aspect` times as far apart
+/// between sweeps as within one (in steps of sweep and ray, at one ray and one sweep).
 std::uint64_t rays_a_sweep(std::uint64_t points, double aspect);
 
 class Fan;

@@ -7,15 +7,15 @@
 namespace clearway::scene {
 namespace {
 
-constexpr double kRideHeight = 0.5;  // of the body's lowest parts above the floor
+constexpr double kRideHeight = 0.5;  // height of the body's lowest parts above the floor
 constexpr double kScannerHeight = 1.9;
-constexpr double kBlindHalfAngle = 0.3;  // below the scanner, where its platform is
-constexpr double kLeastAzimuth = 0.75;   // of the turning scan plane from the line's direction
+constexpr double kBlindHalfAngle = 0.3;  // radians from straight down, hidden by the platform
+constexpr double kLeastAzimuth = 0.75;   // between the turning scan plane and the line's direction
 constexpr double kRangeNoise = 0.002;
-constexpr double kLineEnds = 4;  // of the line, where the body does not go
-constexpr double kTurn = 0.83;   // of the scan plane, there and back, along the line
+constexpr double kLineEnds = 4;  // stretch at each end of the line where the body does not go
+constexpr double kTurn = 0.83;   // path along the line for a turn of the scan plane there and back
 
-/// The plane turns back and forth while the platform moves on.
+/// The plan of a scanner whose plane turns back and forth while its platform moves on.
 ScanPlan factory_plan(const FactoryDesign& design, const Path& path, std::uint64_t points) {
   ScanPlan plan{.points = points,
                 .rays_a_sweep = rays_a_sweep(points, design.density_aspect),
@@ -35,7 +35,7 @@ ScanPlan factory_plan(const FactoryDesign& design, const Path& path, std::uint64
   return plan;
 }
 
-/// The body rides on the conveyor and sways a little.
+/// A pose of the body, which rides on the conveyor and sways a little.
 Pose body_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
   const double s = along(kLineEnds, path.length() - kLineEnds, number, count);
   const double sway = 0.015 * sine_cosine(0.31 * s).sine + 0.01 * sine_cosine(0.83 * s + 1).sine;

@@ -8,14 +8,14 @@
 namespace clearway::scene {
 
 struct FactoryDesign {
-  std::vector<PathPiece> line;  ///< of the conveyor
-  double half_width;            ///< of the aisle between the walls; less than any bend's radius
-  double height;                ///< of the ceiling
+  std::vector<PathPiece> line;  ///< the path of the conveyor
+  double half_width;            ///< half the width of the aisle; less than any bend's radius
+  double height;                ///< height of the ceiling
   CarBodySize car;
-  double rail_width;       ///< of the conveyor's two rails
-  double fixture_spacing;  ///< between fixtures that reach close to the body, along the line
-  double guide_gap;        ///< at most, between guide rails of one side
-  double density_aspect;   ///< of rays_a_sweep
+  double rail_width;       ///< width of each of the conveyor's two rails
+  double fixture_spacing;  ///< along the line, between fixtures that reach close to the body
+  double guide_gap;        ///< greatest gap between guide rails on one side
+  double density_aspect;   ///< the aspect of rays_a_sweep
 };
 
 std::unique_ptr<const Scene> make_factory(Kind kind, const FactoryDesign& design,

@@ -56,7 +56,7 @@ void add_machine(World& world, const Spot& spot, Dice& dice) {
   world.add(box(spot.s + base.half_length + 0.3, spot.v, 0.12, 0.2, 0.9, 1.5));
 }
 
-/// Stands beside the line and holds an arm towards it.
+/// Adds a robot that stands beside the line and holds an arm towards it.
 void add_robot(World& world, const Spot& spot, Dice& dice) {
   world.add(pole(spot.s, spot.v, 0.35, 0, 0.5));
   world.add(pole(spot.s, spot.v, 0.2, 0.5, dice.between(1.4, 2.0)));
@@ -111,7 +111,7 @@ void add_clutter(World& world, const Spot& spot, Dice& dice) {
   }
 }
 
-/// Rows of clutter on both sides, the first just clear of the body.
+/// Adds rows of clutter on both sides, the first just clear of the body.
 void add_rows(World& world, const FactoryDesign& design, double length, Dice& dice) {
   for (const double side : {-1.0, 1.0}) {
     for (double row = 2.3; row < design.half_width - 1; row += 2.6) {
@@ -122,7 +122,8 @@ void add_rows(World& world, const FactoryDesign& design, double length, Dice& di
   }
 }
 
-/// Clamps, sensors and guides on posts beside the line: some touch the body, most just miss it.
+/// Adds clamps, sensors and guides on posts beside the line; some touch the body, most just miss
+/// it.
 void add_fixtures(World& world, const FactoryDesign& design, double length, Dice& dice) {
   const double half = design.car.width / 2;
   for (double s = 0; s < length; s += design.fixture_spacing * dice.between(0.6, 1.4)) {
@@ -134,7 +135,7 @@ void add_fixtures(World& world, const FactoryDesign& design, double length, Dice
   }
 }
 
-/// Rails at the height of the bumpers that guide the body on some stretches, within its reach.
+/// Adds rails at the height of the bumpers that guide the body on some stretches, within its reach.
 void add_guides(World& world, const FactoryDesign& design, double length, Dice& dice) {
   const double half = design.car.width / 2;
   for (const double side : {-1.0, 1.0}) {
@@ -168,7 +169,7 @@ void add_overhead(World& world, const FactoryDesign& design, double length, Dice
   }
 }
 
-/// Two rails that carry the body on skids, on a low bed with cross beams.
+/// Adds two rails that carry the body on skids, on a low bed with cross beams.
 void add_conveyor(World& world, const FactoryDesign& design, double length) {
   const double at = 0.25 * design.car.width, half = design.rail_width / 2;
   for (const double v : {-at, at}) world.add_everywhere(v - half, v + half, 0.34, 0.46);

@@ -4,7 +4,7 @@
 
 #include "scene/scene.hpp"
 
-/// One function for each kind of scene; scene.hpp's make_scene chooses.
+/// One function makes each kind of scene; make_scene of scene.hpp chooses.
 namespace clearway::scene {
 
 std::unique_ptr<const Scene> make_hall(const Sizes& sizes, std::uint64_t seed);
@@ -12,7 +12,7 @@ std::unique_ptr<const Scene> make_plant(const Sizes& sizes, std::uint64_t seed);
 std::unique_ptr<const Scene> make_mine(const Sizes& sizes, std::uint64_t seed);
 std::unique_ptr<const Scene> make_tunnel(const Sizes& sizes, std::uint64_t seed);
 
-/// Streams of random numbers; the scanner has 1 to 3.
+/// Streams of random numbers; the scanner has the streams 1 to 3.
 enum Stream : std::uint64_t { kModelStream = 10, kLayoutStream = 11, kShapeStream = 12 };
 
 /// The place of pose `number` of `count` on the way from begin to end, both reached.

@@ -11,10 +11,11 @@ namespace {
 
 constexpr int kStations = 44;
 constexpr double kScannerHeight = 1.5;
-constexpr double kLowestRay = 0.87, kHighestRay = 2.62;  // from straight down: 40 down, 60 up
-constexpr double kLeastAzimuth = 0.1;                    // from the gallery's direction
+// Radians from straight down: 40 degrees below the horizon to 60 above.
+constexpr double kLowestRay = 0.87, kHighestRay = 2.62;
+constexpr double kLeastAzimuth = 0.1;  // radians from the gallery's direction
 constexpr double kRangeNoise = 0.003;
-constexpr double kReach = 36;  // at the least azimuth
+constexpr double kReach = 36;  // metres along the gallery, at the least azimuth
 constexpr double kRideHeight = 0.08;
 constexpr Roughness kRock{0.55, 3.0, 0.1, 0.35};
 constexpr Roughness kFloor{0.08, 1.2, 0.02, 0.15};
@@ -40,14 +41,15 @@ Path gallery_loop(std::uint64_t seed) {
   return Path::closed_spline(control);
 }
 
-/// Flat floor, upright sides and an arched roof: 4.6 m wide, 4.3 m high.
+/// The cross-section of a gallery: flat floor, upright sides and an arched roof, 4.6 m wide and 4.3
+/// m high.
 Room gallery() {
   constexpr double kHalf = 2.3, kSpring = 2.2, kRise = 2.1;
   Room room{.begin_s = 0, .walls = {{0, -1, 0, kFloor}}};
   constexpr int kSides = 14;
   for (int i = 0; i <= kSides; ++i) {
     const SineCosine angle = sine_cosine(kPi * i / kSides);
-    // A tangent of the ellipse over the springing line.
+    // This wall is a tangent of the ellipse over the springing line.
     const double nv = angle.cosine, nw = angle.sine;
     const double support = std::sqrt(kHalf * kHalf * nv * nv + kRise * kRise * nw * nw);
     room.walls.push_back({nv, nw, support + nw * kSpring, kRock});
@@ -87,7 +89,7 @@ std::vector<double> place_stations(double length, std::uint64_t seed) {
   return out;
 }
 
-/// At each station the scanner turns once about the vertical, column by column.
+/// The plan of a scanner that turns once about the vertical at each station, column by column.
 ScanPlan station_plan(const std::vector<double>& stations, std::uint64_t points) {
   constexpr double kFan = kHighestRay - kLowestRay, kTurn = 2 * kPi - 4 * kLeastAzimuth;
   ScanPlan plan{.points = points,

@@ -4,7 +4,7 @@ namespace clearway::scene {
 
 std::unique_ptr<const Scene> make_plant(const Sizes& sizes, std::uint64_t seed) {
   constexpr double kBend = 1 / 16.0, kEase = 6;
-  constexpr double kTurn = 3.14159265358979 / kBend - kEase;  // with its easements half a circle
+  constexpr double kTurn = 3.14159265358979 / kBend - kEase;  // half a circle with its easements
   FactoryDesign design{.line = {{110, 0}},
                        .half_width = 13,
                        .height = 8,

@@ -12,11 +12,11 @@ namespace clearway::scene {
 namespace {
 
 constexpr double kOpenBefore = 160, kTunnel = 1150;
-constexpr double kOpenShare = 0.06;  // of the sweeps, on each open stretch
+constexpr double kOpenShare = 0.06;  // share of the sweeps on each open stretch
 constexpr double kScannerHeight = 3.6;
 constexpr double kRangeNoise = 0.004;
 constexpr double kOpenReach = 45;
-constexpr double kGround = -0.75;  // below the rails' tops, beside the ballast bed
+constexpr double kGround = -0.75;  // ground beside the ballast bed; the rails' tops are at 0
 constexpr double kHeapedShare = 0.8;
 constexpr double kHalfGauge = 0.75;
 constexpr Roughness kMasonry{0.03, 1.5, 0.015, 0.2};
@@ -46,7 +46,7 @@ Room open_room(double begin) {
   return {.begin_s = begin, .walls = {{0, -1, -kGround, kTerrain}}, .open = true};
 }
 
-/// Rails with head and foot, sleepers and ballast up to a little below their tops.
+/// Adds rails with head and foot, sleepers, and ballast up to a little below their tops.
 void add_track(World& world, double length, Dice& dice) {
   for (const double v : {-kHalfGauge, kHalfGauge}) {
     world.add_everywhere(v - 0.036, v + 0.036, -0.045, 0);
@@ -121,7 +121,8 @@ void add_open_fittings(World& world, double begin, double end, Dice& dice) {
   }
 }
 
-/// The train runs faster outside: few sweeps for the open stretches.
+/// Where the train is at a share of the time. It runs faster outside the tunnel, so that the open
+/// stretches get few sweeps.
 double train_position(double share, double length) {
   if (share < kOpenShare) return share / kOpenShare * kOpenBefore;
   if (share > 1 - kOpenShare) {
@@ -150,7 +151,8 @@ ScanPlan train_plan(const Path& path, std::uint64_t points) {
   return plan;
 }
 
-/// Both pivots on the track's centreline: the middle swings inwards in a curve, the ends outwards.
+/// A pose of the wagon with both pivots on the track's centreline, so that in a curve the middle
+/// swings inwards and the ends outwards.
 Pose wagon_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
   constexpr double kEnds = 14;
   const double front_s =
@@ -164,7 +166,8 @@ Pose wagon_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
   return pose_along(0.5 * (front + rear), front - rear, {});
 }
 
-/// As one scans a wagon by hand: densest at the height of one's chest, thin at the roof.
+/// The density of points on a wagon that is scanned by hand: densest at the height of the chest,
+/// thin at the roof.
 double scanned_density(const Vec3& p) {
   return p.z < 2.2 ? 1 : std::max(0.35, 1 - 0.5 * (p.z - 2.2));
 }

@@ -16,7 +16,7 @@ struct Wall {
   Roughness rough{};
 };
 
-/// The convex cross-section of the room from one arc length on. A ray may leave an open one, but
+/// The convex cross-section of the room from an arc length on. A ray may leave an open room, but
 /// not downwards.
 struct Room {
   double begin_s;
@@ -24,8 +24,8 @@ struct Room {
   bool open = false;
 };
 
-/// An upright solid beside the path: a box turned about the vertical or, when round, a cylinder.
-/// In path coordinates, so it bends with the path.
+/// An upright solid beside the path: a box turned about the vertical or, when round, a cylinder. It
+/// is given in path coordinates, so it bends with the path.
 struct Prism {
   double s, v;                     ///< centre
   double half_length, half_width;  ///< along and across; both the radius when round
@@ -41,9 +41,10 @@ class World {
   explicit World(std::vector<Room> rooms) : rooms_(std::move(rooms)) {}
 
   void add(const Prism& prism) { prisms_.push_back(prism); }
-  /// A box along the whole path.
+  /// Adds a box along the whole path.
   void add_everywhere(double left, double right, double bottom, double top, Roughness rough = {});
-  /// Sorts for prisms_near. Of a closed path the prisms near its seam are repeated on both sides.
+  /// Sorts the prisms for prisms_near. Those near the seam of a closed path are repeated on both
+  /// sides.
   void finish(const Path& path, double reach);
 
   std::span<const Room> rooms() const { return rooms_; }

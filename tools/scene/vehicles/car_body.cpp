@@ -26,7 +26,8 @@ struct Outline {
     return size.width / 2 * (1 - 0.14 * beyond * beyond);
   }
 
-  /// A superellipse of exponent 4 over the sills, drawn in above the belt line.
+  /// The section at a share of the length: a superellipse of exponent 4 over the sills, drawn in
+  /// above the belt line.
   std::vector<Vec3> section(double share) const {
     constexpr double kSill = 0.1;
     std::vector<Vec3> out;
@@ -62,7 +63,8 @@ struct Outline {
   }
 };
 
-/// The lower structure: frame rails (the lowest parts), sills, cross members, floor and bulkhead.
+/// Adds the lower structure: frame rails (the lowest parts), sills, cross members, floor and
+/// bulkhead.
 void add_floor(Mesh& mesh, const CarBodySize& size) {
   const double end = 0.47 * size.length, half = size.width / 2;
   for (const double side : {-1.0, 1.0}) {

@@ -3,7 +3,7 @@
 namespace clearway::scene {
 namespace {
 
-/// Slopes down towards the cutting edge and is open to the front.
+/// Adds the bucket, which slopes down towards the cutting edge and is open to the front.
 void add_bucket(Mesh& mesh) {
   const double back = 3.1, edge = 4.8, half = 1.3;
   mesh.add_quad({back, -half, 0.45}, {edge, -half, 0.2}, {edge, half, 0.2}, {back, half, 0.45});

@@ -17,12 +17,12 @@ class Mesh {
   using Triangle = std::array<Vec3, 3>;
 
   void add_quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-  /// The six faces of the box between two corners.
+  /// Adds the six faces of the box between two corners.
   void add_box(const Vec3& low, const Vec3& high);
-  /// A closed cylinder along y: wheels, axles.
+  /// Adds a closed cylinder along y, for wheels and axles.
   void add_wheel(const Vec3& centre, double radius, double width);
-  /// A skin through sections of equally many points; where `open` says so of a quad's middle it is
-  /// left out: windows, wheel arches.
+  /// Adds a skin through sections of equally many points. A quad is left out where `open` says so
+  /// of its middle, as for windows and wheel arches.
   void add_skin(const std::vector<std::vector<Vec3>>& sections,
                 const std::function<bool(const Vec3&)>& open);
 
@@ -32,9 +32,9 @@ class Mesh {
   std::vector<Triangle> triangles_;
 };
 
-/// Exactly `count` points on the mesh, in the order of its triangles, as dense everywhere but for
-/// the factor `density` (of a triangle's middle), each moved by `noise` (standard deviation) per
-/// axis.
+/// Samples exactly `count` points on the mesh, in the order of its triangles. They are equally
+/// dense everywhere except for the factor `density` (of a triangle's middle), and each is moved by
+/// `noise` (standard deviation) per axis.
 std::vector<Vec3> sample_mesh(const Mesh& mesh, std::uint64_t count, double noise,
                               const std::function<double(const Vec3&)>& density,
                               const Random& random);

@@ -2,7 +2,7 @@
 
 #include "scene/vehicles/mesh.hpp"
 
-/// The models: x forward, y left, z up, metres.
+/// The models of the scenes: x forward, y left, z up, metres.
 namespace clearway::scene {
 
 /// The bare body of a car, hollow, with its window, door and wheel openings, floor and cross
@@ -12,10 +12,12 @@ struct CarBodySize {
 };
 Mesh car_body(const CarBodySize& size);
 
-/// An underground front loader, 9.6 m with its bucket. Origin on the ground, amid its length.
+/// An underground front loader, 9.6 m long with its bucket. Its origin lies on the ground, amid its
+/// length.
 Mesh front_loader();
 
-/// A railway wagon over its bogies, 25 m. Origin amid its length, at the height of the rails' tops.
+/// The body of a railway wagon above its bogies, 25 m long. Its origin lies amid its length, at the
+/// height of the rails' tops.
 Mesh train_wagon();
 
 }  // namespace clearway::scene

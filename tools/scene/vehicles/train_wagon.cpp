@@ -22,7 +22,7 @@ std::vector<Vec3> section(double x) {
   return out;
 }
 
-/// Windows of 1.2 m every 1.8 m.
+/// Whether a window is there; windows of 1.2 m lie every 1.8 m.
 bool is_window(const Vec3& p) {
   const double along = p.x / 1.8 - std::floor(p.x / 1.8);
   return std::abs(p.x) < 9 && std::abs(p.y) > 1.1 && p.z > 2.0 && p.z < 2.9 && along < 0.66;

@@ -23,8 +23,8 @@ double brute_squared(const std::vector<Vec3>& model, const Vec3& x) {
   return least;
 }
 
-/// Lower bounds hold everywhere, and near the model they are tight. Returns the worst looseness of
-/// the distance within the band.
+/// Checks that lower bounds hold everywhere. Returns how far the worst of them, within the band, is
+/// below the distance.
 double check_field(const std::vector<Vec3>& model, double radius, double voxel) {
   const ModelTree tree(model);
   const ModelField field(tree, radius, {.voxel = voxel}, 1);

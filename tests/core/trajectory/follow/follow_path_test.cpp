@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Along a circle around `centre`, its x axis forward, every `step` metres.
+/// A path along a circle around `centre` with its x axis forward and a pose every `step` metres.
 std::vector<Pose> circle(double radius, double step, std::size_t count, const Vec3& centre,
                          double x_turned = 0) {
   std::vector<Pose> poses;
@@ -51,13 +51,14 @@ std::vector<std::string> codes(const std::vector<Pose>& poses, const BodyMount& 
   return out;
 }
 
-/// Positions at least so many poses from the ends, where the curve knows one side only.
+/// Poses at each end that are not compared, because the curve knows one side only there.
 constexpr std::size_t kEnds = 110;
 
 }  // namespace
 
 TEST_CASE("the middle of a chord of a circle is as far inside as the formula says") {
-  // Pivots between the samples, a circle of the tightest curves of railways and a wide one.
+  // The pivots lie between poses; the radii range from the tightest curves of railways to a wide
+  // one.
   const double radius = GENERATE(80.0, 150.0, 300.0, 4000.0);
   const std::size_t count = 1001;
   const auto poses = circle(radius, 0.1, count, {0, 0, 0});
@@ -131,7 +132,7 @@ TEST_CASE("a followed frame is a rotation whose up is the mean made perpendicula
       const double length = std::sqrt(dot(one, one));
       for (int axis = 0; axis < 3; ++axis) up[axis] += one[axis] / length;
     }
-    // What is left of it across the chord is along z, and nothing of it is along y.
+    // Up, without its part along the chord, is along z and not along y.
     CHECK(dot(up, z) > 0);
     CHECK(std::abs(dot(up, y)) < 1e-12);
   }
@@ -176,7 +177,7 @@ TEST_CASE("a path that turns back folds the body, and has no chord where the piv
   // At the turning point both pivots are at x = 16.
   CHECK(body.undefined == std::vector<std::uint64_t>{20});
   CHECK(body.folded == std::vector<std::uint64_t>{19, 21});
-  // Going back with the x axis ahead: the body's points the other way.
+  // Where the path goes back with the x axis ahead, the body points the other way.
   CHECK(body.turned.front() == 21);
   CHECK(body.turned.back() == 36);
   for (std::size_t k = 0; k < body.of.size(); ++k) {

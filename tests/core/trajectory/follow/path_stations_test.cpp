@@ -24,7 +24,7 @@ std::vector<double> distances_of(const std::vector<Pose>& poses) {
   return out;
 }
 
-/// Steps from a millimetre to ten metres, stops and turns on the spot.
+/// A random path with steps from a millimetre to ten metres, stops and turns on the spot.
 std::vector<Pose> random_walk(Random& random, std::size_t count) {
   std::vector<Pose> poses;
   Vec3 at{5e5, 4e6, 100};
@@ -40,16 +40,17 @@ std::vector<Pose> random_walk(Random& random, std::size_t count) {
   return poses;
 }
 
-/// The length of a fine polyline on the curve of resampling.
+/// The length of the curve of resampling by a fine polyline.
 double polyline(const PoseSpline& spline, std::size_t way, double to, int pieces) {
   const PoseCurve curve = spline.between(way);
   const PositionCurve positions = spline.positions(way);
   double length = 0;
-  // By the velocities at the middles: differences of positions so far from the origin would round.
+  // The velocities at the middles are summed, because differences of positions so far from the
+  // origin would round.
   for (int k = 0; k < pieces; ++k) {
     length += positions.velocity(to * (k + 0.5) / pieces).norm() * to / pieces;
   }
-  // They are those of the curve's positions.
+  // The velocities agree with the curve's positions.
   const double by_positions = distance(curve.at(0.4999), curve.at(0.5001));
   CHECK(positions.velocity(0.5).norm() * 2e-4 == Approx(by_positions).epsilon(1e-4).margin(4e-9));
   return length;

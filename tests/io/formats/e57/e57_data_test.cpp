@@ -1,4 +1,4 @@
-// Public E57 files. Expected values: what libE57Format reads of them, poses applied in numpy.
+// Public E57 files. The expected values are what libE57Format reads, with poses applied in numpy.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 ReadCloud read_sample(const char* name) { return read_all(data_folder() / "formats" / name); }
 
-/// h = 31 h + bits over all coordinates, modulo 2^64.
+/// A hash of positions: h = 31 h + bits over all coordinates, modulo 2^64.
 std::uint64_t hash_of(const std::vector<Vec3>& positions) {
   std::uint64_t hash = 0;
   for (const Vec3& p : positions) {

@@ -1,4 +1,4 @@
-// Every encoding of a number, in packets of every cut.
+// Every encoding of a number, in packets that are cut anywhere.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 using Integers = std::vector<std::int64_t>;
 constexpr auto kLeast = std::numeric_limits<std::int64_t>::min();
 
-/// Values from `minimum` on that use all `width` bits.
+/// Random values from `minimum` on that use all `width` bits.
 Integers values_of(unsigned width, std::int64_t minimum, std::size_t count) {
   std::mt19937_64 random(width);
   const std::uint64_t mask = width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
@@ -32,7 +32,7 @@ std::int64_t maximum_of(unsigned width, std::int64_t minimum) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(minimum) + mask);
 }
 
-/// Packets that hold from 0 to 12 bytes of each bytestream, as they come.
+/// Packets that hold a random number of bytes, 0 to 12, of each bytestream.
 std::vector<std::vector<std::size_t>> odd_packets(std::size_t fields, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<std::vector<std::size_t>> packets(60);
@@ -134,7 +134,7 @@ TEST_CASE("fields that tell no place are stepped over: extensions, texts, struct
                  "maximum=\"255\"/></a:s><a:e type=\"Structure\"/>",
                  8,
                  {1, 2}});
-  // Two texts, each with its length before it, doubled.
+  // A field of two texts; the byte before each is twice its length.
   fields.push_back({"<a:t type=\"String\"/>", 24, {0x626104, 0x646304}});
   const ReadCloud cloud = read(scratch, file);
   REQUIRE(cloud.positions.size() == 2);

@@ -11,7 +11,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Two small scans, posed, spherical too, in several packets.
+/// Two small scans: one with a pose, in several packets, and a spherical one.
 E57Bytes sample() {
   E57Bytes file;
   file.page = 128;
@@ -35,7 +35,7 @@ std::string refusal(const std::string& bytes) {
   return message;
 }
 
-/// The refusal of the file after `change`, its checksums right again.
+/// The message with which the file is refused after `change`, with right checksums.
 std::string refusal_after(const E57Bytes& file,
                           const std::function<void(E57Bytes::Content&)>& change) {
   E57Bytes::Content content = file.content();
@@ -96,7 +96,7 @@ TEST_CASE("an E57 file that is cut or goes on is refused") {
     CHECK_THAT(refusal(good.substr(0, size)), Contains("expected"));
   }
   CHECK_THAT(refusal(good + "x"), Contains("expected") && Contains("as its header says"));
-  // With a header that knows of the cut, whole pages alone.
+  // The header declares the cut file's size, and cuts are at whole pages.
   for (std::size_t size = 128; size < good.size(); size += 128) {
     std::string bytes = good.substr(0, size);
     E57Bytes::put<std::uint64_t>(bytes, 16, size);
@@ -140,14 +140,14 @@ TEST_CASE("a scan's count that lies is refused, in either direction") {
   }
   CHECK_THAT(with_count(one_scan(), "18446744073709551616"), Contains("recordCount"));
   CHECK_THAT(with_count(one_scan(), "-1"), Contains("recordCount"));
-  // One more record where the last byte has room for its bits.
+  // One more record is declared, and the last byte has room for its bits.
   E57Bytes narrow;
   narrow.scans.emplace_back();
   narrow.scans[0].fields = {E57Bytes::integer("cartesianX", 0, 3, {1, 2}),
                             E57Bytes::integer("cartesianY", 0, 3, {1, 2}),
                             E57Bytes::integer("cartesianZ", 0, 3, {1, 2})};
   CHECK_THAT(with_count(narrow, "1"), Contains("behind its last record"));
-  // Records without any byte, for ever.
+  // Records without any bytes, of which there could be any number.
   E57Bytes nothing;
   nothing.scans.emplace_back();
   for (const std::string axis : {"X", "Y", "Z"}) {
@@ -201,7 +201,7 @@ TEST_CASE("packets are walked in order, no offset of an index is followed") {
   CHECK(refusal_after(file, putting<std::uint64_t>(24, 80)).empty());
   CHECK(refusal_after(file, putting<std::uint64_t>(32 + 8, 80)).empty());
   CHECK_THAT(refusal_after(file, putting<std::uint8_t>(32, 3)), Contains("has kind 3"));
-  // Index 16 bytes, ignored 4 bytes, then the data packet.
+  // There are 16 bytes of index, 4 ignored bytes, and then the data packet.
   for (const int length : {0, 1, 4, 60, 67, 0xFFFF}) {
     CHECK_THAT(refusal_after(file, putting(32 + 20 + 2, static_cast<std::uint16_t>(length))),
                Contains("expected") && Contains("packet of scan 1"));
@@ -219,7 +219,7 @@ TEST_CASE("a packet that restarts within a record is refused, at a record's end 
   E57Bytes file = one_scan();
   const bool within = GENERATE(false, true);
   file.scans[0].packets = {{within ? 9U : 8U, 8, 8}};
-  // The second packet: 6 bytes, 3 lengths and the streams, filled up to words.
+  // The second packet has 6 bytes, 3 lengths and the streams, filled up to words.
   const std::size_t first = within ? 40 : 36;
   const std::string message = refusal_after(file, putting<std::uint8_t>(32 + first + 1, 1));
   CHECK(message.empty() != within);

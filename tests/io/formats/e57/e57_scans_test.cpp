@@ -1,4 +1,4 @@
-// Scans, poses, spherical coordinates, records without a point, and what is said of them.
+// Scans, poses, spherical coordinates, records without a point, and the remarks about them.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 struct ReadScans {
   std::vector<Vec3> positions;
-  std::vector<std::uint64_t> absent;  ///< counted in the file
+  std::vector<std::uint64_t> absent;  ///< places of the absent points, counted in the file
   CloudInfo info;
 };
 
@@ -154,7 +154,7 @@ TEST_CASE("absent records keep their numbers over batches and scans, reading aga
                Contains("2 scans; none has a pose") && Contains("140 of 140,000 records"));
     reader->rewind();
     PointBatch batch;
-    if (pass == 1) REQUIRE(reader->read(batch));  // and back from the middle
+    if (pass == 1) REQUIRE(reader->read(batch));  // then it is rewound from the middle
     reader->rewind();
   }
 }

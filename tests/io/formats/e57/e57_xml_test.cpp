@@ -22,7 +22,8 @@ std::string refusal(const E57Bytes& file) {
   return refusal_of(scratch.write("a.e57", file.build()));
 }
 
-/// The refusal of a file whose XML section is that of one_scan(), changed.
+/// The message with which a file is refused whose XML section is that of one_scan() with `what`
+/// replaced.
 std::string refusal_with(const std::string& what, const std::string& with) {
   E57Bytes::Content content = one_scan().content();
   const std::size_t at = content.bytes.find(what, content.xml);
@@ -33,7 +34,7 @@ std::string refusal_with(const std::string& what, const std::string& with) {
   return refusal_of(scratch.write("a.e57", E57Bytes::paged(content.bytes)));
 }
 
-/// The refusal of a file with this XML section.
+/// The message with which a file with this XML section is refused.
 std::string refusal_of_xml(const std::string& xml) {
   E57Bytes::Content content = one_scan().content();
   content.bytes.replace(content.xml, std::string::npos, xml);

@@ -1,4 +1,5 @@
-// A header that declares fewer points than there are: a writer that crashed, or wrote into a pipe.
+// Headers that declare fewer points than there are, as of a writer that crashed or wrote into a
+// pipe.
 #include <catch2/catch.hpp>
 
 #include "support/bytes/las_bytes.hpp"
@@ -18,7 +19,7 @@ std::string with_count(const LasBytes& las, std::uint32_t count) {
   return bytes;
 }
 
-/// One of every way in which LAS ends its points.
+/// A file for each way in which LAS ends its points.
 std::vector<LasBytes> samples() {
   std::vector<LasBytes> all(5);
   all[0].format = 3;

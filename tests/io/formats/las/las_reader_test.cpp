@@ -190,7 +190,7 @@ TEST_CASE("GeoTIFF units that cannot be taken as they are make trouble") {
   CHECK(trouble(9001, 9001).empty());
   CHECK(trouble(9001, 0).empty());
   CHECK(trouble(9003, 9003).empty());
-  CHECK(trouble(32632, 0).empty());  // as simple1_3.las of PDAL has it
+  CHECK(trouble(32632, 0).empty());  // as in simple1_3.las of PDAL
   CHECK(trouble(9036, 0) == "its unit is the GeoTIFF unit 9036");
   CHECK(trouble(9001, 9003) == "its heights are in us-survey-foot, its other coordinates in metre");
 }

@@ -166,7 +166,7 @@ TEST_CASE("a count beyond 32 bits is declared by LAS 1.4") {
   LasHeader header = header_of(0x100000000);
   const File file = test::nameless_file();
   LasWriter writer(file, header);
-  writer.write(Quanta(60000, {1, 2, 3}));  // more than the buffer: the header is out
+  writer.write(Quanta(60000, {1, 2, 3}));  // more than the buffer: the header is written
   const test::WrittenBytes bytes(file);
   CHECK(bytes.at<std::uint8_t>(25) == 4);
   CHECK(bytes.at<std::uint32_t>(107) == 0);

@@ -1,4 +1,4 @@
-// LAZ has no checksums. So a flipped byte may give other points; but reading ends, with as many
+// LAZ has no checksums, so a flipped byte may give other points; but reading ends, with as many
 // points as declared or with a refusal that names the file.
 #include <catch2/catch.hpp>
 
@@ -56,7 +56,7 @@ TEST_CASE("every byte of a LAZ file flipped: refused, or as many points as decla
 TEST_CASE("a LAZ file cut at any byte is refused, or has all its points") {
   const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
   LazBytes laz = laz_bytes(format, 30);
-  // Only without the place of a table before the points can some bytes at the end be missed.
+  // Some bytes may be missing at the end only where no place of a table stands before the points.
   std::size_t spare = 0;
   const std::size_t whole = laz.build().size();
   SECTION("a table") {}

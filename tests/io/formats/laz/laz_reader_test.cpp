@@ -1,5 +1,5 @@
-// LAZ made by an encoder of the tests. That the encoder writes what others do was shown by reading
-// files of LASzip and laz-perf (docs/design/laz.md).
+// LAZ made by an encoder of the tests. Reading files of LASzip and laz-perf showed that the encoder
+// writes what others do (docs/design/laz.md).
 #include <tbb/task_arena.h>
 
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Reads the file, the file again, and the bytes as a stream; all have to give the points.
+/// Reads the file, the file again, and the bytes as a stream; each must give the points.
 void check_reads(const LazBytes& laz) {
   ReaderScratch scratch;
   const auto path = scratch.write("a.laz", laz.build());

@@ -23,10 +23,10 @@ std::string refusal_with(const LazBytes& laz, std::size_t at, Number value) {
   return refusal_of_bytes(bytes);
 }
 
-/// Of the payload of the LAZ record, which is the last before the points.
+/// Where the payload of the LAZ record begins; that record is the last before the points.
 std::size_t scheme_of(const LazBytes& laz) { return laz.las.points_offset() + 54; }
 
-/// Where the chunk table is, as the bytes say.
+/// The place of the chunk table, as the file states it.
 std::uint64_t table_of(const LazBytes& laz) {
   std::uint64_t table = 0;
   std::memcpy(&table, laz.build().data() + laz.points_offset(), sizeof table);
@@ -121,7 +121,7 @@ TEST_CASE("a damaged chunk is named: the first of several") {
   LazBytes laz = laz_bytes(7, 40);
   std::string bytes = laz.build();
   const std::size_t first = laz.points_offset() + 8;
-  // A chunk's own count stands behind its first record.
+  // The count of a layered chunk stands behind its first record.
   const std::size_t count = first + laz.las.record_bytes();
   bytes[count] = 4;
   CHECK_THAT(refusal_of_bytes(bytes),

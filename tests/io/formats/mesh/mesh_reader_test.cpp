@@ -38,7 +38,7 @@ MeshFile read(const std::string& name, const std::string& bytes) {
   return read(scratch.write(name, bytes));
 }
 
-/// Whether triangles lie at the same places in the same order.
+/// Whether the triangles of two meshes lie at the same places in the same order.
 bool same_places(const TriangleMesh& a, const TriangleMesh& b) {
   if (a.triangles.size() != b.triangles.size()) return false;
   for (std::size_t i = 0; i < a.triangles.size(); ++i) {
@@ -213,7 +213,7 @@ TEST_CASE("edges and strips of PLY belong to the mesh, wherever its elements sta
   CHECK(ply(vertices + strips, points + "8 0 1 2 3 -1 3 1 0\n").mesh.triangles ==
         std::vector<Triple>{{0, 1, 2}, {2, 1, 3}, {3, 1, 0}});
   CHECK(ply(vertices + strips, points + "5 0 1 2 2 3\n").mesh.triangles ==
-        std::vector<Triple>{{0, 1, 2}});  // the other two lead on
+        std::vector<Triple>{{0, 1, 2}});  // the other two only continue the strip
   const std::string start = "ply\nformat ascii 1.0\n";
   CHECK_THAT(refusal("a.ply", start + faces + vertices + "end_header\n3 0 1 4\n" + points),
              Contains("line 10") && Contains("a face names vertex 4"));

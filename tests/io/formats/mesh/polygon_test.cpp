@@ -19,7 +19,7 @@ double area_of(const std::vector<Vec3>& corners, const CutPolygon& cut) {
   return area;
 }
 
-/// Whether a place lies in one of the triangles.
+/// Whether a place lies in one of the polygon's triangles.
 bool covers(const std::vector<Vec3>& corners, const CutPolygon& cut, const Vec3& place) {
   for (const auto& [a, b, c] : cut.triangles) {
     if (triangle_distance(place, corners[a], corners[b], corners[c]) < 1e-12) return true;
@@ -40,7 +40,7 @@ TEST_CASE("a convex polygon is cut as a fan") {
 }
 
 TEST_CASE("a polygon that is not convex keeps its notch, whatever corner comes first") {
-  // An L, in a tilted plane: z = x + y.
+  // The polygon is an L in the tilted plane z = x + y.
   const std::vector<Vec3> shape{{0, 0, 0}, {3, 0, 3}, {3, 1, 4}, {1, 1, 2}, {1, 3, 4}, {0, 3, 3}};
   for (std::size_t first = 0; first < shape.size(); ++first) {
     for (const bool turned : {false, true}) {

@@ -12,7 +12,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Text with runs, far matches and noise.
+/// A text with runs, far matches and noise.
 std::string some_text(std::size_t size) {
   std::mt19937 random(7);
   std::string text;

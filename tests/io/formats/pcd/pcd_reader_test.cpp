@@ -12,7 +12,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// As it is read, and read again after a rewind.
+/// Reads a file, and again after a rewind, and checks that both agree.
 ReadCloud read_twice(const std::string& bytes) {
   ReaderScratch scratch;
   const auto reader = open_point_file(scratch.write("a.pcd", bytes));
@@ -38,7 +38,8 @@ std::string refusal_of_header(const PcdHeaderText& header) {
   return refusal_of_pcd(header.build("ascii") + "1 2 3\n4 5 6\n");
 }
 
-/// x and z as float and double, a padding of two bytes, two numbers of another field, y as int16.
+/// A header with x and z as float and double, a padding of two bytes, two numbers of another field,
+/// and y as int16.
 PcdHeaderText mixed_fields() {
   PcdHeaderText header;
   header.fields = "z _ n y x";

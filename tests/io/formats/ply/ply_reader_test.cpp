@@ -36,7 +36,7 @@ std::string refusal_of_bytes(const std::string& bytes) {
 
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
 
-/// One vertex (1, 2, -3) whose coordinates have the type.
+/// A file of one vertex (1, 2, -3) whose coordinates have the type.
 template <typename Number>
 void check_type(const std::vector<std::string>& spellings) {
   ReaderScratch scratch;

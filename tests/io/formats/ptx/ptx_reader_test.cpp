@@ -14,7 +14,7 @@ namespace {
 const std::string kAxes = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
 const std::string kIdentity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
 
-/// A quarter turn about z, x to y, then moved by (10, 20, 30).
+/// The header's lines for a quarter turn about z, x to y, and then a move by (10, 20, 30).
 const std::string kTurned =
     "10 20 30\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n";
 

@@ -1,4 +1,4 @@
-// Text whose columns are named, chosen, or hold something else than points.
+// Text whose columns are named or chosen, or hold something other than points.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -41,7 +41,7 @@ Refusal refusal_of_text(const std::string& text, const Columns& columns = {}) {
   return {};
 }
 
-/// `lines` of printed numbers, line i by `line`.
+/// A text of `lines` lines, of which line(i) makes line i.
 template <typename Line>
 std::string table(int lines, Line line) {
   std::string text;
@@ -230,7 +230,7 @@ TEST_CASE("rows of scans in every usual layout pass") {
       [&](int) { return xyz() + " -1200 " + colour(); },
       [&](int) { return xyz() + " " + unit(); },
       [&](int) { return xyz() + " " + unit() + " 0"; },  // a normal and its curvature
-      [&](int) { return xyz() + " 0 " + unit(); },       // an intensity of 0 and a normal
+      [&](int) { return xyz() + " 0 " + unit(); },       // a normal behind an intensity of 0
       [&](int) { return xyz() + " 0 " + unit() + " 0"; },
       [&](int) { return xyz() + " 0 " + unit() + " 0.01"; },
       [&](int) { return xyz() + " " + colour() + " " + unit(); },
@@ -263,7 +263,7 @@ TEST_CASE("the caller chooses columns by numbers or by names") {
   CHECK(points_of("a,up,right\n1,3e2,-2.5\n4,6,5\n", {"A", "Right", "up"}) == kTwo);
   CHECK(points_of("# a up right\n1 3e2 -2.5\n4 6 5\n", {"a", "right", "up"}) == kTwo);
   CHECK(points_of("2\nP1,1,-2.5,3e2\nP2,4,5,6\n", {"2", "3", "4"}) == kTwo);
-  // What would be refused is read where the columns are chosen.
+  // A table that would be refused is read where its columns are chosen.
   CHECK(points_of(table(5, tum_line), {"2", "3", "4"}).size() == 5);
   CHECK(points_of("1 1 -2.5 3e2\n2 4 5 6\n3 0 0 0\n", {"2", "3", "4"}).size() == 3);
   CHECK(points_of("t,x,y,z,qx,qy,qz,qw\n1,1,-2.5,3e2,0,0,0,1\n2,4,5,6,0,0,0,1\n",

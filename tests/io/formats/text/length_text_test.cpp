@@ -1,4 +1,4 @@
-// Lengths that people write.
+// Lengths as people write them.
 #include "io/formats/text/length_text.hpp"
 
 #include <catch2/catch.hpp>

@@ -24,7 +24,7 @@ std::vector<std::string> lines_in_turn(const std::filesystem::path& path) {
   return lines;
 }
 
-/// Of the blocks; the last is "too long" where a line is.
+/// The lines of all blocks; the last one is "too long" where a line is.
 std::vector<std::string> lines_in_blocks(const std::filesystem::path& path) {
   const InputBuffer input = input_of(path);
   const LineBlocks blocks(input);
@@ -50,7 +50,7 @@ TEST_CASE("blocks have the lines of their text, each once") {
   constexpr std::size_t kBlock = LineBlocks::kBlockBytes, kLongest = InputBuffer::kLongestLine;
   const std::size_t most_of_line[] = {3, 100, kLongest};
   std::vector<std::string> texts{"", "a", "a\n", "\n", std::string(kBlock, '\n')};
-  // A line break right before, at and right behind the end of a block.
+  // The line break stands right before, at, and right behind the end of a block.
   for (std::size_t extra : {0, 1, 2}) {
     std::string text;
     while (text.size() + kLongest < kBlock) text += std::string(999, 'x') + "\r\n";

@@ -1,4 +1,4 @@
-// The lines that messages name: of points in every format of lines.
+// The lines that messages name for points, in every text format.
 #include <algorithm>
 #include <catch2/catch.hpp>
 

@@ -10,7 +10,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr std::size_t kPoints = 90'000;  // some 8 blocks of lines, more than a batch
+constexpr std::size_t kPoints = 90'000;  // some 8 blocks of lines, and more than a batch
 
 Vec3 point_of(std::size_t i) {
   const auto number = static_cast<double>(i);

@@ -64,7 +64,8 @@ TEST_CASE("a pose that is moved only") {
   check_near(placed(pose, {1, 0, 0}), {4, -1, 2});
 }
 
-// Of 3DTK's EulerToMatrix4 and transform3: about x, y goes to z; about y, z to x; about z, x to y.
+// Turns as in 3DTK's EulerToMatrix4 and transform3: about x, y goes to z; about y, z to x; about z,
+// x to y.
 TEST_CASE("a turn about each of 3DTK's axes") {
   const Vec3 right = from_threedtk(Vec3{100, 0, 0});
   const Vec3 up = from_threedtk(Vec3{0, 100, 0});
@@ -72,7 +73,8 @@ TEST_CASE("a turn about each of 3DTK's axes") {
   check_near(placed(pose_in("0 0 0 90 0 0"), up), forward);
   check_near(placed(pose_in("0 0 0 0 90 0"), forward), right);
   check_near(placed(pose_in("0 0 0 0 0 90"), right), up);
-  // x is turned last: z takes right to up, then x takes up to forward.
+  // The turn about x comes last: that about z takes right to up, then that about x takes up to
+  // forward.
   check_near(placed(pose_in("0 0 0 90 0 90"), right), forward);
 }
 

@@ -46,7 +46,7 @@ TEST_CASE("the last line of .frames counts more than .pose") {
   const auto cloud = read_all(path);
   CHECK(cloud.positions == std::vector<Vec3>{{5, 0, 0}});
   CHECK_THAT(cloud.info.remarks[0].text, Contains("the last line of scan007.frames"));
-  // Its neighbour may not be registered.
+  // The neighbouring scan has no .frames, so that it may not be registered.
   const auto other = scratch.write("scan008.3d", "0 0 0\n");
   scratch.write("scan008.pose", kMoved);
   CHECK(has(read_all(other), "scan-not-registered", Message::Severity::kWarning));

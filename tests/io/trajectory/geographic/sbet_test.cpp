@@ -37,7 +37,7 @@ Read read(const std::string& bytes, const TrajectoryOptions& options,
   return result;
 }
 
-/// The text of the InputError; fails for any other end.
+/// The message of the InputError with which the bytes are refused; fails for any other end.
 std::string refusal(const std::string& bytes, const TrajectoryOptions& options,
                     const std::string& name = "path.sbet") {
   try {
@@ -50,7 +50,7 @@ std::string refusal(const std::string& bytes, const TrajectoryOptions& options,
   return {};
 }
 
-/// UTM on WGS 84 by Krueger's series, to n^4: below a micrometre.
+/// UTM on WGS 84 by Krueger's series to n^4, which is exact to below a micrometre.
 struct Utm {
   double easting, northing;
 };
@@ -120,11 +120,11 @@ TEST_CASE("SBET: attitude by wander angle and meridian convergence") {
     const Rotation expected = navigation_rotation(record.roll, record.pitch, on_map);
     CHECK(greatest_difference(expected, found.poses.at(0).rotation) < 1e-7);
   }
-  // East of the middle meridian the map's north lies to the east of true north.
+  // East of the central meridian the map's north lies to the east of true north.
   CHECK(convergence(record.latitude, record.longitude, 32) > 0.02);
   record = {.latitude = 0.85, .longitude = 0.19, .heading = kPi / 2};
   const Pose pose = read(record.bytes(), {.crs = "EPSG:32632"}).poses.at(0);
-  CHECK(pose.rotation[3] > 0.02);  // so that the way to true east climbs on the map
+  CHECK(pose.rotation[3] > 0.02);  // so the way to true east climbs on the map
 }
 
 TEST_CASE("SBET: the CRS of the environment serves where none is named") {

@@ -61,7 +61,7 @@ TEST_CASE("a table with roll, pitch and heading, its unit in the header") {
 }
 
 TEST_CASE("each angle turns the way that its convention says") {
-  // Right wing down, nose up, clockwise from north.
+  // Angles are positive for right wing down, nose up, and clockwise from north.
   const std::string head = "x,y,z,roll_deg,pitch_deg,heading_deg\n";
   const Pose rolled = poses_of(head + "0,0,0,10,0,0\n").at(0);
   CHECK(rolled.rotation[7] > 0.1);                                   // y, which is left, goes up
@@ -125,7 +125,7 @@ TEST_CASE("headers that make no pose say why") {
 TEST_CASE("latitude and longitude in a table") {
   const TrajectoryOptions utm32{.crs = "EPSG:32632"};
   const std::string head = "lat,lon,height,roll_deg,pitch_deg,heading_deg\n";
-  // On the middle meridian, where the map's north is true north; from Krueger's series.
+  // On the central meridian the map's north is true north; values from Krueger's series.
   const auto check = [](const std::vector<Pose>& poses) {
     REQUIRE(poses.size() == 1);
     CHECK(std::abs(poses[0].translation[0] - 500000) < 1e-6);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kPoses = 30'000;  // some 4 blocks of lines or more
 
-/// A row-major matrix without a rotation.
+/// Line i of a trajectory: a row-major matrix without a rotation.
 std::string row_of(std::size_t i) {
   const std::string n = std::to_string(i);
   return "1 0 0 " + n + ".25 0 1 0 -" + n + ".5 0 0 1 " + n + "e-3";
@@ -108,7 +108,7 @@ TEST_CASE("a line in the middle of a long trajectory is refused by its number") 
              Contains("line 25002: ") && Contains("expected numbers only"));
   CHECK_THAT(refusal_of_text(rows(0, 25'000) + rows(0, 1, " 0 0 0 1\n") + rows(0, 5'000)),
              Contains("line 25001: 16 numbers; expected 12 as in the first line"));
-  // The first of several.
+  // The first of several faulty lines is named.
   CHECK_THAT(refusal_of_text(rows(0, 10'000) + "1 2\n" + rows(0, 9'000) + "nan\n"),
              Contains("line 10001: 2 numbers"));
   CHECK_THAT(refusal_of_text(rows(0, 25'000) + std::string(70'000, '1') + "\n"),

@@ -10,18 +10,19 @@
 namespace clearway::test {
 
 /// Builds LAZ files of point formats 0 to 3 and 6 to 8, as LasBytes does LAS, with an encoder of
-/// its own. What another attribute's layer holds is not compressed: the reader passes over it.
+/// its own. The layers of other attributes hold bytes that are not compressed, because the reader
+/// passes over them.
 struct LazBytes {
   enum class Table { kAtPoints, kAtEnd, kNone };
 
-  LasBytes las;  ///< all but the points
+  LasBytes las;  ///< everything but the points
   std::vector<LazPoint> points;
-  std::vector<std::uint32_t> chunks{5, 5, 5};  ///< points of each but the last
-  bool variable = false;  ///< the table has them; otherwise the first is the size of all
-  bool chunked = true;    ///< formats 0 to 3: false is compressor 1
+  std::vector<std::uint32_t> chunks{5, 5, 5};  ///< number of points of each chunk but the last
+  bool variable = false;  ///< whether chunks differ in size; if not, the first gives it
+  bool chunked = true;    ///< false, for formats 0 to 3, is compressor 1
   Table table = Table::kAtPoints;
 
-  /// Everything before the points, which are to be so many.
+  /// Everything before the points. count: number of points for the header.
   std::string head(std::uint64_t count) const {
     LasBytes start = las;
     start.points.clear();
@@ -45,7 +46,7 @@ struct LazBytes {
     for (const auto& record : las.evlrs) LasBytes::append(bytes, record, 60);
     return bytes;
   }
-  /// Of the first byte of the points: the place of the chunk table where there are chunks.
+  /// Where the points begin; the place of the chunk table stands there where there are chunks.
   std::uint32_t points_offset() const {
     return las.points_offset() + 54 + static_cast<std::uint32_t>(scheme().size());
   }

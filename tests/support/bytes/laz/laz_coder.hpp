@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// The coder of LAZ, as short as it can be and without the reader's code.
+/// The coder of LAZ, written as briefly as possible and without the reader's code.
 namespace clearway::test {
 
 struct SymbolCoder {
@@ -75,7 +75,7 @@ class ArithmeticEncoder {
     }
     narrow(value * (length_ >> count), length_ >> count);
   }
-  /// All bytes: as many as the decoder takes.
+  /// The encoded bytes, exactly as many as the decoder takes.
   std::string finish() {
     const bool one_more = length_ > 1u << 25;
     narrow(one_more ? 1u << 24 : 1u << 23, one_more ? 1u << 23 : 1u << 15);
@@ -101,7 +101,7 @@ class ArithmeticEncoder {
   std::uint32_t base_ = 0, length_ = 0xFFFFFFFF;
 };
 
-/// Integers of `bits` bits by their difference from a prediction.
+/// Encodes integers of `bits` bits by their difference from a prediction.
 struct IntegerCoder {
   unsigned bits, width = 0;
   std::vector<SymbolCoder> widths, places;
@@ -130,7 +130,7 @@ struct IntegerCoder {
   }
 };
 
-/// The median by which differences are predicted, kept as the last five of an order.
+/// The running median by which LAZ predicts differences: the middle of five values in order.
 struct MedianCoder {
   std::vector<std::int32_t> values = std::vector<std::int32_t>(5, 0);
   bool high = true;

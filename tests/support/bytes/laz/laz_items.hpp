@@ -13,8 +13,8 @@ namespace clearway::test {
 /// A point with the fields of formats 0 to 3 and 6 to 8.
 struct LazPoint {
   std::array<std::int32_t, 3> position{};
-  unsigned returns = 1, number = 1;  ///< of returns; this one's
-  unsigned channel = 0;              ///< of the scanner; formats 6 to 8
+  unsigned returns = 1, number = 1;  ///< the pulse's number of returns, and which of them this is
+  unsigned channel = 0;              ///< the scanner channel; formats 6 to 8
   std::uint16_t intensity = 0, source = 0;
   std::uint8_t classification = 0, user_data = 0;
   std::int8_t angle = 0;
@@ -22,7 +22,8 @@ struct LazPoint {
   std::array<std::uint16_t, 4> colour{};
 };
 
-/// x, y and z as all formats have them. last: the last point of the same scanner channel.
+/// Encodes x, y and z in the way that all formats share. last: the last point of the same scanner
+/// channel.
 struct PositionCoder {
   IntegerCoder dx{32, 2}, dy{32, 22}, z{32, 20};
   std::array<MedianCoder, 16> medians_x, medians_y;
@@ -48,7 +49,7 @@ struct PositionCoder {
   }
 };
 
-/// A coder for each value of a byte.
+/// The coders of a byte, one for each value that the byte had before.
 using CodersByValue = std::map<unsigned, SymbolCoder>;
 
 inline void encode_byte(ArithmeticEncoder& out, CodersByValue& coders, unsigned last,
@@ -56,7 +57,7 @@ inline void encode_byte(ArithmeticEncoder& out, CodersByValue& coders, unsigned 
   out.symbol(coders.try_emplace(last, 256u).first->second, value);
 }
 
-/// POINT10, version 2. Only returns of a pulse of up to three, whose contexts are simple.
+/// Encodes POINT10, version 2. Pulses have at most three returns, whose contexts are simple.
 class Point10Coder {
  public:
   void encode(ArithmeticEncoder& out, const LazPoint& last, const LazPoint& point) {
@@ -94,7 +95,7 @@ class Point10Coder {
   PositionCoder position_;
 };
 
-/// GPSTIME11, version 2: no change, the same difference as before plus a little, or a jump.
+/// Encodes GPSTIME11, version 2: no change, the same difference as before plus a little, or a jump.
 class GpsTimeCoder {
  public:
   void encode(ArithmeticEncoder& out, const LazPoint& last, const LazPoint& point) {
@@ -122,7 +123,8 @@ class GpsTimeCoder {
   std::int64_t difference_ = 0;
 };
 
-/// RGB12, version 2, without the values that follow from red: the reader does not need them.
+/// Encodes RGB12, version 2, without the values that follow from red, which the reader does not
+/// need.
 class ColourCoder {
  public:
   void encode(ArithmeticEncoder& out, const LazPoint& last, const LazPoint& point) {
@@ -144,7 +146,8 @@ class ColourCoder {
   std::vector<SymbolCoder> bytes_ = std::vector<SymbolCoder>(6, SymbolCoder(256));
 };
 
-/// The layers of POINT14 that hold coordinates and classes. Only returns of a pulse of up to two.
+/// Encodes the layers of POINT14 that hold coordinates and classes. Pulses have at most two
+/// returns.
 class Point14Coder {
  public:
   explicit Point14Coder(const LazPoint& first) : current_(first.channel) { start(current_, first); }
@@ -185,7 +188,7 @@ class Point14Coder {
   }
 
   ArithmeticEncoder plane, height, classes;
-  bool classes_change = false;  ///< otherwise their layer is left out
+  bool classes_change = false;  ///< if no class differs from the last, their layer is left out
 
  private:
   struct Channel {

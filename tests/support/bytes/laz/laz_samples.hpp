@@ -35,7 +35,7 @@ inline std::vector<LazPoint> laz_points(std::size_t count, bool formats_6_to_8, 
   return points;
 }
 
-/// A file of a point format with extra bytes where the format is odd.
+/// A file of a point format, with extra bytes where the format is odd.
 inline LazBytes laz_bytes(unsigned format, std::size_t count) {
   LazBytes laz;
   laz.las.format = format;

@@ -42,7 +42,7 @@ bool is_installed(const char* program) {
   return std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) == 0;
 }
 
-/// What a program of another project says of a file; empty where the program is not installed.
+/// The output of another project's program about a file; empty where the program is not installed.
 std::string said_by(const std::string& program, const std::string& arguments, const Work& work) {
   if (!is_installed(program.c_str())) {
     WARN(program << " is not installed: not tested");
@@ -176,7 +176,7 @@ TEST_CASE("BCF follows its schemas") {
       run_program_at(CHECK_BCF, work.folder, work.path("c.bcf") + " " + work.path("none.bcfzip"));
   INFO(checked.err);
   CHECK(checked.exit_code == 0);
-  // Without any conflict that is listed, the small groups have topics.
+  // Where no conflict is listed, the small groups become topics.
   CHECK_THAT(checked.out, !Contains("none.bcfzip: 0 topics") && !Contains("c.bcf: 0 topics"));
 }
 
@@ -248,7 +248,7 @@ TEST_CASE("model-above leaves out the lowest part of the model, and says how muc
   REQUIRE(work.run("run" + model + "-1e3").exit_code == 0);
   CHECK(info()["model_points"] == 300);
   check_refused(work.run("run" + model + "1000"), 3, "all 300 points of the model are below");
-  // The same points as from a file that has only them.
+  // The result is the same as with a file that holds only those points.
   REQUIRE(work.run("model " + (work.hall / "model.ply") + " --above 0.5 -o " + work.path("top.ply"))
               .exit_code == 0);
   REQUIRE(work.run("run --env " + (work.hall / "site.h5") + " --model " + work.path("top.ply") +
@@ -299,7 +299,8 @@ TEST_CASE("compare --conflicts tells new, gone and the same, and exits with 1 on
 
 namespace {
 
-/// A car of four points that drives 20 m along x at 0.5 m, and scans for it.
+/// A car of four points that drives 20 m along x at a height of 0.5 m, and scans of its
+/// surroundings.
 struct Street : Work {
   Street() {
     std::string path_text, model_text;
@@ -319,7 +320,7 @@ struct Street : Work {
     return "1 0 0 " + std::to_string(0.25 * i) + " 0 1 0 0 0 0 1 0\n";
   }
 
-  /// A post of 200 points with its face at y, and more lines.
+  /// Writes a scan of a post of 200 points with its face at y, and `more` lines.
   void scan(const std::string& name, double y, const std::string& more = "", int seed = 0) const {
     std::string text;
     for (int i = 0; i < 200; ++i) {
@@ -416,7 +417,7 @@ TEST_CASE("compare --conflicts finds a rescan the same, and a new cable") {
   CHECK_THAT(cable.out, Contains("new groups that are too small to be listed: 1"));
   CHECK(json::parse(street.compare("before", "cable", "--json").out)["new_small"][0]["points"] ==
         3);
-  // The same cable in both, though there is another elsewhere.
+  // A cable that both scans have is not new, but one at another place is.
   CHECK(street.compare("cable", "cable").exit_code == 0);
   street.scan("moved", 0.55, "7 0.55 0.5\n7 0.56 0.5\n7 0.57 0.5\n");
   street.search("moved", "moved", "--clearance 0.2");

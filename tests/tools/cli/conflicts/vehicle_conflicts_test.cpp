@@ -12,7 +12,7 @@ using nlohmann::json;
 namespace {
 
 /// A truck on a path along x, and a crane 10 m to its left that looks backwards. Ten points stand
-/// 0.3 m to the right of each, where the crane's right is the path's left.
+/// 0.3 m to the right of each of them; the crane's right is the path's left.
 struct Yard {
   Yard() {
     std::string scan, box, path, crane;

@@ -1,4 +1,5 @@
-// A flipped byte of a store or a result: named by verify, never a wrong answer with exit code 0.
+// A flipped byte of a store or a result is named by verify, and never gives a wrong answer with
+// exit code 0.
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -10,9 +11,9 @@ using Catch::Contains;
 
 namespace {
 
-/// Bytes tried, spread over the whole file.
+/// The number of bytes that are tried, spread over the whole file.
 #ifdef CLEARWAY_SANITIZED
-constexpr std::size_t kTries = 100;  // each takes several times as long
+constexpr std::size_t kTries = 100;  // with sanitizers each takes several times as long
 #else
 constexpr std::size_t kTries = 300;
 #endif

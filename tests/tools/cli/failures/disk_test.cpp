@@ -1,5 +1,5 @@
 // Disks that are really full or read-only: exit code 4, the file named, nothing that looks
-// finished, and what was done is gone on with once there is room.
+// finished, and finished work is used once there is room.
 #include <catch2/catch.hpp>
 
 #include "io/journal/journal.hpp"
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kPage = 4096;
 constexpr std::uint64_t kRoom = 64 << 20;
 
-/// Whether disks can be made here; says so where not.
+/// Whether disks can be made here; prints where not.
 bool disks_can_be_made() {
   if (may_mount()) return true;
   WARN("not tested: this user may not mount file systems here");
@@ -39,7 +39,7 @@ const Hall& hall_of_small_cells() {
 
 struct Place {
   Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
-  /// A run in the hall, of which every cell leaves some bytes in the journal.
+  /// The command line of a run in the hall in which every cell leaves some bytes in the journal.
   std::string search(const std::string& engine, const fs::path& output) const {
     return "run --env " + hall / "small_cells.h5" + " --model " + hall / "model.ply" +
            " --trajectory " + hall / "trajectory.txt" +

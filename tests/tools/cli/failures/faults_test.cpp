@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of inputs, from the hall, and of what commands make of them.
+/// A folder of inputs from the hall, and of outputs of commands.
 struct Site {
   Site() {
     fs::create_directory(folder / "files");
@@ -36,8 +36,8 @@ struct Site {
            path("trajectory.txt") + " --radius 0.1 --threads 2";
   }
 
-  /// Runs with calls going wrong (faulty_calls.cpp); `went_wrong` tells whether one did.
-  /// except: a file that nothing happens to, for kind "shrink".
+  /// Runs the program while calls go wrong (faulty_calls.cpp); `went_wrong` tells whether one did.
+  /// except: a file whose calls go right, for kind "shrink".
   Outcome run(const std::string& arguments, const char* kind, int call, bool& went_wrong,
               const std::string& except = "") const {
     const auto mark = folder / "mark";
@@ -60,7 +60,7 @@ struct Site {
 
 struct Command {
   std::string name, arguments, output;
-  bool reads_again = false;  ///< a result, where something was amiss: that may go well
+  bool reads_again = false;  ///< reads a result again after an error, so that it may succeed
 };
 
 std::vector<Command> commands(const Site& site) {
@@ -82,14 +82,14 @@ std::vector<Command> commands(const Site& site) {
       {"export csv", "export " + site.path("made.h5") + to("out.csv"), "out.csv", true}};
 }
 
-/// A scan as text, so that readers of lines are among the commands.
+/// Writes a scan as text, so that readers of lines are among the commands.
 void write_text(const Site& site) {
   std::string text;
   for (int i = 0; i < 4000; ++i) text += std::to_string(i % 50) + " " + std::to_string(i) + " 1\n";
   put_bytes(site.file("scan.xyz"), text);
 }
 
-/// The journal of a run that stopped may stay.
+/// The number of files in a folder without journals, because that of a stopped run may stay.
 std::size_t files_in(const fs::path& folder) {
   return static_cast<std::size_t>(std::count_if(
       fs::directory_iterator(folder), {},
@@ -123,7 +123,7 @@ TEST_CASE("every call that fails in turn ends with exit code 4 and without an ou
       REQUIRE(outcome.exit_code == 4);
       CHECK_THAT(outcome.err, Contains((site.folder / "files").string()));
       CHECK(outcome.out.empty());
-      // A failing fsync of the folder is told although the output has its name already.
+      // A failed fsync of the folder is reported although the output already has its name.
       fs::remove(site.file(command.output));
       CHECK(files_in(site.folder / "files") == files);
     }
@@ -163,13 +163,13 @@ TEST_CASE("an input that shrinks while it is read is noticed") {
       const Outcome outcome = site.run(command.arguments, "shrink", call, went_wrong,
                                        site.file(command.output).string());
       INFO(command.name << ", call " << call << ": " << outcome.err);
-      const bool finished = outcome.exit_code == 0;  // what was cut off had been read before
+      const bool finished = outcome.exit_code == 0;  // what was cut off was read before
       CHECK(fs::exists(site.file(command.output)) == finished);
       if (finished) {
         CHECK((bytes_of(site.file(command.output)) == expected));
         fs::remove(site.file(command.output));
       } else {
-        // 3: HDF5 no longer finds its metadata.
+        // Exit code 3 occurs where HDF5 no longer finds its metadata.
         CHECK((outcome.exit_code == 4 || outcome.exit_code == 3));
         CHECK_THAT(outcome.err, Contains((site.folder / "files").string()));
       }

@@ -31,7 +31,7 @@ const char* setting(const char* name) {
 
 bool is_kind(const char* kind) { return std::strcmp(setting("FAULT_KIND"), kind) == 0; }
 
-/// Of calls that cannot do less than asked.
+/// Whether calls go wrong that cannot do less than asked.
 bool may_fail() { return is_kind("fail") || is_kind("interrupt"); }
 
 bool is_ours(const std::string& path) {
@@ -66,7 +66,8 @@ bool goes_wrong() {
   return true;
 }
 
-/// What becomes of reading or writing `count` bytes: done by `call`, of as many as it is given.
+/// Reads or writes `count` bytes by `call`, which is given how many; goes wrong in the way that is
+/// set.
 template <typename Call>
 ssize_t transfer(int descriptor, std::size_t count, int error, Call call) {
   const std::string path = path_of(descriptor);

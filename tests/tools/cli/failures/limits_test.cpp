@@ -1,4 +1,4 @@
-// What docs/guide/command-line.md, "Limits", says of sizes and names.
+// The sizes and names that docs/guide/command-line.md promises under "Limits".
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +17,7 @@ namespace {
 struct Place {
   Outcome run(const std::string& arguments) const { return run_program(folder, arguments); }
   std::string path(const std::string& name) const { return quoted(folder / name); }
-  /// A run of a model of one point at its origin; its report.
+  /// Runs a search with a model of one point at its origin and returns the report.
   json search(const std::string& environment, const std::string& trajectory,
               const std::string& options, const std::string& output) const {
     put_bytes(folder / "model.xyz", "0 0 0\n");
@@ -87,7 +87,8 @@ TEST_CASE("more than 2^16 cells, and more than 10^6 poses") {
   write_las(place.folder / "a.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
   REQUIRE(place.run("convert " + place.path("a.las") + " --cell-points 64 -o " + place.path("a.h5"))
               .exit_code == 0);
-  // Along the first row and back, millimetre by millimetre; the last pose at the last point.
+  // The path goes along the first row and back, millimetre by millimetre; its last pose is at the
+  // last point.
   std::string path;
   for (std::size_t i = 0; i + 1 < kPoses; ++i) {
     path += "1 0 0 " + std::to_string(static_cast<double>(i) * 0.001) + " 0 1 0 0 0 0 1 0\n";
@@ -102,7 +103,7 @@ TEST_CASE("more than 2^16 cells, and more than 10^6 poses") {
   REQUIRE(rows.size() == 1102);
   CHECK(rows.source.back() == kPoints - 1);
   CHECK(rows.first_pose.back() == kPoses - 1);
-  CHECK(rows.first_pose[1000] == 999'990);  // 1 cm before it
+  CHECK(rows.first_pose[1000] == 999'990);  // 1 cm before the last pose
 }
 
 TEST_CASE("sources above 2^32 come back from a result and its exports") {
@@ -127,12 +128,13 @@ TEST_CASE("sources above 2^32 come back from a result and its exports") {
   CHECK(same.exit_code == 0);
 }
 
-/// A store of one cell: points along x, metre by metre, whose sources begin at `first_source`.
+/// Writes a store of one cell: points along x, metre by metre, whose sources begin at
+/// `first_source`.
 void write_line(const std::filesystem::path& path, std::uint32_t points,
                 std::uint64_t first_source) {
   StoreMetadata metadata{};
   metadata.point_count = points;
-  metadata.input_points = first_source + points;  // the others are not finite
+  metadata.input_points = first_source + points;  // the points before are counted as not finite
   metadata.cell_points = 64;
   metadata.quantisation = {{1, 1, 1}, {0, 0, 0}};
   metadata.layout = "adaptive";

@@ -1,5 +1,5 @@
-// What a process of the program is started with: its standard descriptors, its limits, and files
-// that are not what their names say.
+// What a process of the program may find at its start: standard descriptors, limits, and files that
+// are not what their names say.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -28,7 +28,8 @@ struct Hall {
     return "run --env " + path(store) + " --model " + path("model.ply") + " --trajectory " +
            path("trajectory.txt") + " --radius 0.1 ";
   }
-  /// Exit code of the program in a shell that sets its surroundings: "{}" stands for the program.
+  /// The exit code of the program in a shell that sets its surroundings; "{}" stands for the
+  /// program.
   int shell(std::string command) const {
     command.replace(command.find("{}"), 2, std::string("'") + CLEARWAY_PROGRAM + "'");
     const int status =
@@ -111,7 +112,7 @@ TEST_CASE("a file with another name in the place of a temporary file or journal 
   }
 }
 
-#ifndef CLEARWAY_SANITIZED  // a sanitizer needs more address space than that
+#ifndef CLEARWAY_SANITIZED  // a sanitizer needs more address space
 TEST_CASE("more threads than there may be are refused") {
   const Hall hall;
   for (const char* engine : {"kdtree", "sweep"}) {

@@ -114,7 +114,7 @@ TEST_CASE("options of the journal that make no sense are refused") {
 
 namespace {
 
-/// The same journal, of a run with another value.
+/// Rewrites a journal as that of a run with another value of one field of its identity.
 void replace_value(const std::filesystem::path& journal, const std::string& name,
                    const std::string& value) {
   std::filesystem::rename(journal, journal.string() + ".before");

@@ -1,4 +1,4 @@
-// --resume and --force of the program, after signals too.
+// --resume and --force of the program, also after signals.
 #include <signal.h>
 
 #include <catch2/catch.hpp>
@@ -45,7 +45,7 @@ TEST_CASE("a second signal ends a run at once") {
   const Work work;
   Process process(work.command(""), work.folder / "log.txt");
   work.wait_for_records(process, 20);
-  process.send(SIGSTOP);  // both are there when it goes on
+  process.send(SIGSTOP);  // both signals are pending when it continues
   process.send(SIGTERM);
   process.send(SIGINT);
   process.send(SIGCONT);
@@ -116,7 +116,7 @@ TEST_CASE("a resumed run leaves a result alone that answers its query, and no ot
     CHECK(kept[same] == found[same]);
   }
   CHECK(kept["engine"].is_null());
-  put_bytes(work.journal, "CLWYJ");  // nothing in it yet
+  put_bytes(work.journal, "CLWYJ");  // a journal with nothing in it yet
   CHECK(work.run("--resume").exit_code == 0);
   CHECK(work.files() == Names{"out.h5"});
   CHECK(kept["cells_read"] == 0);
@@ -158,7 +158,8 @@ TEST_CASE("an existing result stays until a resumed run replaces it, and only wh
   put_bytes(work.output, "of somebody else");
   check_refused(work.run("--resume"), 2, "exists already, and is no complete result");
   CHECK(bytes_of(work.output) == "of somebody else");
-  put_bytes(work.output, done);  // as if killed between the result's name and its journal's end
+  // As if killed after the result got its name and before its journal was removed.
+  put_bytes(work.output, done);
   const Outcome outcome = work.run("--resume");
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.err, Contains("is the finished result of this query already"));

@@ -20,7 +20,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// A folder for outputs alone.
+/// A folder with a folder for outputs alone.
 struct Place {
   Names files() const {
     Names names;
@@ -36,7 +36,8 @@ struct Place {
       (std::filesystem::create_directory(folder / "out"), folder / "out" / "out.h5");
 };
 
-/// Asks the command to stop, later and later, until it was while it worked; it leaves nothing then.
+/// Asks the command to stop, later each time, until that happens while it works, and checks that it
+/// leaves nothing then.
 void check_stopped(const Place& place, const std::string& command) {
   bool stopped = false;
   for (int delay = 20; delay < 2000 && !stopped; delay += 20) {
@@ -44,7 +45,7 @@ void check_stopped(const Place& place, const std::string& command) {
     std::this_thread::sleep_for(std::chrono::milliseconds(delay));
     process.send(SIGTERM);
     const int code = process.wait();
-    if (code == -SIGTERM) continue;  // before it could listen
+    if (code == -SIGTERM) continue;  // the signal came before the handlers were installed
     stopped = code == 5;
     REQUIRE((stopped || code == 0));
     if (stopped) {
@@ -99,7 +100,7 @@ TEST_CASE("an export that is asked to stop, or killed, leaves nothing that looks
         REQUIRE(code == -SIGKILL);
         stopped = !files.empty();
         if (stopped) CHECK(files == Names{"out.h5.csv.partial"});
-      } else if (code != -signal) {  // it could listen already
+      } else if (code != -signal) {  // the handlers were installed already
         REQUIRE(code == 5);
         stopped = true;
         CHECK(files.empty());
@@ -121,7 +122,7 @@ TEST_CASE("what does not come to an end is given up within 5 seconds") {
   Process process("convert - -o " + quoted(place.output) + " <" + quoted(pipe),
                   place.folder / "log.txt");
   while (place.files().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the handlers are in place
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // until the handlers are installed
   const auto begin = steady_clock::now();
   process.send(SIGTERM);
   CHECK(process.wait() == 5);

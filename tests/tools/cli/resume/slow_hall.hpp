@@ -18,7 +18,7 @@
 
 namespace clearway::test {
 
-/// A hall that engine grid searches for a second, made once.
+/// A hall that the grid engine searches for a second; made once.
 class SlowHall {
  public:
   static const SlowHall& get() {
@@ -43,7 +43,7 @@ class SlowHall {
   ScratchFolder folder_;
 };
 
-/// A run in that hall, its output and its journal.
+/// A run in the slow hall, with its output and its journal.
 struct Work {
   std::string command(const std::string& options, const std::string& radius = "0.1",
                       const std::string& engine = "grid") const {
@@ -56,7 +56,7 @@ struct Work {
               const std::string& engine = "grid") const {
     return run_program(folder, command(options, radius, engine));
   }
-  /// A run with a file of these bytes instead of one of the hall's.
+  /// Runs with a file of these bytes in place of one of the hall's.
   Outcome run_with(const std::string& name, const std::string& bytes) const {
     put_bytes(folder / "other.txt", bytes);
     std::string changed = command("--resume");
@@ -64,7 +64,7 @@ struct Work {
     changed.replace(changed.find(before), before.size(), quoted(folder / "other.txt"));
     return run_program(folder, changed);
   }
-  /// Starts a run and lets it finish a few cells.
+  /// Starts a run, lets it finish a few cells and sends it a signal.
   void start_and(int signal, const std::string& options = "") const {
     Process process(command(options), folder / "log.txt");
     wait_for_records(process, 20);

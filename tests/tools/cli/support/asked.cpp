@@ -30,7 +30,8 @@ const Scene& Scene::hall() {
 
 namespace {
 
-/// Those points of a scan for which `change` gives a place, there, as a store in `to`.
+/// Writes a store in `to` of those points of a scan for which `change` gives a place, at that
+/// place.
 std::string store_of(const std::filesystem::path& scan, const ScratchFolder& to,
                      const std::function<std::optional<Vec3>(const Vec3&)>& change) {
   const auto reader = open_point_file(scan);

@@ -10,19 +10,19 @@
 
 namespace clearway::test {
 
-/// A scene dense enough that nothing is to be warned of, and its store.
+/// A scene that is dense enough to cause no warnings, and its store.
 class Scene {
  public:
   Scene(const std::string& kind, const std::string& sizes);
-  /// Made once for all tests of this program.
+  /// The hall, made once for all tests of this program.
   static const Scene& hall();
 
   std::string store() const { return quoted(folder / "site.h5"); }
-  /// The points of the scan for which `keep` holds, as a store in `to`.
+  /// A store in `to` of the points of the scan for which `keep` holds.
   std::string changed_store(const ScratchFolder& to,
                             const std::function<bool(const Vec3&)>& keep) const;
 
-  /// All points of the scan where `move` puts them, as a store in `to`.
+  /// A store in `to` of all points of the scan at the places where `move` puts them.
   std::string moved_store(const ScratchFolder& to,
                           const std::function<Vec3(const Vec3&)>& move) const;
 
@@ -31,7 +31,8 @@ class Scene {
   std::vector<Pose> poses;
 };
 
-/// The hall's question, to be spoilt. With --strict the program refuses to search.
+/// The question of the hall, which tests spoil. It is asked with --strict, so that the program
+/// refuses to search where it warns.
 struct Asked {
   std::vector<Vec3> model = Scene::hall().model;
   std::vector<Pose> poses = Scene::hall().poses;
@@ -46,7 +47,7 @@ struct Asked {
   Outcome ask() const { return ask(Scene::hall().store()); }
 };
 
-/// The codes of the refusal of a strict call: "strict: 2 warnings (a, b), expected none".
+/// The codes in the refusal of a strict call, such as "strict: 2 warnings (a, b), expected none".
 std::string codes_of(const Outcome& outcome);
 
 }  // namespace clearway::test

@@ -10,9 +10,10 @@ namespace clearway::test {
 /// A hall and its store, made once for all tests of this program.
 class Hall {
  public:
-  /// 30,000 points, a model of 300, 150 poses.
+  /// A hall of 30,000 points with a model of 300 points and 150 poses.
   static const Hall& get();
-  /// 12,000 points, a model of 200, 100 poses: for brute force, or for hundreds of runs.
+  /// A hall of 12,000 points with a model of 200 points and 100 poses, for brute force or for
+  /// hundreds of runs.
   static const Hall& small();
 
   std::string operator/(const std::string& name) const { return quoted(folder_ / name); }
@@ -27,7 +28,7 @@ class Hall {
 /// A folder for what a test writes.
 struct Work {
   Outcome run(const std::string& arguments, const std::filesystem::path& pipe = {}) const;
-  /// The result of a run in the hall, as `output` here.
+  /// Runs a search in the hall, whose result is `output` in this folder.
   Outcome run_hall(const std::string& environment, const std::string& output,
                    const std::string& options = "") const;
   std::string path(const std::string& name) const { return quoted(folder / name); }

@@ -7,7 +7,7 @@
 
 namespace clearway::test {
 
-/// A process of the built program, its output in a file.
+/// A process of the built program that writes its output to a file.
 class Process {
  public:
   Process(const std::string& arguments, std::filesystem::path log);
@@ -17,7 +17,7 @@ class Process {
 
   void send(int signal) const;
   bool running();
-  /// Exit code, or minus the signal that killed it.
+  /// Waits for the end; the exit code, or minus the signal that killed the process.
   int wait();
   std::string log() const;
 

@@ -10,7 +10,8 @@ namespace clearway::test {
 Outcome run_program_at(const std::string& program, const ScratchFolder& folder,
                        const std::string& arguments, const std::filesystem::path& pipe) {
   const auto out = folder / "stdout.txt", err = folder / "stderr.txt";
-  // A file that the shell would cut to nothing goes to the disk when it is closed.
+  // The file is removed, because one that the shell cuts to nothing goes to the disk when it is
+  // closed.
   std::filesystem::remove(out);
   std::filesystem::remove(err);
   const std::string before = pipe.empty() ? "" : "cat '" + pipe.string() + "' | ";

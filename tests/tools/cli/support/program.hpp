@@ -12,12 +12,12 @@ struct Outcome {
   std::string out, err;
 };
 
-/// Runs a program with `arguments` (shell words), its output into files of `folder`; `pipe`, where
-/// given, is a file whose bytes come through a pipe to standard input.
+/// Runs a program with `arguments` (shell words); its output goes into files of `folder`. pipe: if
+/// given, a file whose bytes come through a pipe to standard input.
 Outcome run_program_at(const std::string& program, const ScratchFolder& folder,
                        const std::string& arguments, const std::filesystem::path& pipe = {});
 
-/// The built program clearway.
+/// Runs the built program clearway as run_program_at does.
 Outcome run_program(const ScratchFolder& folder, const std::string& arguments,
                     const std::filesystem::path& pipe = {});
 

@@ -9,11 +9,11 @@
 
 namespace clearway::test {
 
-/// Lets this process mount file systems, which only it and its children see, and which go with it.
-/// False where the system does not permit that. Before there are threads.
+/// Lets this process mount file systems, which only it and its children see and which end with it.
+/// False where the system does not permit that. To be called before there are threads.
 bool may_mount();
 
-/// A file system in memory with room for a few bytes. Only where may_mount().
+/// A file system in memory with room for a few bytes. Only where may_mount() allows it.
 class SmallDisk {
  public:
   explicit SmallDisk(std::uint64_t bytes);

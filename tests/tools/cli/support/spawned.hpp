@@ -6,8 +6,8 @@
 
 namespace clearway::test {
 
-/// Runs the built program without a shell; gives the most memory it had at a time, in bytes. Throws
-/// where it fails.
+/// Runs the built program without a shell and returns its peak memory in bytes. Throws where the
+/// program fails.
 std::uint64_t peak_memory_of(std::vector<std::string> arguments);
 
 }  // namespace clearway::test
