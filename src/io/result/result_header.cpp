@@ -137,7 +137,8 @@ std::vector<std::string> read_lines(const hdf5::Id& file, const std::string& nam
   return texts;
 }
 
-/// Reads how a part was computed that is not exact: device and step of the field or grid.
+/// Reads how a part was computed that is not exact: the device and the steps of model field and
+/// grid.
 void read_means(const hdf5::Id& file, const std::string& name, const ResultHeader& header,
                 ResultPart& part) {
   if (header.is_exact()) return;

@@ -48,7 +48,7 @@ inline constexpr const char* kShard = "shard";  // only in parts, together with 
 inline constexpr const char* kDivision = "division";
 inline constexpr const char* kStore = "store";
 inline constexpr const char* kLengthUnit = "length_unit";
-// only in parts that are not exact, with one of the next two
+// only in parts that are not exact, as are the next two
 inline constexpr const char* kDevice = "device";
 inline constexpr const char* kFieldVoxel = "field_voxel";
 inline constexpr const char* kGridCell = "grid_cell";
