@@ -11,7 +11,7 @@
 namespace clearway::laz {
 namespace {
 
-/// An item of either version, or none.
+/// An item of version 1 or 2, or none.
 template <typename Version1, typename Version2>
 class Item {
  public:
@@ -34,7 +34,7 @@ class Item {
   std::optional<Version2> second_;
 };
 
-/// Everything behind POINT10.
+/// All items behind POINT10.
 class OtherItems {
  public:
   explicit OtherItems(const Scheme& scheme)

@@ -8,11 +8,11 @@
 #include "io/formats/input_buffer.hpp"
 #include "io/trajectory/pose_input.hpp"
 
-/// 3DTK's frame and Clearway's. 3DTK is left-handed, in centimetres: x right, y up, z forward. Its
-/// readers take right-handed metres with x forward, y left and z up for
-///   x3 = -100 y, y3 = 100 z, z3 = 100 x
-/// (3DTK, src/scanio/helper.cc, ScanDataTransform_xyz; globals.icc, toRieglMat). Scans and poses of
-/// 3DTK's own formats come back by the inverse of that, docs/design/scan-formats.md.
+/// Conversion between 3DTK's frame and Clearway's. 3DTK is left-handed, in centimetres: x right, y
+/// up, z forward. Its readers convert right-handed metres with x forward, y left and z up by x3 =
+/// -100 y, y3 = 100 z, z3 = 100 x (3DTK, src/scanio/helper.cc, ScanDataTransform_xyz; globals.icc,
+/// toRieglMat). Scans and poses of 3DTK's own formats are converted by the inverse, see
+/// docs/design/scan-formats.md.
 namespace clearway {
 
 /// 4 x 4, column by column as 3DTK keeps and prints it: p' = M p, centimetres, left-handed.
@@ -20,7 +20,7 @@ using ThreedtkMatrix = std::array<double, 16>;
 
 /// The point in right-handed metres.
 Vec3 from_threedtk(const Vec3& point);
-/// The same motion as a right-handed row-major 3 x 4 matrix in metres.
+/// The motion of a ThreedtkMatrix as a right-handed row-major 3 x 4 matrix in metres.
 std::array<double, 12> from_threedtk(const ThreedtkMatrix& matrix);
 
 /// Makes the matrix of a pose. position: centimetres. angles: degrees about x, y and z, in the
