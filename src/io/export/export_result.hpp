@@ -20,10 +20,10 @@ namespace clearway {
 void export_result(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
                    Progress& progress);
 
-/// Writes the clearances of `result` likewise, with distance (double, metres) and pose (uint32) in
-/// the place of first_pose; .xyz has "x y z distance pose". The result must have clearances: if
-/// not, UsageError. One of version 2 has no coordinates of them, and gives a .csv without them
-/// only.
+/// Writes the clearances of `result` to `output` in the formats of export_result(), with distance
+/// (double, metres) and pose (uint32) in the place of first_pose; a line of .xyz is "x y z distance
+/// pose". Throws UsageError for a result without clearances. A result of version 2 has no
+/// coordinates of clearances and can only be written as .csv, without them.
 void export_clearances(const ResultReader& result, const std::filesystem::path& output,
                        bool overwrite, Progress& progress);
 
