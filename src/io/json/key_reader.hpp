@@ -19,7 +19,7 @@ class KeyReader {
   const std::string& key() const { return key_; }
   const nlohmann::ordered_json& value() const { return *value_; }
 
-  /// Throws where the value is an object with keys that are not among `known`.
+  /// Throws unless the value is an object whose keys are all among `known`.
   void allow(const std::vector<std::string>& known) const;
   bool has(const std::string& name) const { return value().is_object() && value().contains(name); }
   /// The member of an object. Throws where the object lacks it.

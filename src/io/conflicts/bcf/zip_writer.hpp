@@ -14,12 +14,12 @@ namespace clearway {
 /// Source: PKWARE, APPNOTE.TXT 6.3.10.
 class ZipWriter {
  public:
-  /// The file stays the caller's.
+  /// The caller owns the file.
   explicit ZipWriter(const File& file) : file_(file) {}
 
-  /// Compressed where that makes it smaller. name: ASCII.
+  /// Adds a member, compressed where that makes it smaller. name: ASCII.
   void add(const std::string& name, std::string_view bytes);
-  /// After every member.
+  /// Writes the directory. Called after the last member.
   void finish();
 
  private:
