@@ -95,7 +95,7 @@ Lattice lattice_for(const ConversionOptions& options, const Quantisation& quanti
 /// The amount of data that a conversion writes, in points.
 struct DiskNeed {
   std::uint64_t points = 0;
-  /// points including the padding of cells that are not full, which packs to less
+  /// Points including the padding of cells that are not full, which packs to less.
   std::uint64_t padded = 0;
   std::uint64_t spooled = 0;  ///< points that are written into temporary files
 };
@@ -211,7 +211,7 @@ class Conversion {
                         .classes = counted.classes};
     if (environment.files().size() > 1) {
       report_.metadata.source_points = environment.points_of_files();
-      // files of poses have 0 points
+      // Files of poses have 0 points.
       report_.metadata.source_points.resize(report_.metadata.sources.size());
     }
     report_.absent_points = environment.absent_points();
@@ -225,7 +225,7 @@ class Conversion {
 
   /// Bytes of memory for units, besides the index of cells; at least one unit.
   std::uint64_t bytes_for_units() const {
-    // the index of classes
+    // The index of classes.
     const std::uint64_t of_cell = kCellBytes + (report_.metadata.classes ? 20 : 0);
     const std::uint64_t others = kBaseBytes + report_.cells * of_cell;
     const std::uint64_t least = others + of_unit();

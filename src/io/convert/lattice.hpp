@@ -15,9 +15,9 @@ using LatticePoint = std::array<std::uint64_t, 4>;
 /// straddle a cube's face.
 class Lattice {
  public:
-  /// side of the finest bin of the counting grid
+  /// Side of the finest bin of the counting grid.
   static constexpr std::uint64_t kLeastCubeQuanta = 16;
-  /// lattice coordinate of q = 0 in the adaptive layout
+  /// Lattice coordinate of q = 0 in the adaptive layout.
   static constexpr std::uint64_t kZero = std::uint64_t{1} << 31;
 
   /// The lattice of the adaptive layout, without cubes.

@@ -128,7 +128,7 @@ const char* plural_of(LengthUnit unit) { return of(unit).plural; }
 double metres_of(LengthUnit unit) { return of(unit).metres; }
 
 bool is_foot(double metres) {
-  // relative tolerance that covers all feet from Clarke's to the US survey foot
+  // Relative tolerance that covers all feet from Clarke's to the US survey foot.
   constexpr double kOfCountries = 2e-5;
   return std::abs(metres - kMetresPerFoot) < kOfCountries * kMetresPerFoot;
 }

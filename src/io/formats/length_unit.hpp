@@ -20,7 +20,7 @@ struct NamedUnit {
   std::string_view symbol;                  ///< name in options, for example "us-ft"
   std::span<const std::string_view> names;  ///< other names, lower case
   std::uint32_t numerator, denominator;     ///< the unit in metres, as a fraction
-  /// unit of an environment given in it; kUnknown where no scan is read in this unit
+  /// Unit of an environment given in it; kUnknown where no scan is read in this unit.
   LengthUnit environment;
   bool of_files;          ///< whether models and trajectories are read in this unit
   bool any_foot = false;  ///< see FileUnit

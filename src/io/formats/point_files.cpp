@@ -64,7 +64,7 @@ std::string counted(std::size_t count, const std::string& noun) {
 /// the scans; those of other scans would place them elsewhere. Returns the latter. Both kinds are
 /// removed from `others`.
 std::vector<fs::path> take_poses(Folder& folder) {
-  // by name without ending: whether the scan is read with its pose
+  // By name without ending: whether the scan is read with its pose.
   std::map<std::string, bool> placed;
   for (const fs::path& scan : folder.scans) {
     placed[scan.stem().native()] |= format_of_name(scan) == PointFormat::k3dtk;

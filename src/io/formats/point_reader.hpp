@@ -25,7 +25,7 @@ struct CloudInfo {
   /// Box of all points, where the format declares one. It is compared with the points and never
   /// trusted.
   std::optional<Box> declared_box;
-  /// coordinate reference system as found in the file; empty where there is none
+  /// Coordinate reference system as found in the file; empty where there is none.
   std::string crs_wkt;
   /// EPSG code in a file that names its CRS by a code alone; otherwise 0
   std::uint16_t crs_epsg = 0;
@@ -34,10 +34,10 @@ struct CloudInfo {
   std::string unit_trouble;  ///< why coordinates cannot be used as they are; empty where they can
   std::string unit_doubt;    ///< what contradicts the unit; empty where nothing does
   std::uint64_t faces = 0;   ///< number of faces in a mesh; they are not read
-  /// see Query::model_spacing; known where `clearway model` wrote the file
+  /// See Query::model_spacing; known where `clearway model` wrote the file.
   double model_spacing = 0;
   bool text_table = false;  ///< whether the file is a text table, whose columns can be chosen
-  /// remarks on the whole file; complete once read() has returned false
+  /// Remarks on the whole file; complete once read() has returned false.
   std::vector<Message> remarks;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr hsize_t kChunkBytes = 1 << 18;  // most bytes of a chunk
 
-// filter mask of a chunk, whose bits are the filters that were left out
+// Filter mask of a chunk, whose bits are the filters that were left out.
 constexpr std::uint32_t kAllFilters = 0;
 
 /// Properties of a dataset that is chunked with fletcher32; an empty dataset has no chunks.

@@ -21,7 +21,7 @@ inline constexpr std::uint64_t kMostPayloadBytes = 0xffffffff;
 struct RecordHeader {
   std::uint32_t mark;
   std::uint32_t payload_bytes;
-  /// bytes of the file that were known to be on the disk when this was written
+  /// Bytes of the file that were known to be on the disk when this was written.
   std::uint64_t synced_bytes;
   std::uint64_t payload_xxh64;
   std::uint64_t header_xxh64;  ///< hash of the record's position and the 24 bytes before

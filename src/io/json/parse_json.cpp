@@ -65,7 +65,7 @@ class ValueBuilder : public nlohmann::json_sax<ordered_json> {
 
   bool parse_error(std::size_t, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    // the message repeats the token, which may be a long string
+    // The message repeats the token, which may be a long string.
     constexpr std::size_t kMostBytes = 300;
     std::string what = error.what();  // "[json.exception...] parse error at line 3, column 5: ..."
     const std::size_t begin = what.find("] ");

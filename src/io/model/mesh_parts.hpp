@@ -30,7 +30,7 @@ struct MeshParts {
   /// have the same corners in the same orientation.
   TriangleMesh mesh;
   std::vector<std::uint32_t> solid_of;  ///< the solid of each triangle, or kNoSolid
-  /// number of solids, which are numbered in the order of their first triangles
+  /// Number of solids, which are numbered in the order of their first triangles.
   std::uint32_t solids = 0;
   std::uint64_t surface_parts = 0;  ///< number of parts that are not solids
   std::uint64_t surface_triangles = 0;

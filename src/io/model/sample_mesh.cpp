@@ -13,7 +13,7 @@
 namespace clearway {
 namespace {
 
-// greatest coordinate in spacings, which the proof requires
+// Greatest coordinate in spacings, which the proof requires.
 constexpr double kMostSpacings = 0x1p28;
 
 /// The positions of the vertices that triangles use, each once, in the order of the vertices.

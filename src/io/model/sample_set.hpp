@@ -62,7 +62,7 @@ class SampleSet {
   double reach_;
   std::vector<Vec3> points_;
   std::vector<std::uint32_t> next_;  // next point of the same slot
-  // first point of each slot; the number of slots is a power of two
+  // First point of each slot; the number of slots is a power of two.
   std::vector<std::uint32_t> heads_;
 };
 

@@ -10,7 +10,7 @@ namespace {
 // Shares of the spacing, which the proof adds up.
 constexpr double kMargin = 0x1p-16;  // reserve for all rounding
 constexpr double kFlat = 0x1p-17;    // a triangle of less height is treated as its longest side
-// distance by which the sides are moved outwards before clipping
+// Distance by which the sides are moved outwards before clipping.
 constexpr double kClipMargin = 0x1p-18;
 constexpr int kSplits = 5;  // splits of a region to find whether several samples cover it
 

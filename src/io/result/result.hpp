@@ -57,7 +57,7 @@ struct ModelSpacing {
 /// (docs/design/result-format.md), so that `cmp` compares runs.
 struct ResultHeader : QueryParameters {
   std::uint64_t environment_points = 0;
-  /// hash of the source points, the same for every file format and layout
+  /// Hash of the source points, the same for every file format and layout.
   std::uint64_t environment_hash = 0;
   std::uint64_t model_points = 0;
   std::uint64_t model_hash = 0;
@@ -75,13 +75,13 @@ struct ResultHeader : QueryParameters {
   /// Number of triangles of a mesh, whose corners are the model's points; for several bodies, of
   /// all of them. 0 where the model is points.
   std::uint64_t model_triangles = 0;
-  /// parts of the model that have an inside; where there are any, distances may be below 0
+  /// Parts of the model that have an inside; where there are any, distances may be below 0.
   std::uint64_t model_solids = 0;
-  /// for ignore_classes and ignore_boxes, in the order of sort_ignored()
+  /// For ignore_classes and ignore_boxes, in the order of sort_ignored().
   IgnoredPointCounts ignored{};
-  /// hash of the classes of all points; 0 where no class is ignored
+  /// Hash of the classes of all points; 0 where no class is ignored.
   std::uint64_t classes_hash = 0;
-  /// names of the bodies; empty unless the query has several
+  /// Names of the bodies; empty unless the query has several.
   std::vector<std::string> bodies = {};
   ModelSpacing model_spacing{};  ///< the greatest spacing of all bodies
   /// Whether each colliding point also has a last pose. It does in the result of a search with

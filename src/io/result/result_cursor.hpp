@@ -52,7 +52,7 @@ class RowCursor : public ResultCursor<ResultRowStream, ResultRows> {
 class ClearanceCursor : public ResultCursor<ClearanceRowStream, ClearanceRows> {
  public:
   using ResultCursor::ResultCursor;
-  /// only where the result has coordinates of clearances
+  /// Only where the result has coordinates of clearances.
   Vec3 xyz() const { return rows_.xyz[at_]; }
   double distance() const { return rows_.distance[at_]; }
   std::uint32_t pose() const { return rows_.pose[at_]; }

@@ -6,7 +6,7 @@
 namespace clearway::result_names {
 
 inline constexpr const char* kFormat = "clearway result";
-// differs, so that no reader takes a part for a result
+// Differs, so that no reader takes a part for a result.
 inline constexpr const char* kPartFormat = "clearway part";
 inline constexpr std::uint32_t kVersion = 3;
 inline constexpr std::uint32_t kNewestVersion = 4;  // see ResultHeader::version
@@ -30,7 +30,7 @@ inline constexpr const char* kSquared = "squared";  // only in parts
 
 inline constexpr const char* kProfile = "profile";
 inline constexpr const char* kModelBox = "model_box";
-// written together with kEngine, only where there is a tolerance
+// Written together with kEngine, only where there is a tolerance.
 inline constexpr const char* kTolerance = "tolerance";
 inline constexpr const char* kEngine = "engine";
 inline constexpr const char* kPrecision = "precision";  // written only where it is kFloat
@@ -38,7 +38,7 @@ inline constexpr const char* kFloat = "float";
 inline constexpr const char* kFirstPoseOf = "first_pose_of";  // written only where it is kClosedWay
 inline constexpr const char* kClosedWay = "closed way";
 
-// names, one per line; only for a query with bodies
+// Names, one per line; only for a query with bodies.
 inline constexpr const char* kBodies = "bodies";
 inline constexpr const char* kModelTriangles = "model_triangles";  // only for a surface
 inline constexpr const char* kModelSolids = "model_solids";        // only with solids
@@ -48,14 +48,14 @@ inline constexpr const char* kShard = "shard";  // only in parts, together with 
 inline constexpr const char* kDivision = "division";
 inline constexpr const char* kStore = "store";
 inline constexpr const char* kLengthUnit = "length_unit";
-// only in parts that are not exact, as are the next two
+// Only in parts that are not exact, as are the next two.
 inline constexpr const char* kDevice = "device";
 inline constexpr const char* kFieldVoxel = "field_voxel";
 inline constexpr const char* kGridCell = "grid_cell";
 
-// only in version 4, as are the attributes up to kBoxPoints
+// Only in version 4, as are the attributes up to kBoxPoints.
 inline constexpr const char* kIgnoredPoints = "ignored_points";
-// hash of the datasets of kIgnoredGroup
+// Hash of the datasets of kIgnoredGroup.
 inline constexpr const char* kIgnoredHash = "ignored_hash";
 inline constexpr const char* kClassesHash = "classes_hash";  // only where classes are ignored
 inline constexpr const char* kIgnoredGroup = "ignored";
@@ -64,23 +64,23 @@ inline constexpr const char* kClassPoints = "class_points";
 inline constexpr const char* kBoxes = "boxes";  // one row per box: least x, y, z, greatest x, y, z
 inline constexpr const char* kBoxPoints = "box_points";
 
-// codes, one per line; only where nothing collides
+// Codes, one per line; only where nothing collides.
 inline constexpr const char* kDoubts = "doubts";
-// only where points are ignored
+// Only where points are ignored.
 inline constexpr const char* kIgnoredColliding = "ignored_colliding";
-// only where points are ignored
+// Only where points are ignored.
 inline constexpr const char* kIgnoredHigh = "ignored_colliding_high";
-// with the next two, only where there are bodies
+// With the next two, only where there are bodies.
 inline constexpr const char* kPathLength = "path_length";
 inline constexpr const char* kSearchedLength = "searched_length";
 inline constexpr const char* kPartlySearchedLength = "partly_searched_length";
-// number of runs; with kPosesWithoutBodies
+// Number of runs; with kPosesWithoutBodies.
 inline constexpr const char* kRunsWithoutBodies = "runs_without_bodies";
 inline constexpr const char* kPosesWithoutBodies = "poses_without_bodies";
 inline constexpr const char* kModelIsCut = "model_is_cut";  // only in parts whose model is cut
 
 inline constexpr const char* kCollisionsHash = "collisions_hash";
-// a hash of its own, so that older readers still accept the file
+// A hash of its own, so that older readers still accept the file.
 inline constexpr const char* kLastPoseHash = "last_pose_hash";
 inline constexpr const char* kClearanceHash = "clearance_hash";
 inline constexpr const char* kProfileHash = "profile_hash";

@@ -63,7 +63,7 @@ class ResultRowStream {
   const std::size_t batch_rows_;
   std::uint64_t next_ = 0;
   std::uint64_t last_source_ = 0;
-  /// hashes of source, xyz, first_pose and body of the rows read so far
+  /// Hashes of source, xyz, first_pose and body of the rows read so far.
   std::array<Xxh64Stream, 4> columns_;
   Xxh64Stream last_poses_;
 };

@@ -13,7 +13,7 @@ inline const std::string kStoreFormat = "clearway store";
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
 inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
 
-/// dataset of /sources; only where there are several files
+/// Dataset of /sources; only where there are several files.
 inline constexpr const char* kSourcePoints = "points";
 
 /// The datasets of /cells, row-major. Each cell has four chunks: x, y, z, source.

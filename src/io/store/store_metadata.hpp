@@ -33,7 +33,7 @@ struct StoreClasses {
 /// The description of a store (docs/design/store-format.md), without its cells.
 struct StoreMetadata {
   std::uint64_t point_count = 0;
-  /// points of the inputs, including non-finite ones, which are not stored
+  /// Points of the inputs, including non-finite ones, which are not stored.
   std::uint64_t input_points = 0;
   std::uint32_t cell_points = 0;
   Quantisation quantisation{};

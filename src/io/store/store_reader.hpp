@@ -81,11 +81,11 @@ class StoreReader final : public PackedCloud {
   std::vector<TreeNode> tree_;
   /// Per cell: 1 once the hashes of its x, y and z in the map were found right.
   mutable std::vector<std::uint8_t> checked_;
-  /// per cell: 1 once read_packed() read its coordinates from the file
+  /// Per cell: 1 once read_packed() read its coordinates from the file.
   mutable std::vector<std::uint8_t> read_;
-  /// per cell: 1 once the hash of its source indices in the map was found right
+  /// Per cell: 1 once the hash of its source indices in the map was found right.
   mutable std::vector<std::uint8_t> sources_checked_;
-  /// per cell: 1 once the hash of its classes in the map was found right; empty without classes
+  /// Per cell: 1 once the hash of its classes in the map was found right; empty without classes.
   mutable std::vector<std::uint8_t> classes_checked_;
 };
 

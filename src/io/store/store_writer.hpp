@@ -16,7 +16,7 @@ namespace clearway {
 struct PackedCell {
   Cell cell;
   std::vector<BlockBox> blocks;  ///< one for each block that has points
-  /// packed x, y, z and source, each of cell_points values
+  /// Packed x, y, z and source, each of cell_points values.
   std::array<std::vector<std::byte>, 4> chunks;
   std::array<std::uint64_t, 4> xxh64{};  ///< hashes of the chunks, see hash_chunks()
   std::vector<std::byte> classes;        ///< packed classes; empty where the store has none

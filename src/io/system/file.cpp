@@ -62,7 +62,7 @@ File File::create(const std::filesystem::path& path) {
 File File::create_temporary(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor >= 0) return {descriptor, folder.string() + " (temporary file)"};
-  // for file systems without O_TMPFILE
+  // For file systems without O_TMPFILE.
   std::string pattern = (folder / ".clearway-XXXXXX").string();
   const int named = ::mkostemp(pattern.data(), O_CLOEXEC);
   if (named < 0) fail(folder.string(), "create a temporary file in it");

@@ -10,7 +10,7 @@
 namespace clearway {
 namespace {
 
-// bytes that are reserved or written back at once
+// Bytes that are reserved or written back at once.
 constexpr std::uint64_t kPiece = std::uint64_t{64} << 20;
 constexpr std::uint64_t kLeastFree = 16;  // pieces that must be free on the disk for reserving
 

@@ -40,7 +40,7 @@ void raise_open_files_limit(std::uint64_t more) {
   const rlim_t wanted = std::min<rlim_t>(needed_open_files(more) + kSpare, limit.rlim_max);
   if (wanted <= limit.rlim_cur) return;
   limit.rlim_cur = wanted;
-  // a failure is ignored, as require_open_files() reports it later
+  // A failure is ignored, as require_open_files() reports it later.
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 

@@ -18,10 +18,10 @@ struct TrajectoryFile {
   std::vector<std::string> names;  ///< one per pose; empty where the file has none
   TrajectoryFormat format = TrajectoryFormat::kAuto;
   std::string crs;  ///< CRS into which latitudes and longitudes were converted, or empty
-  /// metres per unit of the positions; 1 except for a CRS in another unit
+  /// Metres per unit of the positions; 1 except for a CRS in another unit.
   double metres_per_unit = 1;
-  /// whether the positions certainly are in metres, because a unit was declared or the format has
-  /// one
+  /// Whether the positions certainly are in metres, because a unit was declared or the format has
+  /// one.
   bool in_metres = false;
   FileUnit unit = {};  ///< unit of the positions in the file, where a header or an option names it
   RotationSource rotations = RotationSource::kMatrices;

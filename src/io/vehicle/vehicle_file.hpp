@@ -19,7 +19,7 @@ struct BodyEntry {
   std::filesystem::path model;
   FileUnit model_unit = {};  ///< unit of the model's file; where not known, that of the command
   BodyMount mount = BodyStation{0};  ///< used unless there is a trajectory
-  /// trajectory of its own; empty where the body follows the path
+  /// Trajectory of its own; empty where the body follows the path.
   std::filesystem::path trajectory;
 };
 

@@ -18,12 +18,12 @@ namespace {
 constexpr int kWidth = 800, kHeight = 600;
 constexpr Colour kColliding{200, 30, 30}, kModel{90, 110, 140}, kPath{40, 90, 200},
     kBoxEdge{120, 120, 120};
-// number of small groups that are shown instead of conflicts
+// Number of small groups that are shown instead of conflicts.
 constexpr std::size_t kMostSmallTopics = 10;
 constexpr double kLeastDistance = 6;  // least distance from camera to conflict, metres
-// least distance from camera to conflict, in diagonals of the conflict
+// Least distance from camera to conflict, in diagonals of the conflict.
 constexpr double kSizesAway = 1.6;
-// number of poses beside the nearest one that are drawn as a line
+// Number of poses beside the nearest one that are drawn as a line.
 constexpr std::size_t kPathPoses = 2000;
 
 Vec3 unit(const Vec3& v, const Vec3& otherwise) {

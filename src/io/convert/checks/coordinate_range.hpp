@@ -52,7 +52,7 @@ class CoordinateRange {
   void keep(std::size_t side, int axis, bool greatest, const InputPoint& p);
   double median(int axis) const;
 
-  // for each side() the most extreme points, in descending order
+  // For each side() the most extreme points, in descending order.
   std::array<std::vector<InputPoint>, 6> extremes_;
   std::vector<Vec3> samples_;  // every (mask + 1)-th point
   std::uint64_t sample_mask_ = 0;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFarSizes = 100;    // gap that counts as far, in sizes of the larger of two boxes
 constexpr double kFarLength = 1000;  // least gap that counts as far, in metres
 constexpr double kSizeRatio = 300;   // ratio between consecutive sizes in ascending order
-// metres; a smaller input is not suspected to be in another unit
+// Metres; a smaller input is not suspected to be in another unit.
 constexpr double kLargeLength = 3000;
 constexpr double kLeastLength = 0.1;         // metres; a smaller input has no size to compare
 constexpr std::size_t kMostCompared = 5000;  // files that are compared by pairs

@@ -13,7 +13,7 @@ namespace clearway {
 namespace {
 
 constexpr unsigned kFinestShift = 4;  // 16 quanta
-// log2 of the finest bin's side; points that still coincide in one are counted by source index
+// Log2 of the finest bin's side; points that still coincide in one are counted by source index.
 constexpr unsigned kSubShift = 2;
 constexpr std::size_t kMostBins = 1 << 17;
 constexpr std::size_t kMostSubBins = 1 << 10;  // for each overfull bin

@@ -95,7 +95,7 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
           std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
     }
     out.quanta.push_back(q);
-    // offsets stays empty until the first dropped point; those before it get their own index.
+    // Offsets stays empty until the first dropped point; those before it get their own index.
     if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
   }
 }

@@ -110,7 +110,7 @@ class EnvironmentSource {
   std::vector<CloudInfo> infos_;  // declarations of the files
   std::vector<bool> in_pieces_;
   Quantisation quantisation_{};
-  // shifts of the files' integers in quanta; empty where all are rounded anew
+  // Shifts of the files' integers in quanta; empty where all are rounded anew.
   std::vector<std::array<std::int64_t, 3>> shifts_;
   CommonCrs crs_;
   std::vector<Message> range_warnings_;  // warnings on the coordinates as read

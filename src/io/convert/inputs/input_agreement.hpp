@@ -20,7 +20,7 @@ namespace clearway {
 struct CommonCrs {
   LengthUnit unit = LengthUnit::kUnknown;
   std::string wkt;
-  /// warnings on different CRS and on feet; a note where some inputs have no CRS
+  /// Warnings on different CRS and on feet; a note where some inputs have no CRS.
   std::vector<Message> warnings;
 };
 

@@ -34,7 +34,7 @@ class E57Pages {
   /// where the file ends too early, as in "the XML section".
   void read(std::uint64_t at, std::span<std::byte> out, const char* what);
 
-  /// bytes read from the file at once
+  /// Bytes read from the file at once.
   static constexpr std::size_t kWindowBytes = std::size_t{1} << 17;
 
  private:

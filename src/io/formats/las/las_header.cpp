@@ -17,7 +17,7 @@ constexpr std::size_t kHeaderBytes13 = 235;
 constexpr std::size_t kHeaderBytes14 = 375;
 constexpr std::uint16_t kSmallestRecord[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 constexpr std::uint16_t kInternalWaveforms = 2;  // bit of the global encoding
-// bits of byte 104 that hold the point format; LAZ sets one of the others
+// Bits of byte 104 that hold the point format; LAZ sets one of the others.
 constexpr unsigned kFormatBits = 0x3F;
 
 std::span<const std::byte> take_header(InputBuffer& input, std::size_t bytes) {

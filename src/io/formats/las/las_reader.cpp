@@ -163,7 +163,7 @@ class LasReader final : public PointReader {
   LasCrs crs_;
   CloudInfo info_;
   InputBuffer::Mark first_point_;
-  /// number of points; in a stream it may grow beyond what the header declares
+  /// Number of points; in a stream it may grow beyond what the header declares.
   std::uint64_t points_;
   std::uint64_t next_ = 0;  ///< point to read next
   bool tail_read_ = false;

@@ -20,7 +20,7 @@ struct LasRecordFormat {
   std::uint16_t record_bytes = 30;
   std::uint16_t encoding = 0;  ///< "global encoding" of the file that the records come from
   Quantisation quantisation{};
-  /// descriptions of the extra bytes behind the format's own fields
+  /// Descriptions of the extra bytes behind the format's own fields.
   std::vector<std::byte> extra_bytes{};
   std::string crs_wkt{};  ///< CRS as well-known text; where empty, geotiff is used
   std::vector<LasRecord> geotiff{};

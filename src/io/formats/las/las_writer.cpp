@@ -23,7 +23,7 @@ constexpr const char* kWktDescription = "OGC coordinate system WKT";
 struct Layout {
   bool version_14;
   bool wkt_vlr;  ///< whether the CRS is a record before the points
-  /// whether the CRS is a record behind the points, because it is too long for one before
+  /// Whether the CRS is a record behind the points, because it is too long for one before.
   bool wkt_evlr;
   std::uint64_t wkt_bytes;
   std::uint16_t record_bytes;
@@ -36,7 +36,7 @@ Layout layout_of(const LasHeader& header) {
   Layout out{};
   out.version_14 = header.points > std::numeric_limits<std::uint32_t>::max() ||
                    !header.crs_wkt.empty() || header.first_pose || header.distance || header.body;
-  // including its zero byte
+  // Including its zero byte.
   out.wkt_bytes = header.crs_wkt.empty() ? 0 : header.crs_wkt.size() + 1;
   out.wkt_evlr = out.wkt_bytes > std::numeric_limits<std::uint16_t>::max();
   out.wkt_vlr = out.wkt_bytes > 0 && !out.wkt_evlr;

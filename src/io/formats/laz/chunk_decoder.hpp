@@ -28,7 +28,7 @@ struct PointRoom {
 /// A chunk: points that are compressed independently of others.
 struct Chunk {
   std::uint64_t begin = 0;  ///< position in the file
-  /// position behind the chunk, or where ends_there is false an upper bound of it
+  /// Position behind the chunk, or where ends_there is false an upper bound of it.
   std::uint64_t end = 0;
   std::uint64_t points = 0;
   bool ends_there = true;

@@ -136,7 +136,7 @@ std::optional<std::vector<Chunk>> read_chunk_table(const InputBuffer& input, con
   const auto version = number_at<std::uint32_t>(input, *table);
   const auto count = number_at<std::uint32_t>(input, *table + 4);
   const std::uint64_t room = *table - bytes.begin - kPointerBytes;
-  // some files list an empty chunk
+  // Some files list an empty chunk.
   if (room == 0 && bytes.points == 0) return std::vector<Chunk>{};
   if (version != 0 || count > room / scheme.record_bytes) {
     refuse_byte(input.name(), *table,

@@ -10,7 +10,7 @@ namespace clearway::laz {
 
 /// Position and number of a file's points according to its header.
 struct PointBytes {
-  /// the 8 bytes with the position of the chunk table, or the first chunk
+  /// The 8 bytes with the position of the chunk table, or the first chunk.
   std::uint64_t begin = 0;
   std::uint64_t end = 0;  ///< start of the extended variable length records, or the end of the file
   std::uint64_t points = 0;

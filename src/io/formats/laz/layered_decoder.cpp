@@ -135,7 +135,7 @@ class LayeredDecoder final : public ChunkDecoder {
   Layer plane_, heights_, classes_;
   Point14 point_;
   Quanta first_{};
-  /// class of the first point, and of all points where there is no layer of classes
+  /// Class of the first point, and of all points where there is no layer of classes.
   std::uint8_t class_ = 0;
   std::uint64_t layers_bytes_ = 0;
   std::uint64_t end_ = 0;

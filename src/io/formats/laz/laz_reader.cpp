@@ -140,14 +140,14 @@ class TabledReader final : public PointReader {
 
   InputBuffer input_;
   std::vector<Chunk> chunks_;
-  /// index of the chunk behind each piece; empty where only read() works
+  /// Index of the chunk behind each piece; empty where only read() works.
   std::vector<std::size_t> piece_ends_;
   CloudInfo info_;
   Scheme scheme_;
   laz::ChunkGroups groups_;
   std::span<const Quanta> ready_;  ///< points of the last decoded group that are not delivered yet
   std::size_t next_ = 0;           ///< chunk to decode next
-  /// decoder of large chunks; null before it is first needed
+  /// Decoder of large chunks; null before it is first needed.
   std::unique_ptr<laz::ChunkDecoder> stream_;
   std::uint64_t left_ = 0;  ///< points left in the large chunk that stream_ is decoding
 };

@@ -189,7 +189,7 @@ class PlyMeshParser {
   struct Drawn {
     Kind kind = Kind::kNothing;
     std::optional<std::size_t> list;  ///< index of the property that lists the vertices
-    /// properties with the ends of an edge that has no list
+    /// Properties with the ends of an edge that has no list.
     std::optional<std::size_t> ends[2] = {{}, {}};
   };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kInputBytes = std::size_t{1} << 16;
 constexpr std::size_t kReach = std::size_t{1} << 13;  // greatest distance of a match
-// bytes decoded ahead, exceeded by one token at most
+// Bytes decoded ahead, exceeded by one token at most.
 constexpr std::size_t kDecodeAhead = std::size_t{1} << 16;
 constexpr std::size_t kLongestToken = 7 + 255 + 2;
 

@@ -12,7 +12,7 @@
 namespace clearway {
 namespace {
 
-// bytes of a column that are decoded at a time
+// Bytes of a column that are decoded at a time.
 constexpr std::size_t kColumnBytes = std::size_t{1} << 16;
 
 /// Reads compressed data, in which each field is stored for all points before the next field. Three

@@ -14,7 +14,7 @@
 namespace clearway {
 namespace {
 
-// at least a page of memory on any machine
+// At least a page of memory on any machine.
 constexpr std::uint64_t kMostPadding = std::uint64_t{1} << 16;
 
 /// The remark on a viewpoint; nullopt for the default, which is 0 0 0 and no rotation.

@@ -19,7 +19,7 @@ std::size_t size_bytes(PlyType type);
 struct PlyProperty {
   std::string name;
   PlyType type;  ///< type of the value, or of the items of a list
-  /// type of a list's number of items; nullopt where the property is not a list
+  /// Type of a list's number of items; nullopt where the property is not a list.
   std::optional<PlyType> list_count;
 };
 

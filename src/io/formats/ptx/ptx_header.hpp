@@ -15,14 +15,14 @@ namespace clearway {
 struct PtxHeader {
   std::uint64_t line = 0;    ///< number of the header's first line
   std::uint64_t points = 0;  ///< number of points, columns times rows
-  /// row-major with last column 0 0 0 1; a point p as a row becomes p M
+  /// Row-major with last column 0 0 0 1; a point p as a row becomes p M.
   std::array<double, 16> matrix{};
   double stretch[2] = {1, 1};  ///< least and greatest singular value of the matrix' rotation
   double determinant = 1;
   bool rigid = true;  ///< whether the matrix neither scales nor shears nor mirrors
-  /// largest difference in a coordinate between an axis of the scanner and its row of the matrix
+  /// Largest difference in a coordinate between an axis of the scanner and its row of the matrix.
   double axes_differ = 0;
-  /// distance of the scanner's position from the translation of the matrix
+  /// Distance of the scanner's position from the translation of the matrix.
   double position_differs = 0;
 
   Vec3 place(const Vec3& point) const;

@@ -12,7 +12,7 @@ namespace clearway {
 /// The line of a text table that names its columns.
 struct ColumnNames {
   char separator = ' ';  ///< ',', ';' or ' ' for any blanks
-  /// names in lower case, without quotes, bracketed units and blanks
+  /// Names in lower case, without quotes, bracketed units and blanks.
   std::vector<std::string> names;
   std::vector<std::string> units;  ///< units in brackets, lower case; empty where a column has none
 

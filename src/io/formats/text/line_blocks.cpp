@@ -17,7 +17,7 @@ LineBlocks::LineBlocks(const InputBuffer& input)
 std::string_view LineBlocks::read(std::size_t block, std::vector<char>& room) const {
   const std::uint64_t first = begin_ + block * kBlockBytes;
   const std::uint64_t last = std::min(end_, first + kBlockBytes);
-  // includes the byte before, to see whether a line ends there
+  // Includes the byte before, to see whether a line ends there.
   const std::uint64_t from = block == 0 ? first : first - 1;
   std::uint64_t loaded = from;
   const auto load_to = [&](std::uint64_t to) {

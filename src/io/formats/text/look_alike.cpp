@@ -9,7 +9,7 @@
 namespace clearway {
 namespace {
 
-// deviation of a norm from 1, as for the poses of a trajectory
+// Deviation of a norm from 1, as for the poses of a trajectory.
 constexpr double kUnitTolerance = 0.01;
 constexpr double kFarthestMetres = 1e8;    // greater than any coordinate on Earth
 constexpr std::size_t kFewestIndices = 3;  // lines

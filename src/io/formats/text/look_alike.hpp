@@ -28,7 +28,7 @@ class LookAlike {
     std::array<double, kMostNumbers> numbers{};
     std::size_t count = 0;  ///< how many numbers the line starts with
     bool whole = false;     ///< whether the line consists of these numbers alone
-    /// whether each of the first two is written as a whole number such as 0, 1 or 2
+    /// Whether each of the first two is written as a whole number such as 0, 1 or 2.
     std::array<bool, 2> counting{};
   };
 

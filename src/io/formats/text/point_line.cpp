@@ -45,7 +45,7 @@ std::optional<std::uint64_t> count_in(std::string_view line) {
 }
 
 std::uint64_t most_points_in_rest(const InputBuffer& input) {
-  // bytes of "0 0 0" and a line break, which the last line may lack
+  // Bytes of "0 0 0" and a line break, which the last line may lack.
   constexpr std::uint64_t kShortest = 6;
   return (*input.size() - input.position() + 1) / kShortest;
 }

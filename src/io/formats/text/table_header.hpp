@@ -18,7 +18,7 @@ using CoordinateColumns = std::array<std::size_t, 3>;
 struct TableHeader {
   char separator = ' ';            ///< ',', ';' or ' ' for any blanks
   std::vector<std::string> names;  ///< names in lower case, without quotes, blanks and units
-  /// unit of each name, given in brackets or behind `_`; lower case
+  /// Unit of each name, given in brackets or behind `_`; lower case.
   std::vector<std::string> units;
 };
 

@@ -23,7 +23,7 @@ struct PointDifference {
   std::uint64_t source;
   Vec3 xyz;  ///< coordinates in a, or in b where a lacks the point
   std::optional<std::uint32_t> first_pose_a, first_pose_b;  ///< where that result has first poses
-  /// where that result has last poses
+  /// Where that result has last poses.
   std::optional<std::uint32_t> last_pose_a = {}, last_pose_b = {};
 };
 
@@ -42,7 +42,7 @@ struct ClearanceComparison {
 /// How the profiles of two results differ, pose by pose.
 struct ProfileComparison {
   std::uint64_t poses = 0;
-  /// poses that differ in distance, point, its coordinates or chainage
+  /// Poses that differ in distance, point, its coordinates or chainage.
   std::uint64_t differing = 0;
   std::optional<std::uint64_t> first = {};  ///< first pose that differs
 

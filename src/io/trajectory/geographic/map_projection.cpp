@@ -151,7 +151,7 @@ std::optional<MapProjection::Place> MapProjection::place(double longitude, doubl
   const Vec3 north = slope(longitude, latitude, height, true);
   const double scale = std::hypot(north.x, north.y) * unit_;
   if (!(scale > 0)) return std::nullopt;
-  // a height that was not converted
+  // A height that was not converted.
   const double vertical = vertical_unit_ > 0 ? vertical_unit_ : 1;
   return Place{{xyz[0], xyz[1], xyz[2] * vertical / unit_}, std::atan2(north.x, north.y), scale};
 }

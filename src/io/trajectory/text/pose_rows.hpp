@@ -53,7 +53,7 @@ class PoseRows {
   std::string name_;
   FileUnit unit_;      ///< unit of positions
   double metres_ = 0;  ///< metres of that unit; 0 where it is not known
-  /// conversion from that unit to metres; none from the environment's own unit
+  /// Conversion from that unit to metres; none from the environment's own unit.
   UnitFactor in_metres_{1};
   std::size_t row_numbers_ = 0;  ///< 12 or 16 numbers in every line; 0 before the first line
   std::array<double, 16> numbers_{};

@@ -113,7 +113,7 @@ bool find_position(const ColumnNames& header, PoseColumns& columns) {
     columns.position = {xyz[0], xyz[1], xyz[2]};
     return true;
   }
-  // neither, or both, so that it is not clear which is meant
+  // Neither, or both, so that it is not clear which is meant.
   if (!height || map == globe) return false;
   const auto first = globe ? find_one(header, kLongitude) : find_one(header, kEasting);
   const auto second = globe ? find_one(header, kLatitude) : find_one(header, kNorthing);

@@ -8,7 +8,7 @@
 
 namespace clearway::laz {
 
-/// highest bits of a corrector that have a model; lower bits have none
+/// Highest bits of a corrector that have a model; lower bits have none.
 constexpr unsigned kBitsWithModel = 8;
 /// Most bytes that one corrector takes: its width, its upper bits, its lower bits.
 constexpr std::size_t kMostBytesInteger =

@@ -28,7 +28,7 @@ class GpsTimeVersion2 {
 
   struct Sequence {
     std::int32_t difference = 0;
-    /// number of differences that were no multiple since the last one that was
+    /// Number of differences that were no multiple since the last one that was.
     unsigned extremes = 0;
   };
   struct Models {

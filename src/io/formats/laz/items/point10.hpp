@@ -45,7 +45,7 @@ class Point10Version2 {
   void begin(const std::byte* record);
   /// Decodes the next point and returns its position.
   [[gnu::always_inline]] inline Quanta next(ArithmeticDecoder& decoder);
-  /// class of the last decoded point
+  /// Class of the last decoded point.
   std::uint8_t point_class() const { return last_.point_class(); }
 
  private:
@@ -83,7 +83,7 @@ class Point10Version1 {
     SymbolModel<64> changed;
     IntegerModel<16, 1> intensity, source;
     IntegerModel<8, 2> scan_angle;
-    /// a ring buffer, whose oldest entry is replaced next
+    /// A ring buffer, whose oldest entry is replaced next.
     std::array<std::int32_t, 3> last_dx{}, last_dy{};
     unsigned oldest = 0;
   };
