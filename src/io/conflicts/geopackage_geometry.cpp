@@ -11,7 +11,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::uint32_t kWithHeights = 1000;  // added to the number of a shape
+constexpr std::uint32_t kWithHeights = 1000;  // added to the number of a shape that has heights
 
 class Bytes {
  public:

@@ -9,7 +9,7 @@
 
 namespace clearway {
 
-/// With the numbers of well-known binary.
+/// Shape of a geometry, with its number in well-known binary.
 enum class GeoShape : std::uint32_t { kPoint = 1, kLine = 2, kPolygon = 3 };
 
 /// A geometry with heights in the form of a GeoPackage: its header with the box in x and y, then

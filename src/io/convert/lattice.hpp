@@ -44,7 +44,7 @@ class Lattice {
         out[k] = lifted;
         continue;
       }
-      // Faces lie at multiples of the cube's side counted from q = 0.
+      // The cubes' faces are at multiples of the side counted from q = 0.
       const std::uint64_t from_face = lifted + (cube_[k] - kZero % cube_[k]) % cube_[k];
       out[k] = (from_face / cube_[k] << cube_bits_) + from_face % cube_[k];
     }

@@ -43,7 +43,7 @@ class PointsHash {
  private:
   Xxh64Stream quanta_;
   Xxh64Stream sources_;
-  std::uint64_t expected_ = 0;  ///< source index of the next point when none is dropped
+  std::uint64_t expected_ = 0;  ///< source index of the next point if none is dropped
 };
 
 /// Hash of the classes of the stored points: XXH64 of one byte per point, in source order.

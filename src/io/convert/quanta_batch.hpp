@@ -34,7 +34,7 @@ struct QuantaBatch {
   /// Source index of the first non-finite point, where there is one.
   std::uint64_t first_non_finite = 0;
   std::uint64_t absent_points = 0;
-  double largest_change = 0;  ///< |stored - read| of any coordinate, metres
+  double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
   PieceBytes bytes;           ///< the bytes from which a piece was read, where requested
 
   std::uint64_t source(std::size_t i) const {

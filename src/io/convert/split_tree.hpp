@@ -15,7 +15,7 @@ inline constexpr std::uint64_t kBucketPoints = std::uint64_t{1} << 21;
 /// A node of the top tree over the counting grid's bins, in preorder: the left child follows it.
 struct SplitNode {
   std::uint64_t count = 0;  ///< number of points in the node's bins
-  int axis = 0;             ///< 0, 1, 2, or 3 for the source index
+  int axis = 0;             ///< axis of the plane: 0, 1, 2, or 3 for the source index
   std::uint64_t plane = 0;  ///< points with lattice coordinate < plane go left
   std::uint32_t right = 0;  ///< index of the right child; 0 for a leaf
   std::int32_t unit = -1;   ///< number of the unit whose subtree has its root here; otherwise -1

@@ -104,7 +104,7 @@ std::vector<ScanFile> number_scans(const std::vector<std::filesystem::path>& inp
     } else {
       file.points = count_points(path, progress);
     }
-    // A LAZ header's count is not checked before its points are read.
+    // The count in a LAZ header is checked only when its points are read.
     if (file.points > std::numeric_limits<std::uint64_t>::max() - next) {
       refuse(path.string(), "declares " + std::to_string(file.points) +
                                 " points; expected fewer than 2^64 in all scans");

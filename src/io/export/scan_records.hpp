@@ -19,7 +19,7 @@ namespace clearway {
 /// Reads records of a LAS file in any order; fast where the order is ascending.
 class LasRecordReader {
  public:
-  /// Throws InputError for a file that is malformed.
+  /// Opens the file. Throws InputError where it is malformed.
   explicit LasRecordReader(const std::filesystem::path& path);
 
   const std::string& name() const { return input_.name(); }

@@ -27,7 +27,8 @@ class InputBuffer {
     std::uint64_t line = 0;
   };
 
-  /// kSeek needs a regular file and starts at its first byte; kStream starts where the file stands.
+  /// KSeek needs a regular file and starts at its first byte; kStream starts at the file's current
+  /// position.
   InputBuffer(File file, Access access);
 
   const std::string& name() const { return file_.name(); }
@@ -62,9 +63,9 @@ class InputBuffer {
   bool next_line(std::string_view& line);
   /// Consumes the byte order mark of UTF-8, which some editors put at the start of a file.
   void skip_byte_order_mark();
-  /// 1-based number of the line last returned.
+  /// Number of the last returned line, from 1.
   std::uint64_t line() const { return line_; }
-  /// Whether a line break followed the line last returned (the last of a file may lack it).
+  /// Whether a line break followed the last returned line (the last line of a file may lack it).
   bool line_terminated() const { return line_terminated_; }
 
   Mark mark() const { return {position(), line_}; }
@@ -77,7 +78,7 @@ class InputBuffer {
   File file_;
   std::optional<std::uint64_t> size_;
   std::unique_ptr<std::byte[]> buffer_;
-  std::size_t begin_ = 0;     ///< first byte not consumed
+  std::size_t begin_ = 0;     ///< index of the first byte that is not consumed
   std::size_t end_ = 0;       ///< index behind the last byte loaded
   std::uint64_t loaded_ = 0;  ///< position of end_ in the file
   std::uint64_t line_ = 0;

@@ -67,7 +67,8 @@ const EnvironmentUnit& of(LengthUnit unit) { return kUnits[static_cast<std::size
 
 /// Whether both lengths in metres are the same unit, which files may give with few digits.
 bool are_same(double metres, double other) {
-  // The two feet differ by 2e-6 of their length, and 0.3048006 is the survey foot.
+  // The tolerance separates the two feet, which differ by 2e-6 of their length, and accepts
+  // 0.3048006 as the survey foot.
   return std::abs(metres - other) < 5e-7 * other;
 }
 

@@ -5,7 +5,7 @@
 
 namespace clearway {
 
-/// A coordinate reference system as files name it.
+/// A coordinate reference system in the ways that files name it.
 struct ScanCrs {
   std::string wkt;   ///< well-known text, version 1 where PROJ can express it, otherwise as found
   std::string name;  ///< name for messages

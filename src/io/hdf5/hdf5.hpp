@@ -11,7 +11,7 @@
 
 #include "clearway/error.hpp"
 
-/// Owners and the few calls of HDF5 that Clearway makes. All HDF5 calls of a file are made by one
+/// Owners and the few calls of HDF5 that Clearway uses. All HDF5 calls of a file are made by one
 /// thread. Files are written with H5F_LIBVER_V110 on both bounds, no object times, fletcher32 on
 /// every unpacked dataset and fixed-length strings, so that equal contents give equal bytes and
 /// damaged metadata is noticed (docs/design/store-format.md).
@@ -120,8 +120,8 @@ void write_dataset(const Id& parent, const std::string& name, std::span<const Nu
                    std::uint64_t columns = 0);
 
 /// Reads a whole dataset of `rows` x `columns` (columns 0: one-dimensional). Throws InputError when
-/// it is missing, of another type, shape or storage than write_dataset gives it, larger than the
-/// file, or fails its checksum; `file` names it in messages.
+/// it is missing, has another type, shape or storage than write_dataset() gives it, is larger than
+/// the file, or fails its checksum. file: its name for messages.
 template <typename Number>
 std::vector<Number> read_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
                                  std::uint64_t columns, const std::string& file);

@@ -38,8 +38,8 @@ void check_nesting(std::string_view text) {
   }
 }
 
-/// Builds the value. The library's own builder compares each new key with all earlier ones, and
-/// with a callback also visits all earlier elements of a list at each new one.
+/// Builds the value in linear time. The library's own builder compares each new key with all
+/// earlier ones, and with a callback also visits all earlier elements of a list at each new one.
 class ValueBuilder : public nlohmann::json_sax<ordered_json> {
  public:
   ordered_json take() { return std::move(root_); }

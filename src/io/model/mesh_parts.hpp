@@ -20,7 +20,7 @@ struct FaultyEdges {
   static constexpr std::size_t kMostShown = 3;
 
   std::uint64_t count = 0;
-  std::vector<std::array<Vec3, 2>> first;  ///< at most kMostShown
+  std::vector<std::array<Vec3, 2>> first;  ///< ends of the first edges, at most kMostShown
 };
 
 /// A mesh divided into parts (docs/design/solids.md, "Parts"): triangles that share an edge belong

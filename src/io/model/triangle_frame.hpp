@@ -53,7 +53,7 @@ class TriangleFrame {
     return combined(1 - right, right);
   }
 
-  /// The greatest distance of a place of the triangle to its nearest corner; height > 0.
+  /// The greatest distance of a place of the triangle from its nearest corner; requires height > 0.
   double corner_distance() const {
     const double left = std::hypot(foot, height), right = std::hypot(length - foot, height);
     if (left * left + right * right > length * length) return left * right / (2 * height);

@@ -12,7 +12,7 @@ Answer answer_of(const ResultHeader& header);
 /// without duplicates.
 void add_doubts(const std::vector<Message>& warnings, Answer& answer);
 
-/// Adds what a search found beside its tables.
+/// Sets in `answer` what a search found besides its tables.
 void add_findings(const ResultFindings& findings, Answer& answer);
 
 /// The answer from the header, the findings and the numbers of rows. It lacks what only the rows

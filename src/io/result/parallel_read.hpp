@@ -70,7 +70,7 @@ class ParallelRead {
 
   std::deque<Chunks> chunks_;  // a deque, because the tasks keep references to its elements
   std::vector<std::function<bool()>> pieces_;
-  // Hash one column each; run once all pieces are intact.
+  // Tasks that hash one column each, run once all pieces are intact.
   std::vector<std::function<void()>> columns_;
 };
 

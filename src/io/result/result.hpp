@@ -105,8 +105,8 @@ struct ResultHeader : QueryParameters {
 
 /// What a search found besides its tables. It does not take part in the comparison of questions.
 struct ResultFindings {
-  /// Codes of warnings that put the question in doubt, as doubts_among() has them. A file keeps
-  /// them where nothing collides, because only then do they change the verdict.
+  /// Codes of warnings that put the question in doubt, as doubts_among() returns them. A file keeps
+  /// them only where nothing collides, because only then do they change the verdict.
   std::vector<std::string> doubts = {};
   /// See Answer. A file has both numbers where points are ignored, unless an earlier release wrote
   /// it.

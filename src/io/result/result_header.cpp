@@ -163,7 +163,8 @@ ResultPart read_part(const hdf5::Id& file, const std::string& name, const Result
   return part;
 }
 
-constexpr std::size_t kMostRuns = 4000;  // HDF5 keeps attributes of up to 64 KiB
+// Most runs of poses in an attribute, for which HDF5 allows 64 KiB.
+constexpr std::size_t kMostRuns = 4000;
 
 std::vector<std::array<std::uint32_t, 2>> read_runs(const hdf5::Id& file, const std::string& name,
                                                     const ResultHeader& header) {

@@ -9,12 +9,12 @@
 
 namespace clearway {
 
-/// The group of the points' classes, in stores that have them, and the dataset of the packed
-/// classes: [cells, cell_points].
+/// Names of the group of classes, in stores that have them, and of its dataset of packed classes:
+/// [cells, cell_points].
 inline constexpr const char* kClasses = "classes";
 inline constexpr const char* kClassOfPoints = "class";
 
-/// Where the packed classes of each cell are; empty where the store has none.
+/// Address, size and hash of the packed classes of each cell; empty where the store has none.
 struct ClassIndex {
   std::vector<std::uint64_t> address;
   std::vector<std::uint32_t> bytes;

@@ -15,7 +15,7 @@ namespace clearway {
 
 inline constexpr std::uint32_t kStoreVersion = 2;
 
-/// One input file of a conversion, as the store remembers it.
+/// An input file of a conversion, as recorded in the store.
 struct SourceFile {
   std::string name;  ///< base name; "-" for standard input
   std::uint64_t bytes = 0;
@@ -58,7 +58,7 @@ struct StoreMetadata {
 /// Prefix of the codes of a store's warnings where another command repeats them.
 inline constexpr std::string_view kStorePrefix = "store-";
 
-/// The warnings of the conversion as other commands repeat them.
+/// The warnings of the conversion in the form in which other commands repeat them.
 inline std::vector<Message> store_warnings(const StoreMetadata& metadata) {
   std::vector<Message> warnings = metadata.warnings;
   for (Message& warning : warnings) warning.code.insert(0, kStorePrefix);

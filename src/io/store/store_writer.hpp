@@ -40,8 +40,8 @@ class StoreWriter {
 
   /// Writes the index and closes the file.
   void finish(const std::vector<TopNode>& tree);
-  /// After finish(): re-reads every chunk at its recorded address, on the threads of the calling
-  /// TBB arena. Throws ResourceError when a chunk is not where it should be.
+  /// Re-reads every chunk at its recorded address, on the threads of the calling TBB arena. Called
+  /// after finish(). Throws ResourceError when a chunk is not where it should be.
   void confirm() const;
 
  private:

@@ -34,7 +34,7 @@ class File {
   const std::string& name() const { return name_; }
   std::uint64_t size_bytes() const;
   bool is_regular() const;
-  /// Whether this file, and no other, has that name.
+  /// Whether the path names this very file.
   bool is_at(const std::filesystem::path& path) const;
   /// Number of names (hard links) of the file.
   std::uint64_t names() const;
@@ -67,7 +67,7 @@ class File {
 /// The folder that contains a path; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Bytes free for this user in the file system of `folder`.
+/// Number of bytes free for this user in the file system of `folder`.
 std::uint64_t free_disk_bytes(const std::filesystem::path& folder);
 
 }  // namespace clearway

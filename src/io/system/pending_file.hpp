@@ -13,8 +13,9 @@ namespace clearway {
 /// unpublished file.
 class PendingFile {
  public:
-  /// Throws UsageError when `path` is empty, is not a name for a regular file, or exists and not
-  /// `overwrite`; ResourceError when the file cannot be created or another process writes it.
+  /// Creates and locks the partial file. Throws UsageError when `path` is empty, is not a name for
+  /// a regular file, or exists without `overwrite`; ResourceError when the file cannot be created
+  /// or another process writes it.
   PendingFile(std::filesystem::path path, bool overwrite);
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;

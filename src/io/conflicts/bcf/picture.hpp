@@ -12,7 +12,7 @@ namespace clearway {
 /// The camera of a picture. direction and up: of length 1, at right angles.
 struct Camera {
   Vec3 place, direction, up;
-  double field_of_view = 60;  ///< degrees, of the picture's height
+  double field_of_view = 60;  ///< vertical field of view in degrees
 };
 
 using Colour = std::array<std::uint8_t, 3>;
@@ -34,7 +34,7 @@ class Picture {
 
  private:
   struct Seen {
-    double x, y, depth;  ///< pixels from the upper left corner; metres
+    double x, y, depth;  ///< x, y: pixels from the upper left corner; depth: metres
   };
   bool see(const Vec3& at, Seen& seen) const;
   void draw_square(const Seen& seen, double depth, const Colour& colour, int size);

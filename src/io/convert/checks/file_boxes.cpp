@@ -17,7 +17,7 @@ constexpr double kSizeRatio = 300;   // ratio between consecutive sizes in ascen
 // Metres; a smaller input is not suspected to be in another unit.
 constexpr double kLargeLength = 3000;
 constexpr double kLeastLength = 0.1;         // metres; a smaller input has no size to compare
-constexpr std::size_t kMostCompared = 5000;  // files that are compared by pairs
+constexpr std::size_t kMostCompared = 5000;  // number of files that are compared in pairs
 constexpr std::size_t kNamed = 3;
 
 Box box_of(const FileBox& box, const Quantisation& quantisation) {

@@ -18,7 +18,7 @@ struct ReadableFiles {
   std::vector<std::string> reasons;  ///< why files were left out, with their names
 };
 
-/// Reads every file to its end. Throws InputError where none can be read; Interrupted.
+/// Reads every file to its end. Throws InputError where none can be read, and Interrupted.
 ReadableFiles readable_files(std::span<const std::filesystem::path> files,
                              const PointReadOptions& how_to_read, Progress& progress);
 

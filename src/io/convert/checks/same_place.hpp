@@ -49,7 +49,7 @@ class PlaceCounter {
   struct Place {
     PlaceQuanta at{};
     std::uint64_t count = 0;
-    std::uint64_t first = 0, last = 0;  ///< source indices
+    std::uint64_t first = 0, last = 0;  ///< source indices of the first and the last point
   };
 
   /// places: at most 200.

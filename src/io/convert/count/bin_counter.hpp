@@ -36,7 +36,7 @@ class BinCounter {
 
   struct Slot {
     Key key;
-    std::uint64_t count;  // 0: free
+    std::uint64_t count;  // number of points; 0 for a free slot
   };
 
   Slot& find(const Key& key);

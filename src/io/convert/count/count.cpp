@@ -12,12 +12,13 @@
 namespace clearway {
 namespace {
 
-constexpr unsigned kFinestShift = 4;  // 16 quanta
+constexpr unsigned kFinestShift = 4;  // log2 of the finest bin's side: 16 quanta
 // Log2 of the finest bin's side; points that still coincide in one are counted by source index.
 constexpr unsigned kSubShift = 2;
 constexpr std::size_t kMostBins = 1 << 17;
 constexpr std::size_t kMostSubBins = 1 << 10;  // for each overfull bin
-constexpr unsigned kSourceShift = 20;          // coinciding points: ranges of 2^20 source indices
+// Coinciding points are counted by ranges of 2^20 source indices.
+constexpr unsigned kSourceShift = 20;
 
 /// Result of a batch from which nothing is made.
 struct Nothing {};

@@ -18,7 +18,7 @@ namespace clearway {
 /// highest byte of the source index holds the point's class.
 struct DistributedPoint {
   std::int32_t q[3];
-  std::uint32_t source[2];  ///< low and high half of the source index, with the class
+  std::uint32_t source[2];  ///< low half of the source index, and its high half with the class
 
   static DistributedPoint of(const std::array<std::int32_t, 3>& q, std::uint64_t source,
                              std::uint8_t point_class) {

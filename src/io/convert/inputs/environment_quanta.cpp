@@ -95,7 +95,8 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
           std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
     }
     out.quanta.push_back(q);
-    // Offsets stays empty until the first dropped point; those before it get their own index.
+    // Points behind the first dropped one need an index of their own; without any dropped point,
+    // offsets stays empty.
     if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
   }
 }

@@ -15,10 +15,10 @@
 namespace clearway {
 
 struct EnvironmentOptions {
-  std::optional<double> scale{};       ///< requested scale of all axes, in metres
-  FileUnit unit{};                     ///< unit of inputs that name none
-  bool ignore_crs = false;             ///< accept degrees and inputs of different units
-  bool skip_unreadable = false;        ///< leave out files that cannot be read to their end
+  std::optional<double> scale{};  ///< requested scale of all axes, in metres
+  FileUnit unit{};                ///< unit of inputs that name none
+  bool ignore_crs = false;        ///< whether to accept degrees and inputs of different units
+  bool skip_unreadable = false;   ///< whether to leave out files that cannot be read to their end
   std::vector<std::string> columns{};  ///< columns of texts, see PointReadOptions
   std::filesystem::path temporary_folder = ".";
 };
@@ -66,7 +66,7 @@ class EnvironmentSource {
   void note(const QuantaBatch& batch);
   void rewind();
 
-  /// A record of an input; known once read() has returned false.
+  /// The place of a record in the inputs; known once read() has returned false.
   struct Place {
     std::size_t file;
     std::uint64_t point;  ///< number of the point in its file, from 0

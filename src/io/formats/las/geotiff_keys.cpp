@@ -10,7 +10,8 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint16_t kModelType = 1024;  // 1 projected, 2 geographic, 3 geocentric
+// Key of the model's type: 1 projected, 2 geographic, 3 geocentric.
+constexpr std::uint16_t kModelType = 1024;
 constexpr std::uint16_t kGeodeticSystem = 2048;
 constexpr std::uint16_t kGeodeticLinearUnit = 2052;
 constexpr std::uint16_t kProjectedSystem = 3072;

@@ -12,7 +12,7 @@
 namespace clearway {
 namespace {
 
-constexpr std::size_t kHeaderBytes10 = 227;  // LAS 1.0 to 1.2
+constexpr std::size_t kHeaderBytes10 = 227;  // size of the header of LAS 1.0 to 1.2
 constexpr std::size_t kHeaderBytes13 = 235;
 constexpr std::size_t kHeaderBytes14 = 375;
 constexpr std::uint16_t kSmallestRecord[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};

@@ -106,7 +106,7 @@ void LasRecordWriter::put_header(ByteWriter& out) const {
   out.put(std::uint8_t{4});
   out.put_text("EXTRACTION", kId);
   out.put_text("Clearway", kId);
-  out.put(std::uint32_t{0});  // day and year of creation: equal contents give equal bytes
+  out.put(std::uint32_t{0});  // day and year of creation, so that equal contents give equal bytes
   out.put(kHeaderBytes);
   out.put(kHeaderBytes + tables_bytes());
   const std::size_t tables = (format_.crs_wkt.empty() || wkt_behind_ ? 0 : 1) +

@@ -23,7 +23,7 @@ struct LasCrs {
   void describe(CloudInfo& info) const;
 };
 
-/// A variable length record.
+/// A variable length record: user id, record id and contents.
 struct LasRecord {
   std::string user;
   std::uint16_t id = 0;

@@ -63,7 +63,7 @@ void put_start(ByteWriter& out, const Layout& layout) {
   out.put(static_cast<std::uint8_t>(layout.version_14 ? 4 : 2));
   out.put_text("OTHER", kIdBytes);
   out.put_text("Clearway", kIdBytes);
-  out.put(std::uint16_t{0});  // day and year of creation: equal contents give equal bytes
+  out.put(std::uint16_t{0});  // day and year of creation, so that equal contents give equal bytes
   out.put(std::uint16_t{0});
   out.put(layout.version_14 ? kHeaderSize14 : kHeaderSize12);
   out.put(layout.points_offset);

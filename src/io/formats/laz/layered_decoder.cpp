@@ -1,5 +1,5 @@
-// Point formats 6 to 10: the attributes of a chunk's points lie in layers of their own, so only
-// those of the coordinates and of the class are read.
+// Decoder for point formats 6 to 10. The attributes of a chunk's points are in separate layers, so
+// only those of the coordinates and of the class are read.
 #include <array>
 
 #include "io/formats/byte_load.hpp"

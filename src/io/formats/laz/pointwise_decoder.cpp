@@ -1,5 +1,5 @@
-// Point formats 0 to 5: the items of a point follow each other in one stream, so all of them have
-// to be decoded.
+// Decoder for point formats 0 to 5. The items of a point follow each other in one stream, so all of
+// them must be decoded.
 #include <optional>
 
 #include "io/formats/las/las_class.hpp"

@@ -32,7 +32,8 @@ bool is_among(std::string_view word, const std::string_view (&words)[kCount]) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
-/// Source: Wavefront Technologies, Advanced Visualizer manual, appendix B1, Object files (.obj).
+/// Parses OBJ files. Source: Wavefront Technologies, Advanced Visualizer manual, appendix B1,
+/// Object files (.obj).
 class ObjParser {
  public:
   explicit ObjParser(InputBuffer& input) : input_(input), mesh_(input.name()) {}

@@ -12,7 +12,7 @@
 namespace clearway {
 namespace {
 
-/// Source: Geomview manual, section OFF files.
+/// Parses OFF files. Source: Geomview manual, section OFF files.
 class OffParser {
  public:
   explicit OffParser(InputBuffer& input) : input_(input), mesh_(input.name()) {}

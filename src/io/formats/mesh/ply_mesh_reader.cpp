@@ -183,7 +183,7 @@ class PlyMeshParser {
   }
 
  private:
-  /// What an element other than the vertices stands for.
+  /// What an element other than the vertices represents.
   enum class Kind { kNothing, kFace, kStrip, kEdge };
 
   struct Drawn {

@@ -22,7 +22,8 @@ struct MeshRemarks {
   std::uint64_t polygons = 0;  ///< faces with more than three corners
   std::uint64_t crossing = 0;  ///< polygons whose outline crosses itself
   std::string first_crossing;  ///< position in the file of the first crossing polygon
-  double largest_bend = 0;  ///< farthest corner of a polygon from the polygon's plane, file units
+  /// Greatest distance of a polygon's corner from the polygon's plane, in file units.
+  double largest_bend = 0;
   std::string largest_bend_at;  ///< position in the file of the polygon with the largest bend
   std::uint64_t segments = 0;   ///< segments of lines in the file, which are triangles of the mesh
   std::uint64_t single_points = 0;  ///< single points in the file, which are triangles of the mesh

@@ -56,7 +56,8 @@ class VertexWelder {
   }
 
   std::vector<Vec3>& vertices_;
-  std::vector<std::uint32_t> table_;  // power of two, at most half full
+  // Hash table of indices; its size is a power of two, at most half full.
+  std::vector<std::uint32_t> table_;
 };
 
 }  // namespace clearway

@@ -36,7 +36,7 @@ class PcdBodyReader : public PointReader {
   PcdHeader header_;
   CloudInfo info_;
   InputBuffer::Mark first_point_;
-  std::uint64_t next_ = 0;  ///< point to read next
+  std::uint64_t next_ = 0;  ///< index of the point to read next
 
  private:
   void mark_absent(PointBatch& batch);

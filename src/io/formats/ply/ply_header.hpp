@@ -30,7 +30,7 @@ struct PlyElement {
 
   /// Bytes of one element in a binary file; nullopt where a list makes the size vary.
   std::optional<std::size_t> fixed_bytes() const;
-  /// The least bytes of one element in a binary file.
+  /// Least number of bytes of one element in a binary file.
   std::size_t least_bytes() const;
 };
 
@@ -42,7 +42,7 @@ struct PlyHeader {
   PlyFormat format;
   std::vector<PlyElement> elements;
   std::size_t vertex;          ///< index of the element named vertex
-  std::size_t coordinates[3];  ///< indices of its properties x, y, z, all scalar
+  std::size_t coordinates[3];  ///< indices of the vertices' properties x, y, z, all scalar
   /// Spacing in metres from the comment that begins with kSpacingComment; 0 where there is none.
   double model_spacing = 0;
 

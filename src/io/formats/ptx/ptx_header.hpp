@@ -7,11 +7,11 @@
 #include "clearway/vec3.hpp"
 #include "io/formats/input_buffer.hpp"
 
-/// The header of one scan in PTX, the text format of Leica's Cyclone, which holds one scan after
-/// another: ten lines, then one line per point.
+/// PTX, the text format of Leica's Cyclone: one scan after another, each with ten lines of header
+/// and then one line per point.
 namespace clearway {
 
-/// What stands before the points of one scan.
+/// The header of one scan in a PTX file.
 struct PtxHeader {
   std::uint64_t line = 0;    ///< number of the header's first line
   std::uint64_t points = 0;  ///< number of points, columns times rows

@@ -15,7 +15,7 @@ namespace clearway {
 
 inline constexpr CoordinateColumns kFirstThree{0, 1, 2};
 
-/// Where the lines of a text hold x, y and z, and how they are parsed.
+/// Parses the lines of a text: the columns of x, y and z, and their separator.
 class PointLine {
  public:
   PointLine() = default;
@@ -64,7 +64,7 @@ bool is_text_comment(std::string_view line);
 /// at the end.
 bool next_data_line(InputBuffer& input, std::string_view& line);
 
-/// What separates the fields of a line of data: ',', ';' or ' ' for any blanks.
+/// The separator of the fields of a line of data: ',', ';' or ' ' for any blanks.
 char separator_of(std::string_view line);
 
 /// The number of fields of a line, separated by separator_of(line).

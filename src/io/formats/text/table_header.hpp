@@ -28,7 +28,8 @@ TableHeader parse_table_header(std::string_view line);
 /// The lower-case form of a name, as TableHeader holds it.
 std::string table_name(std::string_view field);
 
-/// The index of the only column of that name; none where there is no such column or more than one.
+/// The index of the only column of that name; nullopt where there is no such column or more than
+/// one.
 std::optional<std::size_t> column_named(const TableHeader& header, std::string_view name);
 
 /// The columns of x, y and z, or of easting, northing and height, in any order. Nullopt where one

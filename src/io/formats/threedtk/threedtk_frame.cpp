@@ -53,7 +53,7 @@ ThreedtkMatrix threedtk_matrix(std::span<const double, 3> position,
     s[k] = std::sin(radians);
     c[k] = std::cos(radians);
   }
-  // The product Rx Ry Rz of rotations about x, y and z, column by column.
+  // The product Rx Ry Rz of rotations about x, y and z, column-major.
   return {c[1] * c[2],
           s[0] * s[1] * c[2] + c[0] * s[2],
           s[0] * s[2] - c[0] * s[1] * c[2],

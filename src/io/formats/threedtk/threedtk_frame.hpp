@@ -8,14 +8,14 @@
 #include "io/formats/input_buffer.hpp"
 #include "io/trajectory/pose_input.hpp"
 
-/// Conversion between 3DTK's frame and Clearway's. 3DTK is left-handed, in centimetres: x right, y
-/// up, z forward. Its readers convert right-handed metres with x forward, y left and z up by x3 =
-/// -100 y, y3 = 100 z, z3 = 100 x (3DTK, src/scanio/helper.cc, ScanDataTransform_xyz; globals.icc,
-/// toRieglMat). Scans and poses of 3DTK's own formats are converted by the inverse, see
-/// docs/design/scan-formats.md.
+/// Conversion between 3DTK's frame and Clearway's. 3DTK is left-handed, in centimetres: x right,
+/// y up, z forward. Its readers convert right-handed metres with x forward, y left and z up by
+///   x3 = -100 y, y3 = 100 z, z3 = 100 x
+/// (3DTK, src/scanio/helper.cc, ScanDataTransform_xyz; globals.icc, toRieglMat). Scans and poses of
+/// 3DTK's own formats are converted by the inverse, see docs/design/scan-formats.md.
 namespace clearway {
 
-/// 4 x 4, column by column as 3DTK keeps and prints it: p' = M p, centimetres, left-handed.
+/// A 4 x 4 matrix, column-major as 3DTK stores and prints it: p' = M p, centimetres, left-handed.
 using ThreedtkMatrix = std::array<double, 16>;
 
 /// The point in right-handed metres.

@@ -81,8 +81,8 @@ std::vector<QueryDifference> question_differences(const ResultHeader& a, const R
 /// classes.
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b);
 
-/// Merges both results in constant memory; keeps up to `kept` differing points. Throws InputError
-/// when they are about different environments, whose indices cannot be compared.
+/// Compares two results in constant memory and keeps up to `kept` differing points. Throws
+/// InputError when they are about different environments, whose indices cannot be compared.
 Comparison compare_results(const ResultReader& a, const ResultReader& b, std::size_t kept);
 
 }  // namespace clearway

@@ -16,7 +16,8 @@ struct PoseColumns {
   char separator = ',';
   std::size_t fields = 0;                 ///< number of fields in every line
   std::array<std::size_t, 3> position{};  ///< x y z; longitude, latitude, height where geographic
-  std::vector<std::size_t> rotation{};  ///< 4: quaternion x y z w; 9: matrix, row-major; 3: angles
+  /// 4 columns: quaternion x y z w; 9: matrix, row-major; 3: angles
+  std::vector<std::size_t> rotation{};
   bool geographic = false;
   bool heading = false;             ///< whether the third angle is called heading instead of yaw
   std::string position_units[3]{};  ///< units in the header, in lower case, or empty

@@ -10,10 +10,10 @@
 namespace clearway::laz {
 
 /// The arithmetic decoder of LAZ, after A. Said, "Introduction to Arithmetic Coding - Theory and
-/// Practice", HP Laboratories HPL-2004-76. Its inner loop checks no bounds: the caller provides the
-/// bytes that one point can take at most, kMostBytes... a call, and kReadAhead more.
+/// Practice", HP Laboratories HPL-2004-76. Its inner loop checks no bounds: the caller provides as
+/// many bytes as one point can take, which is kMostBytes... for each call, and kReadAhead more.
 ///
-/// A value to be copied: a loop that works on its own copy keeps it in registers.
+/// It is a value to be copied, because a loop that works on its own copy keeps it in registers.
 class ArithmeticDecoder {
  public:
   static constexpr std::size_t kStartBytes = 4;

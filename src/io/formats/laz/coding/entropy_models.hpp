@@ -7,8 +7,8 @@
 #include <memory>
 #include <type_traits>
 
-/// The adaptive models of LAZ. How their counts become probabilities, and when, is part of the
-/// format: docs/design/laz.md. How a symbol is found is not.
+/// The adaptive models of LAZ. How and when their counts become probabilities is part of the format
+/// (docs/design/laz.md); how a symbol is found is not.
 namespace clearway::laz {
 
 constexpr unsigned kSymbolShift = 15;  ///< probabilities of symbols are fractions of 2^15
@@ -17,7 +17,7 @@ constexpr unsigned kBitShift = 13;     ///< probabilities of bits are fractions 
 /// Counts that models of any alphabet have in common.
 struct SymbolCounts {
   std::uint32_t until_update;
-  std::uint32_t cycle;  ///< symbols between two updates
+  std::uint32_t cycle;  ///< number of symbols between two updates
   std::uint32_t total = 0;
 };
 

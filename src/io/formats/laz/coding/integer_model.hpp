@@ -54,7 +54,7 @@ class CorrectorModel {
 template <unsigned kBits, unsigned kContexts>
 class IntegerModel {
  public:
-  /// The prediction plus its corrector, modulo 2^kBits.
+  /// Decodes an integer: the prediction plus its corrector, modulo 2^kBits.
   [[gnu::always_inline]] inline std::uint32_t decode(ArithmeticDecoder& decoder,
                                                      std::uint32_t prediction, unsigned context) {
     const std::uint32_t value =

@@ -3,7 +3,7 @@
 namespace clearway::laz {
 
 ArithmeticDecoder RgbVersion2::skip(ArithmeticDecoder decoder) {
-  constexpr unsigned kOthers = 64;  // green and blue differ from red
+  constexpr unsigned kOthers = 64;  // bit of `changed`: green and blue differ from red
   const unsigned changed = decoder.symbol(models_.changed);
   // Each bit stands for a byte, in the order of the record; the low bytes of green and blue come
   // first.

@@ -39,7 +39,7 @@ struct Point10Changes {
 /// Most bytes that the item takes, in any version.
 constexpr std::size_t kMostBytesPoint10 = 128;
 
-/// The item POINT10, version 2, which LASzip writes since its release 2.0 (2011).
+/// The item POINT10, version 2, which LASzip has written since its release 2.0 (2011).
 class Point10Version2 {
  public:
   void begin(const std::byte* record);
