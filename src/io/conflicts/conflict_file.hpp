@@ -18,7 +18,7 @@ struct ConflictFile {
   const Conflicts& conflicts;
   const ConflictOptions& options;  ///< the options with which the conflicts were found
   const ResultHeader& header;      ///< header of the result
-  const Answer& answer;            ///< answer of the result; only its counts are used
+  const Answer& answer;            ///< answer of the result, of which the counts suffice
   const std::vector<Pose>& poses;
   std::vector<Message> warnings;
   /// Date for formats that need one: an ISO 8601 time in UTC.

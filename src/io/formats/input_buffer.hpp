@@ -27,7 +27,7 @@ class InputBuffer {
     std::uint64_t line = 0;
   };
 
-  /// KSeek needs a regular file and starts at its first byte; kStream starts at the file's current
+  /// kSeek needs a regular file and starts at its first byte; kStream starts at the file's current
   /// position.
   InputBuffer(File file, Access access);
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kManyPoints = 64;
 
-/// The least squared distance of a point to others at another place; infinite where there are none.
+/// The least squared distance from `place` to one of the points at another place; infinite where
+/// there is none.
 double least_to_others(const Vec3& place, std::span<const Vec3> points) {
   double least = std::numeric_limits<double>::infinity();
   for (const Vec3& point : points) {

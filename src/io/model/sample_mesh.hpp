@@ -14,10 +14,11 @@ inline constexpr std::uint64_t kMostSamples = 50'000'000;
 inline constexpr double kLeastSpacing = 1e-9, kLargestSpacing = 1e9;  // metres
 
 /// Points on a mesh's surface such that no place of it is farther than `spacing` from the nearest:
-/// the vertices of its triangles, followed by the other points that are needed. Each is within
-/// 2^-48 of the largest coordinate of its triangle. The same mesh gives the same points in the same
-/// order. Throws InputError, which begins with `name`, where more than kMostSamples are needed, and
-/// for a spacing too fine for the size of the coordinates. docs/design/model.md has the proof.
+/// the vertices of its triangles, followed by the other points that are needed. Each lies on its
+/// triangle up to an error of 2^-48 of the largest coordinate. The same mesh gives the same points
+/// in the same order. Throws InputError, which begins with `name`, where more than kMostSamples are
+/// needed, and for a spacing too fine for the size of the coordinates. docs/design/model.md has the
+/// proof.
 std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const std::string& name);
 
 /// Greatest distance of a place of the triangles from the nearest vertex of its own triangle,

@@ -9,8 +9,8 @@
 namespace clearway {
 namespace {
 
-/// Finds the row with the smallest first pose; of several, the one with the smallest source,
-/// because rows ascend by source.
+/// Finds the first place: the row with the smallest first pose, and of several the one with the
+/// smallest source, because rows ascend by source.
 void fold_collisions(const ResultReader& result, Answer& answer) {
   if (!result.header().first_pose) return;
   std::optional<FoundPlace>& first = answer.first_place;

@@ -75,9 +75,10 @@ struct ResultHeader : QueryParameters {
   /// Number of triangles of a mesh, whose corners are the model's points; for several bodies, of
   /// all of them. 0 where the model is points.
   std::uint64_t model_triangles = 0;
-  /// Parts of the model that have an inside; where there are any, distances may be below 0.
+  /// Number of parts of the model that have an inside; where there are any, distances may be below
+  /// 0.
   std::uint64_t model_solids = 0;
-  /// For ignore_classes and ignore_boxes, in the order of sort_ignored().
+  /// Numbers of points for ignore_classes and ignore_boxes, whose order is that of sort_ignored().
   IgnoredPointCounts ignored{};
   /// Hash of the classes of all points; 0 where no class is ignored.
   std::uint64_t classes_hash = 0;

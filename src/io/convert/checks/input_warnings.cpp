@@ -7,7 +7,7 @@
 namespace clearway {
 namespace {
 
-constexpr double kMostAbsent = 0.99;  // share of all records above which a warning is due
+constexpr double kMostAbsent = 0.99;  // greatest share of absent records that is not reported
 
 /// A share as a percentage: "12.3 %".
 std::string percentage(double share) { return format_brief(100 * share) + " %"; }

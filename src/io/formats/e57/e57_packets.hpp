@@ -18,8 +18,8 @@ class E57Packets {
   E57Packets(E57Pages& pages, const E57Scan& scan, const E57Extent& extent);
 
   std::uint64_t first() const { return extent_.packets; }
-  /// Makes the first data packet at or behind a position current, where `position` must be that of
-  /// a packet. Returns false at the end of the section.
+  /// Makes the first data packet at or behind `position`, where some packet must begin, the current
+  /// one. Returns false at the end of the section.
   bool go_to(std::uint64_t position);
   /// The bytes of a bytestream in the current packet.
   std::span<const std::byte> stream(std::size_t index) const;
