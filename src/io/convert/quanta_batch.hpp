@@ -25,7 +25,7 @@ struct QuantaBatch {
   std::size_t file = 0;            ///< number of the input that all points belong to
   std::uint64_t first_source = 0;  ///< source index of the batch's first input point
   std::vector<std::array<std::int32_t, 3>> quanta;
-  /// Source - first_source of each point; empty where that is its index in `quanta`.
+  /// Source index of each point minus first_source; empty where that is its index in `quanta`.
   std::vector<std::uint32_t> offsets;
   std::vector<std::uint8_t> classes;  ///< classes of the points; empty where all have class 0
 

@@ -13,7 +13,7 @@ struct MeshFacts {
   std::uint64_t edges = 0;
   std::uint64_t open_edges = 0;     ///< edges of one triangle
   std::uint64_t crowded_edges = 0;  ///< edges of more than two triangles
-  /// Edges of two triangles that run along it in the same direction.
+  /// Edges of two triangles that run along them in the same direction.
   std::uint64_t flipped_edges = 0;
   std::uint64_t flat_triangles = 0;  ///< triangles without area
   std::uint64_t parts = 0;           ///< parts that share no vertex

@@ -11,7 +11,7 @@ namespace clearway {
 /// A position with three angles instead of a rotation.
 struct AttitudeRow {
   double position[3];       ///< x y z, or longitude, latitude and height
-  double roll, pitch, yaw;  ///< radians; yaw is a heading where it is counted from north
+  double roll, pitch, yaw;  ///< yaw is a heading where it is counted from north
 };
 
 /// Sets the rotation of a model with x forward, y left and z up into x east, y north and z up.

@@ -85,8 +85,7 @@ class EnvironmentSource {
   std::uint64_t non_finite_points() const { return non_finite_points_; }
   /// The source index of the first non-finite point.
   std::uint64_t first_non_finite() const { return first_non_finite_; }
-  /// Number of points, which are source indices, of each of files(); complete once read() has
-  /// returned false.
+  /// Number of source indices that each of files() takes; complete once read() has returned false.
   const std::vector<std::uint64_t>& points_of_files() const { return points_of_files_; }
   /// Number of records of the files that hold no point, by the rules of their format.
   std::uint64_t absent_points() const { return absent_points_; }
