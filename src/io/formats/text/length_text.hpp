@@ -10,7 +10,7 @@ namespace clearway {
 /// A length given as text: "0.1", "10cm", "4 in", "0.5 us-ft".
 struct ParsedLength {
   double value = 0;  ///< metres where a unit was given, otherwise the number
-  /// Without a unit, the number is in the unit of the file it is compared with.
+  /// Whether a unit was given; otherwise the number is in the unit of the file it is compared with.
   bool has_unit = false;
   double feet = 0;     ///< the length in international feet, where a unit was given
   double number = 0;   ///< the number as written
